@@ -1,0 +1,5 @@
+//! hachure
+
+pub mod dem;
+pub mod error;
+pub mod view;

@@ -1,0 +1,58 @@
+//! Pinhole camera with directions as surveyors give them.
+//!
+//! Azimuth a clockwise from grid north, altitude e upwards: forward f = (sin a cos e, cos a cos e, sin e), right
+//! r = (cos a, -sin a, 0), up u = r x f, so that altitude +-90 is defined. Pixels are square, pixel (0, 0) is top
+//! left with its centre at (0.5, 0.5).
+
+use glam::{DVec2, DVec3};
+
+/// Where the drawing is seen from. World: metres, x east, y north, z up (exaggerated).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Camera {
+    /// Eye in metres: easting, northing, exaggerated height.
+    pub eye: DVec3,
+    /// Degrees clockwise from grid north.
+    pub azimuth: f64,
+    /// Degrees above the horizon, -90 to 90.
+    pub altitude: f64,
+    /// Horizontal field of view in degrees, above 0 and below 180.
+    pub fov: f64,
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+}
+
+impl Camera {
+    /// Right, up and forward, unit vectors.
+    pub fn axes(&self) -> [DVec3; 3] {
+        let (sin_a, cos_a) = self.azimuth.to_radians().sin_cos();
+        let (sin_e, cos_e) = self.altitude.to_radians().sin_cos();
+        let forward = DVec3::new(sin_a * cos_e, cos_a * cos_e, sin_e);
+        let right = DVec3::new(cos_a, -sin_a, 0.0);
+        [right, right.cross(forward), forward]
+    }
+
+    /// Pixels per unit of tangent: half the width over tan(fov / 2).
+    pub fn focal(&self) -> f64 {
+        f64::from(self.width) / 2.0 / (self.fov.to_radians() / 2.0).tan()
+    }
+
+    /// Image place in pixels and distance along the view axis in metres of a world point; the place is meaningless
+    /// where the distance is not positive.
+    pub fn project(&self, point: DVec3) -> (DVec2, f64) {
+        let [right, up, forward] = self.axes();
+        let p = point - self.eye;
+        let w = p.dot(forward);
+        let centre = DVec2::new(f64::from(self.width), f64::from(self.height)) / 2.0;
+        (centre + DVec2::new(p.dot(right), -p.dot(up)) * (self.focal() / w), w)
+    }
+
+    /// Direction of the ray through an image place in pixels, scaled to advance 1 m along the view axis.
+    pub fn ray(&self, place: DVec2) -> DVec3 {
+        let [right, up, forward] = self.axes();
+        let centre = DVec2::new(f64::from(self.width), f64::from(self.height)) / 2.0;
+        let d = (place - centre) / self.focal();
+        forward + right * d.x - up * d.y
+    }
+}

@@ -1,0 +1,1 @@
+//! Every integration test in one binary: linked once, one module a subject.
