@@ -2,4 +2,8 @@
 
 pub mod dem;
 pub mod error;
+pub mod gpu;
+pub mod plan;
+pub mod render;
+pub mod surface;
 pub mod view;

@@ -1,0 +1,87 @@
+// One invocation a lattice edge of the rim: where its one facet is toward, draws it one pixel wide over what lies
+// farther. A pixel belongs to the line where the edge crosses its central cross: thin, and connected from edge to edge.
+
+struct RimEdge {
+    sample: vec2<u32>,  // where the patch edge starts, column and row
+    direction: u32,     // 0 east, 1 south, 2 south-east
+    half: u32,          // of the quad whose edge it is: 0 or 1
+}
+
+@group(0) @binding(21) var<storage, read> rim: array<RimEdge>;
+@group(0) @binding(22) var<storage, read_write> out_ink: array<atomic<u32>>;
+
+// A rim line is seen where the surface beside it is farther, in the pixel or one of its four neighbours.
+fn draw(at: vec2<i32>, depth: f32) {
+    if !on_page(at) {
+        return;
+    }
+    var farthest = pixel_depth(pixels[pixel_index(at)]);
+    for (var k = 1u; k < 8u; k += 2u) {
+        // Odd neighbours of the 3 x 3 block, without its centre, are its edges.
+        let beside = at + cross_neighbour(k);
+        if on_page(beside) {
+            farthest = min(farthest, pixel_depth(pixels[pixel_index(beside)]));
+        }
+    }
+    if bitcast<u32>(depth) >= farthest {
+        atomicOr(&out_ink[pixel_index(at)], BORDER);
+    }
+}
+
+fn cross_neighbour(k: u32) -> vec2<i32> {
+    return vec2<i32>(i32(k % 3u) - 1, i32(k / 3u) - 1);
+}
+
+// Pixels whose centre line of one axis the edge from `p` to `q` crosses; z is depth. `axis` 0: vertical centre lines.
+fn draw_crossings(p: vec3<f32>, q: vec3<f32>, axis: u32) {
+    let low = min(p[axis], q[axis]);
+    let high = max(p[axis], q[axis]);
+    let size = f32(camera.size[axis]);
+    let first = i32(max(ceil(low - 0.5), 0.0));
+    let end = i32(min(ceil(high - 0.5), size));
+    for (var k = first; k < end; k++) {
+        let t = (f32(k) + 0.5 - p[axis]) / (q[axis] - p[axis]);
+        let at = p + (q - p) * clamp(t, 0.0, 1.0);
+        let other = i32(floor(at[1u - axis]));
+        draw(select(vec2<i32>(other, k), vec2<i32>(k, other), axis == 0u), at.z);
+    }
+}
+
+@compute @workgroup_size(64)
+fn border(@builtin(global_invocation_id) invocation: vec3<u32>) {
+    let parts = CELL_STEPS / scene.step;
+    let i = invocation.y * 65535u * 64u + invocation.x;
+    if i / parts >= arrayLength(&rim) {
+        return;
+    }
+    let edge = rim[i / parts];
+    let along = vec2<u32>(select(1u, 0u, edge.direction == 1u), select(1u, 0u, edge.direction == 0u));
+    let at = edge.sample * CELL_STEPS + along * (i % parts) * scene.step;
+    // North-west vertex of the quad whose half has this edge: the quad above or left of it, or the one it starts in.
+    var quad = vec2<i32>(at / scene.step);
+    quad.y -= select(0, 1, edge.direction == 0u && edge.half == 0u);
+    quad.x -= select(0, 1, edge.direction == 1u && edge.half == 1u);
+    let slot = slot_of(quad);
+    if slot == NO_SLOT {
+        return;
+    }
+    let id = slot * CHUNK_FACETS + quad_local(vec2<u32>(quad) % CHUNK_QUADS) + edge.half;
+    if is_away(id) {
+        return;
+    }
+    let end = at + along * scene.step;
+    var p = camera_space(eye_relative(at / CELL_STEPS, vertex_place(at)));
+    var q = camera_space(eye_relative(end / CELL_STEPS, vertex_place(end)));
+    if p.z < scene.near && q.z < scene.near {
+        return;
+    }
+    if p.z < scene.near {
+        p = mix(q, p, (q.z - scene.near) / (q.z - p.z));
+    } else if q.z < scene.near {
+        q = mix(p, q, (p.z - scene.near) / (p.z - q.z));
+    }
+    let from = vec3<f32>(vec2<f32>(p.x, -p.y) * (camera.focal / p.z) + camera.centre, depth_of(p));
+    let to = vec3<f32>(vec2<f32>(q.x, -q.y) * (camera.focal / q.z) + camera.centre, depth_of(q));
+    draw_crossings(from, to, 0u);
+    draw_crossings(from, to, 1u);
+}

@@ -1,0 +1,11 @@
+// Two depths a pixel, no ID: nearest away surface, then nearest toward surface.
+
+@group(0) @binding(20) var<storage, read_write> out_pixels: array<atomic<u32>>;
+
+fn emit(pixel: u32, depth: f32, id: u32, away: bool) {
+    atomicMax(&out_pixels[2u * pixel + select(1u, 0u, away)], bitcast<u32>(depth));
+}
+
+fn away_of(id: u32) -> bool {
+    return is_away(id);
+}

@@ -1,0 +1,16 @@
+// Visibility without 64-bit atomics, two words a pixel: first the depth, then the highest ID + 1 at that depth, by one
+// pipeline, so that both passes compute the same depth bits.
+
+@group(0) @binding(20) var<storage, read_write> out_pixels: array<atomic<u32>>;
+
+fn emit(pixel: u32, depth: f32, id: u32, away: bool) {
+    if batch.round == 0u {
+        atomicMax(&out_pixels[2u * pixel + 1u], bitcast<u32>(depth));
+    } else if atomicLoad(&out_pixels[2u * pixel + 1u]) == bitcast<u32>(depth) {
+        atomicMax(&out_pixels[2u * pixel], id + 1u);
+    }
+}
+
+fn away_of(id: u32) -> bool {
+    return false;
+}

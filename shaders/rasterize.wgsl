@@ -1,0 +1,97 @@
+// One invocation a facet, both sides: small ones are drawn here, large and clipped ones queued.
+
+struct Queue {
+    count: atomic<u32>,
+    ids: array<u32>,
+}
+
+@group(0) @binding(21) var<storage, read_write> out_queue: Queue;
+
+// Beyond this box, in 1/256 px, products of two differences overflow i32.
+const LARGEST_BOX: i32 = 126 * 256;
+
+fn enqueue(id: u32) {
+    out_queue.ids[atomicAdd(&out_queue.count, 1u)] = id;
+}
+
+// `wide`: the corner of the pixel that lies deepest inside counts.
+fn small_bias(gradient: vec2<i32>, wide: bool) -> i32 {
+    return select(edge_bias(gradient), 128 * (abs(gradient.x) + abs(gradient.y)), wide);
+}
+
+fn rasterize_small(t_in: Triangle, id: u32, away: bool) {
+    var t = t_in;
+    let wide = conservative && away;
+    let ab = t.b - t.a;
+    let ac = t.c - t.a;
+    let area = ab.x * ac.y - ab.y * ac.x;
+    if area == 0 {
+        return;
+    }
+    if area < 0 {
+        let b = t.b;
+        t.b = t.c;
+        t.c = b;
+        t.depth = t.depth.xzy;
+    }
+    let box = pixel_box(t, wide);
+    if any(box.low > box.high) {
+        return;
+    }
+    let first = box.low * 256 + 128;
+    let g_a = edge_gradient(t.b, t.c);
+    let g_b = edge_gradient(t.c, t.a);
+    let g_c = edge_gradient(t.a, t.b);
+    let bias = vec3<i32>(small_bias(g_a, wide), small_bias(g_b, wide), small_bias(g_c, wide));
+    let step_x = vec3<i32>(g_a.x, g_b.x, g_c.x) * 256;
+    let step_y = vec3<i32>(g_a.y, g_b.y, g_c.y) * 256;
+    let from_a = first - t.a;
+    let from_b = first - t.b;
+    let from_c = first - t.c;
+    var row = bias + vec3<i32>(
+        g_a.x * from_b.x + g_a.y * from_b.y,
+        g_b.x * from_c.x + g_b.y * from_c.y,
+        g_c.x * from_a.x + g_c.y * from_a.y,
+    );
+    var e = row;
+    let scale = 1.0 / f32(abs(area));
+    var at = box.low;
+    loop {
+        if (e.x | e.y | e.z) >= 0 {
+            let inside = e - bias;
+            let depth = depth_at(t, f32(inside.y) * scale, f32(inside.z) * scale);
+            emit(u32(at.y) * camera.size.x + u32(at.x), depth, id, away);
+        }
+        at.x += 1;
+        e += step_x;
+        if at.x > box.high.x {
+            at = vec2<i32>(box.low.x, at.y + 1);
+            row += step_y;
+            e = row;
+            if at.y > box.high.y {
+                break;
+            }
+        }
+    }
+}
+
+@compute @workgroup_size(64)
+fn rasterize(@builtin(global_invocation_id) invocation: vec3<u32>) {
+    let id = (batch.first_slot + invocation.y) * CHUNK_FACETS + invocation.x;
+    let quad = local_quad(invocation.x);
+    let v = invocation.y * CHUNK_VERTICES + quad.y * CHUNK_SIDE + quad.x;
+    let half = id & 1u;
+    let a = screens[v];
+    let b = screens[v + CHUNK_SIDE + half];
+    let c = screens[v + CHUNK_SIDE * (1u - half) + 1u];
+    let any_flag = a.w | b.w | c.w;
+    if (any_flag & MISSING) != 0 || (a.w & b.w & c.w & BESIDE) != 0 {
+        return;
+    }
+    let extent = max(a.xy, max(b.xy, c.xy)) - min(a.xy, min(b.xy, c.xy));
+    if (any_flag & CLIPPED) != 0 || max(extent.x, extent.y) > LARGEST_BOX {
+        enqueue(id);
+    } else {
+        rasterize_small(screen_triangle(a, b, c), id, away_of(id));
+    }
+}

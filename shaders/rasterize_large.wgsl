@@ -1,0 +1,197 @@
+// One workgroup a share of a queued facet's tiles: clips it to the near plane and the guard band, then draws the
+// parts with 64-bit edge functions.
+
+struct Queue {
+    count: u32,
+    ids: array<u32>,
+}
+
+@group(0) @binding(21) var<storage, read> queue: Queue;
+
+// Shares of a facet; tiles are 32 x 32 px, an invocation draws half a column.
+const SHARES: u32 = 8u;
+const TILE: i32 = 32;
+// Limits the tile-local part of an edge function to i32: see `tile_edge`.
+const EDGE_LIMIT: i32 = 1 << 30;
+
+// Signed distance of a point in camera space from clip plane k; inside is not negative.
+fn plane_distance(q: vec3<f32>, k: u32) -> f32 {
+    switch k {
+        case 0u: { return q.z - scene.near; }
+        case 1u: { return GUARD * q.z - camera.focal * q.x; }
+        case 2u: { return GUARD * q.z + camera.focal * q.x; }
+        case 3u: { return GUARD * q.z - camera.focal * q.y; }
+        default: { return GUARD * q.z + camera.focal * q.y; }
+    }
+}
+
+struct Polygon {
+    points: array<vec3<f32>, 8>,
+    // Lattice corner (0 to 2) a point still is, 3 for cut ones: corners keep their snapped places.
+    corners: array<u32, 8>,
+    size: u32,
+}
+
+// Sutherland, Hodgman 1974. A cut is computed from the inside end of its edge: both facets of an edge get the same.
+fn cut(polygon: Polygon, k: u32) -> Polygon {
+    var kept: Polygon;
+    kept.size = 0u;
+    for (var i = 0u; i < polygon.size; i++) {
+        let j = select(i + 1u, 0u, i + 1u == polygon.size);
+        let p = polygon.points[i];
+        let q = polygon.points[j];
+        let dp = plane_distance(p, k);
+        let dq = plane_distance(q, k);
+        if dp >= 0.0 {
+            kept.points[kept.size] = p;
+            kept.corners[kept.size] = polygon.corners[i];
+            kept.size += 1u;
+        }
+        if (dp >= 0.0) != (dq >= 0.0) {
+            let inside = select(q, p, dp >= 0.0);
+            let outside = select(p, q, dp >= 0.0);
+            let d_inside = max(dp, dq);
+            let t = d_inside / (d_inside - min(dp, dq));
+            kept.points[kept.size] = inside + (outside - inside) * t;
+            kept.corners[kept.size] = 3u;
+            kept.size += 1u;
+        }
+    }
+    return kept;
+}
+
+// An edge function over a tile: E = 256 * whole + rest, where `whole` changes by the gradient a pixel.
+struct TileEdge {
+    whole: i32,
+    rest: i32,
+    estimate: f32,
+    gradient: vec2<i32>,
+    // Whether `whole` does not tell the value, only its sign.
+    estimated: bool,
+}
+
+fn tile_edge(p: vec2<i32>, q: vec2<i32>, corner_px: vec2<i32>, wide: bool) -> TileEdge {
+    let g = edge_gradient(p, q);
+    let d = corner_px * 256 + 128 - p;
+    var e = wide_add(wide_mul(g.x, d.x), wide_mul(g.y, d.y));
+    let estimate = wide_f32(e);
+    let bias = edge_bias(g);
+    if wide {
+        e = wide_add(e, wide_mul(128, abs(g.x) + abs(g.y)));
+    } else if bias < 0 {
+        e = wide_sub(e, vec2<u32>(1u, 0u));
+    }
+    // Floor of e / 256, cut to +-2^30: within a tile it changes by less, so its sign stays right.
+    let high = bitcast<i32>(e.y) >> 8u;
+    let low = bitcast<i32>((e.x >> 8u) | (e.y << 24u));
+    let fits = high == (low >> 31u) && abs(low) < EDGE_LIMIT;
+    let whole = select(select(EDGE_LIMIT, -EDGE_LIMIT, high < 0), low, fits);
+    return TileEdge(whole, i32(e.x & 255u) - bias, estimate, g, wide || !fits);
+}
+
+fn edge_value(e: TileEdge, whole: i32, at: vec2<i32>) -> f32 {
+    let exact = f32(whole) * 256.0 + f32(e.rest);
+    let g = vec2<f32>(e.gradient) * vec2<f32>(at);
+    return select(exact, e.estimate + 256.0 * (g.x + g.y), e.estimated);
+}
+
+fn rasterize_tile(t: Triangle, box: Box, tile: vec2<i32>, lane: u32, area: f32, id: u32, away: bool, wide: bool) {
+    let corner_px = box.low + tile * TILE;
+    let a = tile_edge(t.b, t.c, corner_px, wide);
+    let b = tile_edge(t.c, t.a, corner_px, wide);
+    let c = tile_edge(t.a, t.b, corner_px, wide);
+    let x = i32(lane & 31u);
+    let top = i32(lane >> 5u) * (TILE / 2);
+    for (var y = top; y < top + TILE / 2; y++) {
+        let at = vec2<i32>(x, y);
+        let e_a = a.whole + a.gradient.x * x + a.gradient.y * y;
+        let e_b = b.whole + b.gradient.x * x + b.gradient.y * y;
+        let e_c = c.whole + c.gradient.x * x + c.gradient.y * y;
+        if (e_a | e_b | e_c) >= 0 && all(corner_px + at <= box.high) {
+            let depth = depth_at(t, edge_value(b, e_b, at) / area, edge_value(c, e_c, at) / area);
+            emit(pixel_index(corner_px + at), depth, id, away);
+        }
+    }
+}
+
+fn rasterize_triangle(t_in: Triangle, share: u32, lane: u32, id: u32, away: bool) {
+    var t = t_in;
+    let wide = conservative && away;
+    let ab = t.b - t.a;
+    let ac = t.c - t.a;
+    let area = wide_sub(wide_mul(ab.x, ac.y), wide_mul(ab.y, ac.x));
+    let sign = wide_sign(area);
+    if sign == 0 {
+        return;
+    }
+    if sign < 0 {
+        let b = t.b;
+        t.b = t.c;
+        t.c = b;
+        t.depth = t.depth.xzy;
+    }
+    let box = pixel_box(t, wide);
+    if any(box.low > box.high) {
+        return;
+    }
+    let tiles = vec2<u32>((box.high - box.low) / TILE + 1);
+    for (var k = share; k < tiles.x * tiles.y; k += SHARES) {
+        let tile = vec2<i32>(i32(k % tiles.x), i32(k / tiles.x));
+        rasterize_tile(t, box, tile, lane, abs(wide_f32(area)), id, away, wide);
+    }
+}
+
+// Draws a share of one facet of the batch.
+fn rasterize_facet(id: u32, share: u32, lane: u32) {
+    let slot = id / CHUNK_FACETS - batch.first_slot;
+    let quad = local_quad(id % CHUNK_FACETS);
+    let facet = facet_of(id);
+    let away = away_of(id);
+    var corners: array<vec4<i32>, 3>;
+    var polygon: Polygon;
+    polygon.size = 3u;
+    var flags = 0;
+    for (var k = 0u; k < 3u; k++) {
+        let d = corner(facet.half, k);
+        let v = slot * CHUNK_VERTICES + (quad.y + d.y) * CHUNK_SIDE + quad.x + d.x;
+        let at = facet.origin + d * facet.step;
+        corners[k] = screens[v];
+        polygon.points[k] = camera_space(eye_relative(at / CELL_STEPS, places[v]));
+        polygon.corners[k] = k;
+        flags |= corners[k].w;
+    }
+    if (flags & CLIPPED) != 0 {
+        for (var k = 0u; k < 5u; k++) {
+            polygon = cut(polygon, k);
+        }
+    }
+    var first = vec4<i32>(0);
+    var last = vec4<i32>(0);
+    for (var k = 0u; k < polygon.size; k++) {
+        var screen: vec4<i32>;
+        if polygon.corners[k] < 3u && (corners[polygon.corners[k]].w & CLIPPED) == 0 {
+            screen = corners[polygon.corners[k]];
+        } else {
+            let q = polygon.points[k];
+            screen = vec4<i32>(snapped(q), bitcast<i32>(depth_of(q)), 0);
+        }
+        if k == 0u {
+            first = screen;
+        }
+        if k >= 2u {
+            rasterize_triangle(screen_triangle(first, last, screen), share, lane, id, away);
+        }
+        last = screen;
+    }
+}
+
+@compute @workgroup_size(64)
+fn rasterize_large(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    for (var k = group.x; k < queue.count * SHARES; k += groups.x) {
+        rasterize_facet(queue.ids[k / SHARES], k % SHARES, lane);
+    }
+}

@@ -1,0 +1,122 @@
+// What every pass knows: the DEM on the device, the camera, and the bindings more than one pass reads.
+
+struct Scene {
+    cell: vec2<f32>,        // metres between columns and rows
+    samples: vec2<u32>,     // columns, rows
+    chunk_grid: vec2<u32>,  // chunks across, down
+    step: u32,              // lattice units between vertices
+    near: f32,              // metres along the view axis
+}
+
+struct Camera {
+    right: vec4<f32>,
+    up: vec4<f32>,
+    forward: vec4<f32>,
+    eye_cell: vec2<i32>,    // the sample north-west of the eye
+    eye_offset: vec2<f32>,  // metres east and north from that sample to the eye
+    eye_height: vec2<f32>,  // metres, high part and remainder
+    centre: vec2<f32>,      // half the page in pixels
+    focal: f32,             // pixels per unit of tangent
+    pad: u32,
+    size: vec2<u32>,        // pixels across, down
+}
+
+struct Batch {
+    first_slot: u32,        // of the batch
+    part_slot: u32,         // the same, within its part of the facing bits
+    round: u32,             // 1: IDs where the depth is equal, 0: everything else
+    pad: u32,
+}
+
+struct Chunk {
+    origin: vec2<u32>,      // lattice place of the north-west vertex
+    step: u32,
+    pad: u32,
+}
+
+override has_voids: bool = false;
+override facing_parts: u32 = 1u;
+override two_depths: bool = false;
+
+@group(0) @binding(0) var<uniform> scene: Scene;
+@group(0) @binding(1) var<uniform> camera: Camera;
+@group(0) @binding(2) var<uniform> batch: Batch;
+@group(0) @binding(3) var<storage, read> chunks: array<Chunk>;
+@group(0) @binding(4) var<storage, read> slots: array<u32>;
+@group(0) @binding(5) var<storage, read> heights: array<f32>;
+@group(0) @binding(6) var<storage, read> gradients: array<vec2<f32>>;
+@group(0) @binding(7) var<storage, read> valid: array<u32>;
+@group(0) @binding(8) var<storage, read> facing_0: array<u32>;
+@group(0) @binding(9) var<storage, read> facing_1: array<u32>;
+@group(0) @binding(10) var<storage, read> facing_2: array<u32>;
+@group(0) @binding(11) var<storage, read> facing_3: array<u32>;
+@group(0) @binding(12) var<storage, read> summaries: array<u32>;
+@group(0) @binding(13) var<storage, read> places: array<vec4<f32>>;
+@group(0) @binding(14) var<storage, read> screens: array<vec4<i32>>;
+@group(0) @binding(15) var<storage, read> pixels: array<vec2<u32>>;
+
+const CELL_STEPS: u32 = 64u;
+const CHUNK_QUADS: u32 = 32u;
+const CHUNK_FACETS: u32 = 2048u;
+const CHUNK_SIDE: u32 = 33u;
+const CHUNK_VERTICES: u32 = 1089u;
+const CHUNK_WORDS: u32 = 64u;
+const NO_SLOT: u32 = 0xffffffffu;
+// Facing words of one part: 128 MiB.
+const PART_WORDS_LOG2: u32 = 25u;
+
+// Flags of a screen vertex. The first six say on which side of the view it lies: a facet with all its
+// vertices on one such side is not seen.
+const LEFT: i32 = 1;
+const RIGHT: i32 = 2;
+const ABOVE: i32 = 4;
+const BELOW: i32 = 8;
+const BEHIND: i32 = 16;
+const BESIDE: i32 = 31;
+const BEYOND_GUARD: i32 = 32;
+const CLIPPED: i32 = 48;
+const MISSING: i32 = 64;
+
+// Nearer depth of the pixel; 0 is sky.
+fn pixel_depth(pixel: vec2<u32>) -> u32 {
+    return select(pixel.y, max(pixel.x, pixel.y), two_depths);
+}
+
+// Whether sample (c, r) holds an elevation.
+fn is_valid(c: u32, r: u32) -> bool {
+    let i = r * scene.samples.x + c;
+    return ((valid[i >> 5u] >> (i & 31u)) & 1u) == 1u;
+}
+
+// Whether a facet faces away. Decided once, in the facing pass.
+fn is_away(id: u32) -> bool {
+    let word = id >> 5u;
+    var bits = 0u;
+    if facing_parts == 1u {
+        bits = facing_0[word];
+    } else {
+        let i = word & ((1u << PART_WORDS_LOG2) - 1u);
+        switch word >> PART_WORDS_LOG2 {
+            case 0u: { bits = facing_0[i]; }
+            case 1u: { bits = facing_1[i]; }
+            case 2u: { bits = facing_2[i]; }
+            default: { bits = facing_3[i]; }
+        }
+    }
+    return ((bits >> (id & 31u)) & 1u) == 1u;
+}
+
+// Index of a page place.
+fn pixel_index(at: vec2<i32>) -> u32 {
+    return u32(at.y) * camera.size.x + u32(at.x);
+}
+
+fn on_page(at: vec2<i32>) -> bool {
+    return all(at >= vec2<i32>(0)) && all(at < vec2<i32>(camera.size));
+}
+
+// The eight neighbours, clockwise from the north-west.
+fn neighbour(k: u32) -> vec2<i32> {
+    let i = k + select(0u, 1u, k >= 4u);
+    return vec2<i32>(i32(i % 3u) - 1, i32(i / 3u) - 1);
+}

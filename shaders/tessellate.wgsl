@@ -1,0 +1,53 @@
+// One invocation a lattice vertex: its offset from its sample, its place on the page, its depth.
+
+@group(0) @binding(20) var<storage, read_write> out_places: array<vec4<f32>>;
+@group(0) @binding(21) var<storage, read_write> out_screens: array<vec4<i32>>;
+
+fn view_flags(q: vec3<f32>) -> i32 {
+    let p = q.xy * camera.focal;
+    let reach = (camera.centre + 1.0) * q.z;
+    return select(0, LEFT, p.x < -reach.x) | select(0, RIGHT, p.x > reach.x)
+        | select(0, BELOW, p.y < -reach.y) | select(0, ABOVE, p.y > reach.y)
+        | select(0, BEHIND, q.z < scene.near)
+        | select(0, BEYOND_GUARD, any(abs(p) > vec2<f32>(GUARD * q.z)));
+}
+
+// Whether a vertex lies outside the DEM or depends on a void: no facet that has it exists.
+fn is_missing(at: vec2<u32>) -> bool {
+    if any(at > (scene.samples - 1u) * CELL_STEPS) {
+        return true;
+    }
+    if !has_voids {
+        return false;
+    }
+    let cell = at / CELL_STEPS;
+    let sub = at % CELL_STEPS;
+    let west = cell.x;
+    let east = min(cell.x + 1u, scene.samples.x - 1u);
+    let north = cell.y;
+    let south = min(cell.y + 1u, scene.samples.y - 1u);
+    return (max(sub.x, sub.y) < CELL_STEPS && !is_valid(west, north))
+        || (min(sub.x, sub.y) > 0u && !is_valid(east, south))
+        || (sub.x > sub.y && !is_valid(east, north))
+        || (sub.y > sub.x && !is_valid(west, south));
+}
+
+@compute @workgroup_size(64)
+fn tessellate(@builtin(global_invocation_id) invocation: vec3<u32>) {
+    let v = invocation.x;
+    if v >= CHUNK_VERTICES {
+        return;
+    }
+    let chunk = chunks[batch.first_slot + invocation.y];
+    let at = chunk.origin + vec2<u32>(v % CHUNK_SIDE, v / CHUNK_SIDE) * chunk.step;
+    let place = vertex_place(at);
+    let q = camera_space(eye_relative(at / CELL_STEPS, place));
+    let flags = view_flags(q) | select(0, MISSING, is_missing(at));
+    var screen = vec4<i32>(0, 0, 0, flags);
+    if (flags & CLIPPED) == 0 {
+        screen = vec4<i32>(snapped(q), bitcast<i32>(depth_of(q)), flags);
+    }
+    let i = invocation.y * CHUNK_VERTICES + v;
+    out_places[i] = place;
+    out_screens[i] = screen;
+}

@@ -1,0 +1,23 @@
+//! Pass `border`: the visible rim, one pixel wide.
+
+use super::{Gpu, Pass};
+use crate::error::Result;
+use crate::surface::Level;
+
+/// The composed shader.
+pub const SOURCE: &str = crate::shader!("scene", "lattice", "surface", "ink", "border");
+
+/// Compiles the pass.
+///
+/// # Errors
+/// See [`Pass::new`].
+pub fn pass(gpu: &Gpu, constants: &[(&str, f64)]) -> Result<Pass> {
+    Pass::new(gpu, "border", SOURCE, constants)
+}
+
+/// One invocation a lattice edge of the rim, folded into rows of 65 535 workgroups.
+pub fn invocations(pass: &Pass, rim_edges: usize, level: Level) -> [u32; 2] {
+    let edges = rim_edges as u64 * u64::from(level.subdivisions());
+    let row = 65_535 * u64::from(pass.workgroup[0]);
+    [edges.min(row) as u32, edges.div_ceil(row) as u32]
+}

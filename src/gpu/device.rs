@@ -1,0 +1,183 @@
+//! Opens an adapter and turns the driver's ways of failing into errors.
+
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+use crate::error::{Error, Result};
+
+/// Waiting longer than this for one submission means the device hangs.
+const PATIENCE: Duration = Duration::from_secs(900);
+/// Storage buffers the largest pass binds.
+const STORAGE_BUFFERS: u32 = 16;
+
+/// Which adapter to open.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub enum AdapterChoice {
+    /// A discrete GPU before an integrated one before a software driver.
+    #[default]
+    Best,
+    /// The software driver.
+    Cpu,
+    /// Any real GPU.
+    Gpu,
+    /// The first whose name contains these words, in any case.
+    Named(String),
+}
+
+/// Whether 64-bit atomics may be used.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Int64 {
+    /// Where the adapter has them.
+    #[default]
+    IfPresent,
+    /// Never: two 32-bit passes instead.
+    Never,
+}
+
+/// An open device.
+pub struct Gpu {
+    /// The device.
+    pub device: wgpu::Device,
+    /// Its only queue.
+    pub queue: wgpu::Queue,
+    /// Name, driver and kind of the adapter.
+    pub info: wgpu::AdapterInfo,
+    /// Whether 64-bit atomics are in use.
+    pub int64: bool,
+    failure: Arc<Mutex<Option<String>>>,
+    lost: Arc<Mutex<Option<String>>>,
+}
+
+impl Gpu {
+    /// Opens an adapter.
+    ///
+    /// # Errors
+    /// [`Error::NoAdapter`] when none fits, [`Error::Gpu`] when it opens no device.
+    pub fn open(choice: &AdapterChoice, int64: Int64) -> Result<Self> {
+        let adapter = find(choice)?;
+        let wanted = wgpu::Features::SHADER_INT64 | wgpu::Features::SHADER_INT64_ATOMIC_MIN_MAX;
+        let int64 = int64 == Int64::IfPresent && adapter.features().contains(wanted);
+        let limits = wgpu::Limits {
+            max_storage_buffers_per_shader_stage: STORAGE_BUFFERS,
+            ..wgpu::Limits::default()
+        };
+        let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
+            label: Some("hachure"),
+            required_features: if int64 { wanted } else { wgpu::Features::empty() },
+            required_limits: limits,
+            ..Default::default()
+        }))
+        .map_err(|e| Error::Gpu { what: one_line(&e) })?;
+        let (failure, lost) = (Arc::new(Mutex::new(None)), Arc::new(Mutex::new(None)));
+        let slot = failure.clone();
+        device.on_uncaptured_error(Arc::new(move |e: wgpu::Error| note(&slot, one_line(&e))));
+        let slot = lost.clone();
+        device.set_device_lost_callback(move |_, message| note(&slot, message));
+        Ok(Self { device, queue, info: adapter.get_info(), int64, failure, lost })
+    }
+
+    /// Whether the adapter is a software driver.
+    pub fn is_cpu(&self) -> bool {
+        self.info.device_type == wgpu::DeviceType::Cpu
+    }
+
+    /// Waits until all submitted work is done.
+    ///
+    /// # Errors
+    /// Whatever the driver reported since the last call.
+    pub fn wait(&self) -> Result<()> {
+        let wait = wgpu::PollType::Wait { submission_index: None, timeout: Some(PATIENCE) };
+        let outcome = self.device.poll(wait);
+        if let Some(what) = take(&self.lost) {
+            return Err(Error::DeviceLost { what });
+        }
+        if let Err(e) = outcome {
+            return Err(Error::DeviceLost { what: one_line(&e) });
+        }
+        self.check()
+    }
+
+    /// The first error the driver reported since the last call, if any.
+    ///
+    /// # Errors
+    /// [`Error::Gpu`] with the driver's words.
+    pub fn check(&self) -> Result<()> {
+        take(&self.failure).map_or(Ok(()), |what| Err(Error::Gpu { what }))
+    }
+
+    /// Copies a buffer's first `size` bytes to the CPU.
+    ///
+    /// # Errors
+    /// Whatever the driver reports.
+    pub fn read(&self, buffer: &wgpu::Buffer, size: u64) -> Result<Vec<u8>> {
+        let staging = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("readback"),
+            size,
+            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        encoder.copy_buffer_to_buffer(buffer, 0, &staging, 0, size);
+        self.queue.submit([encoder.finish()]);
+        let mapped = Arc::new(Mutex::new(None));
+        let slot = mapped.clone();
+        staging.slice(..).map_async(wgpu::MapMode::Read, move |outcome| {
+            if let Err(e) = outcome {
+                note(&slot, one_line(&e));
+            }
+        });
+        self.wait()?;
+        if let Some(what) = take(&mapped) {
+            return Err(Error::Gpu { what });
+        }
+        let view = staging.slice(..).get_mapped_range().map_err(|e| Error::Gpu { what: one_line(&e) })?;
+        Ok(view.to_vec())
+    }
+}
+
+fn note(slot: &Mutex<Option<String>>, what: String) {
+    if let Ok(mut slot) = slot.lock() {
+        slot.get_or_insert(what);
+    }
+}
+
+fn take(slot: &Mutex<Option<String>>) -> Option<String> {
+    slot.lock().ok().and_then(|mut slot| slot.take())
+}
+
+/// The driver's words on one line.
+fn one_line(e: &dyn std::fmt::Display) -> String {
+    e.to_string().split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+fn find(choice: &AdapterChoice) -> Result<wgpu::Adapter> {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+    let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
+    adapters.sort_by_key(|a| match a.get_info().device_type {
+        wgpu::DeviceType::DiscreteGpu => 0,
+        wgpu::DeviceType::IntegratedGpu => 1,
+        wgpu::DeviceType::VirtualGpu => 2,
+        wgpu::DeviceType::Other => 3,
+        wgpu::DeviceType::Cpu => 4,
+    });
+    let is_cpu = |a: &wgpu::Adapter| a.get_info().device_type == wgpu::DeviceType::Cpu;
+    let names = adapters.iter().map(|a| a.get_info().name).collect::<Vec<_>>().join(", ");
+    let found = adapters.into_iter().find(|a| match choice {
+        AdapterChoice::Best => true,
+        AdapterChoice::Cpu => is_cpu(a),
+        AdapterChoice::Gpu => !is_cpu(a),
+        AdapterChoice::Named(name) => a.get_info().name.to_lowercase().contains(&name.to_lowercase()),
+    });
+    let what = match choice {
+        AdapterChoice::Best => "this machine has none".to_owned(),
+        AdapterChoice::Cpu => "no software driver among the adapters".to_owned(),
+        AdapterChoice::Gpu => "no real GPU among the adapters".to_owned(),
+        AdapterChoice::Named(name) => format!("none is named `{name}`"),
+    };
+    let remedy = if names.is_empty() {
+        "install a Vulkan driver: on Debian or Ubuntu `apt-get install mesa-vulkan-drivers`".to_owned()
+    } else {
+        format!("there is: {names}")
+    };
+    found.ok_or(Error::NoAdapter { what, remedy })
+}

@@ -1,0 +1,16 @@
+//! The device, its buffers, and one adapter a pass. The mathematics stands in `shaders/`.
+
+pub mod border;
+pub mod buffers;
+pub mod compose;
+pub mod device;
+pub mod facing;
+pub mod pass;
+pub mod rasterize;
+pub mod rasterize_large;
+pub mod silhouette;
+pub mod tessellate;
+
+pub use buffers::{Buffers, CameraUniform};
+pub use device::{AdapterChoice, Gpu, Int64};
+pub use pass::Pass;

@@ -1,0 +1,28 @@
+//! Pass `rasterize`: every facet of a batch into the raster; large and clipped ones into the queue.
+
+use super::{Gpu, Pass};
+use crate::error::Result;
+use crate::plan::{Batch, Visibility};
+use crate::surface::lattice::CHUNK_FACETS;
+
+/// The composed shader that keeps what `visibility` says.
+pub fn source(visibility: Visibility) -> &'static str {
+    match visibility {
+        Visibility::Key64 => crate::shader!("scene", "lattice", "emit_u64", "triangle", "rasterize"),
+        Visibility::Key32 => crate::shader!("scene", "lattice", "emit_u32", "triangle", "rasterize"),
+        Visibility::TwoDepths => crate::shader!("scene", "lattice", "emit_two_depths", "triangle", "rasterize"),
+    }
+}
+
+/// Compiles the pass.
+///
+/// # Errors
+/// See [`Pass::new`].
+pub fn pass(gpu: &Gpu, visibility: Visibility, constants: &[(&str, f64)]) -> Result<Pass> {
+    Pass::new(gpu, "rasterize", source(visibility), constants)
+}
+
+/// One invocation a facet, one row a chunk.
+pub fn invocations(batch: &Batch) -> [u32; 2] {
+    [CHUNK_FACETS, batch.chunks]
+}

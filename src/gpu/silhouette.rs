@@ -1,0 +1,45 @@
+//! Pass 3, the silhouettes: `adjacency`, `toward_away`, or `candidates` and `walk`.
+
+use super::{Gpu, Pass};
+use crate::error::Result;
+use crate::plan::{Method, Share};
+use crate::view::Camera;
+
+/// The composed shader of adjacency.
+pub const ADJACENCY: &str = crate::shader!("scene", "lattice", "ink", "adjacency");
+/// The composed shader of toward-away.
+pub const TOWARD_AWAY: &str = crate::shader!("scene", "ink", "toward_away");
+/// The composed shader that lists where a walk is needed.
+pub const CANDIDATES: &str = crate::shader!("scene", "lattice", "candidates");
+/// The composed shader of the walk.
+pub const WALK: &str = crate::shader!("scene", "lattice", "surface", "wide", "ink", "walk");
+
+/// Workgroups that share the list of candidates, however long it is.
+const WALK_WORKGROUPS: u32 = 512;
+
+/// Compiles the passes of a method, in their order.
+///
+/// # Errors
+/// See [`Pass::new`].
+pub fn passes(gpu: &Gpu, method: Method, constants: &[(&str, f64)]) -> Result<Vec<Pass>> {
+    let with = |name, value| [constants, &[(name, value)]].concat();
+    match method {
+        Method::Adjacency { share } => {
+            let shared = if share == Share::Edge { 2.0 } else { 1.0 };
+            Ok(vec![Pass::new(gpu, "adjacency", ADJACENCY, &with("shared_vertices", shared))?])
+        }
+        Method::TowardAway { wide } => {
+            let wide = f64::from(u8::from(wide));
+            Ok(vec![Pass::new(gpu, "toward_away", TOWARD_AWAY, &with("wide_block", wide))?])
+        }
+        Method::Walk => Ok(vec![
+            Pass::new(gpu, "candidates", CANDIDATES, constants)?,
+            Pass::new(gpu, "walk", WALK, constants)?,
+        ]),
+    }
+}
+
+/// One invocation a pixel; for the walk a fixed number of workgroups.
+pub fn invocations(pass: &Pass, camera: &Camera) -> [u32; 2] {
+    if pass.name == "walk" { [WALK_WORKGROUPS * pass.workgroup[0], 1] } else { [camera.width, camera.height] }
+}

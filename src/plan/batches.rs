@@ -1,0 +1,30 @@
+//! Chunks in batches that share one vertex buffer, so that memory does not grow with the level.
+
+/// Chunks of a batch: their vertices take 4096 x 1089 x 16 bytes = 71 MB in each of two buffers.
+pub const BATCH_CHUNKS: u32 = 4096;
+/// Chunks whose facing bits fill one storage binding of 128 MiB.
+pub const PART_CHUNKS: u32 = 1 << 19;
+
+/// A run of slots rasterized together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Batch {
+    /// Slot of its first chunk.
+    pub first_slot: u32,
+    /// How many chunks.
+    pub chunks: u32,
+}
+
+impl Batch {
+    /// Which of the four buffers of facing bits holds the batch.
+    pub fn part(&self) -> u32 {
+        self.first_slot / PART_CHUNKS
+    }
+}
+
+/// The batches of so many chunks, in the order of their slots.
+pub fn batches(chunks: u32) -> Vec<Batch> {
+    (0..chunks)
+        .step_by(BATCH_CHUNKS as usize)
+        .map(|first_slot| Batch { first_slot, chunks: BATCH_CHUNKS.min(chunks - first_slot) })
+        .collect()
+}

@@ -1,0 +1,277 @@
+//! The whole algorithm on one screen: plan, passes, readback.
+
+use std::time::Instant;
+
+use crate::error::{Error, Result};
+use crate::gpu::buffers::{Counts, near_plane};
+use crate::gpu::{Buffers, CameraUniform, Gpu, Pass};
+use crate::gpu::{border, compose, facing, rasterize, rasterize_large, silhouette, tessellate};
+use crate::plan::{Batch, Border, Method, batches};
+use crate::surface::rim::rim;
+use crate::surface::{Lattice, Level, Surface};
+use crate::view::Camera;
+
+/// What a frame leaves to read: two words a pixel, row by row, and what was counted on the way.
+#[derive(Debug, Clone)]
+pub struct Frame {
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// Kind and sub-pixel place, then depth bits.
+    pub pixels: Vec<[u32; 2]>,
+    /// Nodes the longest walk visited; 0 for other methods.
+    pub longest_walk: u32,
+}
+
+/// Wall-clock milliseconds of one pass.
+#[derive(Debug, Clone, serde::Serialize)]
+pub struct PassTime {
+    /// The pass.
+    pub name: &'static str,
+    /// Milliseconds from submitting to done, on an otherwise idle device.
+    pub ms: f64,
+}
+
+/// A compiled pass with what it binds for each batch and round, and how far it reaches.
+struct Stage {
+    pass: Pass,
+    groups: Vec<wgpu::BindGroup>,
+}
+
+/// A scene on a device, ready to be seen from any eye.
+pub struct Renderer<'a> {
+    gpu: &'a Gpu,
+    surface: &'a Surface,
+    lattice: Lattice,
+    batches: Vec<Batch>,
+    rounds: u32,
+    size: [u32; 2],
+    rim_edges: usize,
+    buffers: Buffers,
+    per_batch: [Stage; 4],
+    silhouettes: Vec<Stage>,
+    border: Option<Stage>,
+    compose: Stage,
+}
+
+impl<'a> Renderer<'a> {
+    /// Uploads the scene and compiles what the method needs.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] when the scene or the page is too large, [`Error::Gpu`] when the driver refuses.
+    pub fn new(
+        gpu: &'a Gpu,
+        surface: &'a Surface,
+        level: Level,
+        method: Method,
+        border_lines: Border,
+        size: [u32; 2],
+    ) -> Result<Self> {
+        let dem = surface.dem();
+        let lattice = Lattice::uniform(dem, level)?;
+        let rim = if border_lines == Border::On { rim(dem) } else { Vec::new() };
+        let visibility = method.visibility(gpu.int64);
+        let batches = batches(lattice.chunks().len() as u32);
+        let buffers = Buffers::new(gpu, surface, &lattice, &rim, &batches, visibility, size)?;
+        let flag = |on: bool| f64::from(u8::from(on));
+        let constants = [
+            ("has_voids", flag(dem.voids() > 0)),
+            ("facing_parts", f64::from(batches.last().map_or(1, |b| b.part() + 1))),
+            ("two_depths", flag(matches!(method, Method::TowardAway { .. }))),
+            ("conservative", flag(method == Method::TowardAway { wide: true })),
+        ];
+        let bind = |pass: Pass| {
+            let of = |(i, batch): (usize, &Batch), round| {
+                pass.bind(gpu, |name| buffers.resource(name, i, round, *batch))
+            };
+            let rounds = 0..visibility.rounds();
+            let groups = batches.iter().enumerate().flat_map(|b| rounds.clone().map(move |round| (b, round)));
+            let groups = groups.map(|(b, round)| of(b, round)).collect::<Result<Vec<_>>>()?;
+            Ok::<_, Error>(Stage { groups, pass })
+        };
+        let per_batch = [
+            bind(tessellate::pass(gpu, &constants)?)?,
+            bind(facing::pass(gpu, &constants)?)?,
+            bind(rasterize::pass(gpu, visibility, &constants)?)?,
+            bind(rasterize_large::pass(gpu, visibility, &constants)?)?,
+        ];
+        let silhouettes = silhouette::passes(gpu, method, &constants)?.into_iter().map(bind).collect::<Result<_>>()?;
+        let border = if rim.is_empty() { None } else { Some(bind(border::pass(gpu, &constants)?)?) };
+        let compose = bind(compose::pass(gpu, &constants)?)?;
+        Ok(Self {
+            gpu,
+            surface,
+            lattice,
+            rounds: visibility.rounds(),
+            size,
+            rim_edges: rim.len(),
+            batches,
+            buffers,
+            per_batch,
+            silhouettes,
+            border,
+            compose,
+        })
+    }
+
+    /// The lattice whose facets are drawn.
+    pub fn lattice(&self) -> &Lattice {
+        &self.lattice
+    }
+
+    /// The buffers, for reading what passes left.
+    pub fn buffers(&self) -> &Buffers {
+        &self.buffers
+    }
+
+    /// Metres to the near plane: depths of a frame are this over the distance along the view axis.
+    pub fn near(&self) -> f64 {
+        near_plane(self.surface.dem())
+    }
+
+    /// Draws a frame and waits for it. Nothing but the camera is uploaded.
+    ///
+    /// # Errors
+    /// Whatever the driver reports; [`Error::Flag`] for an eye out of reach.
+    pub fn frame(&self, camera: &Camera) -> Result<()> {
+        self.run(camera, &mut Clock::Whole)
+    }
+
+    /// Draws a frame pass by pass and says how long each took.
+    ///
+    /// # Errors
+    /// As [`Self::frame`].
+    pub fn timed_frame(&self, camera: &Camera) -> Result<Vec<PassTime>> {
+        let mut clock = Clock::ByPass(Vec::new());
+        self.run(camera, &mut clock)?;
+        Ok(match clock {
+            Clock::ByPass(times) => times,
+            Clock::Whole => Vec::new(),
+        })
+    }
+
+    /// Copies the last frame to the CPU.
+    ///
+    /// # Errors
+    /// Whatever the driver reports; [`Error::Gpu`] when a pixel has a depth and no ID.
+    pub fn read(&self) -> Result<Frame> {
+        let [width, height] = self.size;
+        let bytes = self.gpu.read(self.buffers.get("page")?, u64::from(width) * u64::from(height) * 8)?;
+        let counts = self.gpu.read(self.buffers.get("counts")?, size_of::<Counts>() as u64)?;
+        let counts: Counts = bytemuck::pod_read_unaligned(&counts);
+        if counts.orphans > 0 {
+            return Err(Error::Gpu { what: format!("{} pixels have a depth and no facet", counts.orphans) });
+        }
+        Ok(Frame { width, height, pixels: bytemuck::pod_collect_to_vec(&bytes), longest_walk: counts.longest_walk })
+    }
+
+    fn run(&self, camera: &Camera, clock: &mut Clock) -> Result<()> {
+        self.buffers.write_camera(self.gpu, &CameraUniform::new(self.surface.dem(), camera)?)?;
+        let mut work = Work::new(self.gpu, &self.buffers, clock);
+        work.clear(&["pixels", "ink", "summaries", "counts", "candidates"])?;
+        for round in 0..self.rounds {
+            for (i, batch) in self.batches.iter().enumerate() {
+                self.rasterize(&mut work, round, i, batch)?;
+            }
+        }
+        for stage in &self.silhouettes {
+            work.record(stage, 0, silhouette::invocations(&stage.pass, camera))?;
+        }
+        if let Some(stage) = &self.border {
+            work.record(stage, 0, border::invocations(&stage.pass, self.rim_edges, self.lattice.level()))?;
+        }
+        work.record(&self.compose, 0, compose::invocations(camera))?;
+        work.finish()
+    }
+
+    /// One batch: its vertices, its facing, its pixels. A later round needs the vertices anew only where other batches
+    /// have overwritten them.
+    fn rasterize(&self, work: &mut Work<'_>, round: u32, i: usize, batch: &Batch) -> Result<()> {
+        let group = i * self.rounds as usize + round as usize;
+        let [tessellate_stage, facing_stage, small, large] = &self.per_batch;
+        work.clear(&["queue"])?;
+        if round == 0 || self.batches.len() > 1 {
+            work.record(tessellate_stage, group, tessellate::invocations(batch))?;
+        }
+        if round == 0 {
+            work.record(facing_stage, group, facing::invocations(batch))?;
+        }
+        work.record(small, group, rasterize::invocations(batch))?;
+        work.record(large, group, rasterize_large::invocations(&large.pass))?;
+        if self.batches.len() > 1 {
+            work.submit()?;
+        }
+        Ok(())
+    }
+}
+
+/// Whether a frame is timed as one or pass by pass.
+enum Clock {
+    Whole,
+    ByPass(Vec<PassTime>),
+}
+
+/// The commands of a frame on their way to the queue.
+struct Work<'a> {
+    gpu: &'a Gpu,
+    buffers: &'a Buffers,
+    clock: &'a mut Clock,
+    encoder: wgpu::CommandEncoder,
+}
+
+impl<'a> Work<'a> {
+    fn new(gpu: &'a Gpu, buffers: &'a Buffers, clock: &'a mut Clock) -> Self {
+        Self { encoder: gpu.device.create_command_encoder(&Default::default()), gpu, buffers, clock }
+    }
+
+    /// Zeroes buffers. Of lists only the count is cleared.
+    fn clear(&mut self, names: &[&str]) -> Result<()> {
+        for name in names {
+            let count_only = matches!(*name, "queue" | "candidates");
+            self.encoder.clear_buffer(self.buffers.get(name)?, 0, count_only.then_some(4));
+        }
+        self.timed("clear")
+    }
+
+    fn record(&mut self, stage: &Stage, group: usize, invocations: [u32; 2]) -> Result<()> {
+        let mut pass = self.encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some(stage.pass.name),
+            timestamp_writes: None,
+        });
+        if let Some(group) = stage.groups.get(group) {
+            stage.pass.record(&mut pass, group, invocations);
+        }
+        drop(pass);
+        self.timed(stage.pass.name)
+    }
+
+    /// Pass by pass: submits what is recorded, waits, and adds the time to the pass's own.
+    fn timed(&mut self, name: &'static str) -> Result<()> {
+        if matches!(self.clock, Clock::Whole) {
+            return Ok(());
+        }
+        let start = Instant::now();
+        self.submit()?;
+        self.gpu.wait()?;
+        let ms = start.elapsed().as_secs_f64() * 1e3;
+        if let Clock::ByPass(times) = self.clock {
+            match times.iter_mut().find(|t| t.name == name) {
+                Some(time) => time.ms += ms,
+                None => times.push(PassTime { name, ms }),
+            }
+        }
+        Ok(())
+    }
+
+    fn submit(&mut self) -> Result<()> {
+        let next = self.gpu.device.create_command_encoder(&Default::default());
+        self.gpu.queue.submit([std::mem::replace(&mut self.encoder, next).finish()]);
+        self.gpu.check()
+    }
+
+    fn finish(mut self) -> Result<()> {
+        self.submit()?;
+        self.gpu.wait()
+    }
+}
