@@ -49,7 +49,7 @@ impl Elevation {
             kind: band.band_type(),
             says_metres: is_metre(&unit),
         };
-        if !elevation.says_metres && !unit.is_empty() && unit != "unknown" {
+        if !elevation.says_metres && !["", "unknown", "unspecified"].contains(&unit.as_str()) {
             return Err(not_metres(source, &unit));
         }
         if !elevation.scale.is_finite() || elevation.scale == 0.0 || !elevation.offset.is_finite() {

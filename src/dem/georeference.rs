@@ -123,7 +123,7 @@ fn check_metres(source: &Source, transform: &[f64; 6], reference: &SpatialRef) -
         let [x, y] = centre(source, transform).map(|v| (v * reference.angular_units()).to_degrees());
         return Err(in_degrees(source, [x, y]));
     }
-    if reference.is_geocentric() || reference.is_vertical() {
+    if reference.is_geocentric() || (reference.is_vertical() && !reference.is_compound()) {
         let name = reference.name().unwrap_or_default();
         return Err(source.error(
             format!("its coordinate system \"{name}\" is no map projection"),
