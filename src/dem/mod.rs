@@ -1,10 +1,15 @@
-//! The elevation grid: what every later stage reads. GDAL is known in [`read`] alone.
+//! The elevation grid: what every later stage reads. GDAL is known in this folder alone.
 
+mod elevation;
+mod georeference;
+pub mod info;
 pub mod read;
+mod source;
 
 use glam::{DVec2, DVec3};
 
-pub use read::{ReadOptions, describe, read};
+pub use info::{Info, info};
+pub use read::{MAX_SAMPLES, ReadOptions, read};
 
 /// A north-up grid of elevations in metres.
 ///

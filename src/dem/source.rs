@@ -1,0 +1,241 @@
+//! Opens a raster file through GDAL and keeps GDAL silent.
+//!
+//! GDAL prints its complaints on stderr as they come, often several for one fault. The first use of this module
+//! installs a process-wide GDAL error handler that prints nothing and keeps the first complaint of each thread as
+//! context for our own one line. Not handled: files on a network, directories that GDAL takes for one raster.
+
+use std::cell::Cell;
+use std::ffi::OsStr;
+use std::fs::{self, File};
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::sync::Once;
+
+use gdal::errors::{CplErrType, GdalError};
+use gdal::raster::{GdalDataType, RasterBand};
+use gdal::{Dataset, DatasetOptions, GdalOpenFlags, Metadata, config};
+
+use crate::error::{Error, Result};
+
+thread_local! {
+    /// The first complaint of GDAL on this thread since `heard` last began.
+    static COMPLAINT: Cell<Option<String>> = const { Cell::new(None) };
+}
+
+/// Containers whose grids are named `PREFIX:file:grid`, as GDAL lists them.
+const CONTAINERS: [&str; 3] = ["NETCDF", "HDF5", "HDF4_SDS"];
+
+/// Smallest side of a grid: one cell needs four samples.
+pub(super) const MIN_SIDE: usize = 2;
+
+/// A raster file, open for reading, with at least one band of real numbers and 2 x 2 samples.
+pub(super) struct Source {
+    /// The file as the user named it.
+    pub path: PathBuf,
+    /// GDAL's handle.
+    pub dataset: Dataset,
+    /// Samples from the first to the last column.
+    pub columns: usize,
+    /// Samples from the first to the last row.
+    pub rows: usize,
+}
+
+impl Source {
+    /// Opens `path`. Fails when it is missing, no file, empty, no raster, or no grid of real numbers.
+    pub fn open(path: &Path) -> Result<Self> {
+        let name = connection_name(path)?;
+        let flags =
+            GdalOpenFlags::GDAL_OF_RASTER | GdalOpenFlags::GDAL_OF_READONLY | GdalOpenFlags::GDAL_OF_VERBOSE_ERROR;
+        let (opened, complaint) = heard(|| open_as(&name, flags));
+        let dataset = opened.map_err(|_| cannot_open(path, &name, complaint))?;
+        let (columns, rows) = dataset.raster_size();
+        let source = Self { path: path.to_owned(), dataset, columns, rows };
+        source.check_band(&name)?;
+        source.check_length()?;
+        Ok(source)
+    }
+
+    /// Band 1.
+    pub fn band(&self) -> Result<RasterBand<'_>> {
+        self.dataset
+            .rasterband(1)
+            .map_err(|_| Error::input(&self.path, "its first band cannot be opened", "check the file with `gdalinfo`"))
+    }
+
+    /// An error about this file.
+    pub fn error(&self, what: impl Into<String>, remedy: impl Into<String>) -> Error {
+        Error::input(&self.path, what, remedy)
+    }
+
+    /// The error for samples that cannot be read, with GDAL's words.
+    pub fn unreadable(&self, words: &str) -> Error {
+        let words = one_line(words, &self.path);
+        self.error(format!("is damaged or cut short ({words})"), "copy or download it again")
+    }
+
+    /// One band of real numbers, wide and high enough for a cell.
+    fn check_band(&self, name: &Path) -> Result<()> {
+        if self.dataset.raster_count() == 0 {
+            return Err(self.no_band(name));
+        }
+        if self.band()?.band_type() == GdalDataType::Unknown {
+            return Err(self.error(
+                "holds complex numbers, not elevations",
+                "give a file of real numbers, for instance made by `gdal_translate -ot Float32 IN OUT.tif`",
+            ));
+        }
+        if self.columns < MIN_SIDE || self.rows < MIN_SIDE {
+            let what = format!("is {} x {} samples; a surface needs at least 2 x 2", self.columns, self.rows);
+            return Err(self.error(what, "give a larger grid"));
+        }
+        Ok(())
+    }
+
+    /// A container of several grids, or of none.
+    fn no_band(&self, name: &Path) -> Error {
+        let absolute = name.to_string_lossy();
+        let listed = self.dataset.metadata_domain("SUBDATASETS").unwrap_or_default();
+        let grids = listed.iter().filter_map(|line| line.split_once("_NAME=").map(|(_, grid)| grid));
+        let shown = self.path.to_string_lossy();
+        let grids: Vec<_> = grids.map(|g| g.replace(&*absolute, &shown).replace('"', "")).collect();
+        match grids.first() {
+            Some(first) => self.error(
+                format!("holds {} grids, and which one is meant is not said", grids.len()),
+                format!("name the one with the elevations, for instance `{first}`"),
+            ),
+            None => self.error("holds no grid", "give a file with a raster band of elevations"),
+        }
+    }
+
+    /// GDAL fills the missing end of an ENVI file with zeros, and zeros would pass for sea.
+    fn check_length(&self) -> Result<()> {
+        if self.dataset.driver().short_name() != "ENVI" || starts_with_gzip(&self.path) {
+            return Ok(());
+        }
+        let bytes = self.dataset.rasterbands().flatten().map(|b| u64::from(b.band_type().bytes())).sum::<u64>();
+        let promised = self.columns as u64 * self.rows as u64 * bytes;
+        match fs::metadata(&self.path) {
+            Ok(file) if file.len() < promised => {
+                Err(self.unreadable(&format!("{} of {promised} bytes are there", file.len())))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Runs `work` and returns what it returns and the first complaint GDAL made meanwhile.
+pub(super) fn heard<T>(work: impl FnOnce() -> T) -> (T, Option<String>) {
+    static QUIET: Once = Once::new();
+    QUIET.call_once(|| {
+        config::set_error_handler(|class, _, words| {
+            if matches!(class, CplErrType::Failure | CplErrType::Fatal) {
+                let words = words.to_owned();
+                COMPLAINT.with(|complaint| complaint.set(complaint.take().or(Some(words))));
+            }
+        });
+        // Reading a .gz would otherwise leave a file beside it. Without the option it does just that, no more.
+        let _ = config::set_config_option("CPL_VSIL_GZIP_WRITE_PROPERTIES", "NO");
+    });
+    COMPLAINT.take();
+    let result = work();
+    (result, COMPLAINT.take())
+}
+
+fn open_as(name: &Path, open_flags: GdalOpenFlags) -> std::result::Result<Dataset, GdalError> {
+    Dataset::open_ex(name, DatasetOptions { open_flags, ..Default::default() })
+}
+
+/// What GDAL is asked to open: absolute, so that no file name is taken for a connection to something else.
+fn connection_name(path: &Path) -> Result<PathBuf> {
+    if !path.exists()
+        && let Some(file) = file_of_grid(path)
+    {
+        check_file(path, file)?;
+        return Ok(path.to_owned());
+    }
+    check_file(path, path)?;
+    let absolute = std::path::absolute(path).map_err(|e| unreadable_file(path, &e))?;
+    let file_name = path.file_name().and_then(OsStr::to_str).unwrap_or_default().to_ascii_lowercase();
+    let prefix = match file_name.rsplit('.').next() {
+        Some("gz") => "/vsigzip/",
+        // The driver of .hgt reads the tile's corner from the name, zip or not.
+        Some("zip") if !file_name.ends_with(".hgt.zip") => "/vsizip/",
+        _ => return Ok(absolute),
+    };
+    let mut name = PathBuf::from(prefix).into_os_string();
+    name.push(&absolute);
+    Ok(name.into())
+}
+
+/// The file in `NETCDF:file:grid`.
+fn file_of_grid(path: &Path) -> Option<&Path> {
+    let (container, rest) = path.to_str()?.split_once(':')?;
+    let (file, _grid) = rest.rsplit_once(':')?;
+    CONTAINERS.contains(&container).then(|| Path::new(file.trim_matches('"')))
+}
+
+/// A regular file that is there, readable and not empty.
+fn check_file(path: &Path, file: &Path) -> Result<()> {
+    let found = fs::metadata(file).map_err(|e| unreadable_file(path, &e))?;
+    if found.is_dir() {
+        return Err(Error::input(path, "is a directory", "name the raster file in it"));
+    }
+    if !found.is_file() {
+        return Err(Error::input(path, "is not a regular file", "save the raster to a file and name that"));
+    }
+    if found.len() == 0 {
+        return Err(Error::input(path, "is empty (0 bytes)", "copy or download it again"));
+    }
+    File::open(file).map(drop).map_err(|e| unreadable_file(path, &e))
+}
+
+fn unreadable_file(path: &Path, error: &std::io::Error) -> Error {
+    match error.kind() {
+        std::io::ErrorKind::NotFound => {
+            Error::input(path, "there is no such file", "check the spelling and the folder")
+        }
+        std::io::ErrorKind::PermissionDenied => {
+            Error::input(path, "may not be read", "ask its owner for permission to read it")
+        }
+        _ => Error::input(path, format!("cannot be read ({error})"), "check the file and the disk"),
+    }
+}
+
+/// Why GDAL did not open `name`: vector data, a fault that GDAL names, or no raster at all.
+fn cannot_open(path: &Path, name: &Path, complaint: Option<String>) -> Error {
+    let (vector, _) = heard(|| open_as(name, GdalOpenFlags::GDAL_OF_VECTOR));
+    if vector.is_ok_and(|v| v.layer_count() > 0) {
+        return Error::input(
+            path,
+            "holds points, lines or areas, not a raster of elevations",
+            "give a DEM raster; contours and points become one with `gdal_grid`",
+        );
+    }
+    match complaint.filter(|words| !words.contains("not recognized as a supported file format")) {
+        Some(words) => Error::input(
+            path,
+            format!("cannot be opened as a raster ({})", one_line(&words, path)),
+            "check the file with `gdalinfo`",
+        ),
+        None => Error::input(
+            path,
+            "is not in a raster format known to GDAL",
+            "give a DEM such as GeoTIFF, .asc, .flt, .bil or .dem; `gdalinfo --formats` lists all",
+        ),
+    }
+}
+
+/// GDAL's words on one line, with the file as the user named it, and no full stop.
+fn one_line(words: &str, path: &Path) -> String {
+    let line = words.lines().next().unwrap_or_default().trim().trim_end_matches('.');
+    let absolute = std::path::absolute(path).unwrap_or_default();
+    match absolute.to_str() {
+        Some(absolute) if !absolute.is_empty() => line.replace(absolute, &path.to_string_lossy()),
+        _ => line.to_owned(),
+    }
+}
+
+fn starts_with_gzip(path: &Path) -> bool {
+    let mut start = [0; 2];
+    File::open(path).and_then(|mut file| file.read_exact(&mut start)).is_ok_and(|()| start == [0x1f, 0x8b])
+}
