@@ -2,4 +2,5 @@
 
 pub mod dem;
 pub mod error;
+pub mod ink;
 pub mod view;
