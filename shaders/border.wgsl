@@ -80,8 +80,8 @@ fn border(@builtin(global_invocation_id) invocation: vec3<u32>) {
     } else if q.z < scene.near {
         q = mix(p, q, (p.z - scene.near) / (p.z - q.z));
     }
-    let from = vec3<f32>(vec2<f32>(p.x, -p.y) * (camera.focal / p.z) + camera.centre, depth_of(p));
-    let to = vec3<f32>(vec2<f32>(q.x, -q.y) * (camera.focal / q.z) + camera.centre, depth_of(q));
-    draw_crossings(from, to, 0u);
-    draw_crossings(from, to, 1u);
+    let start = vec3<f32>(vec2<f32>(p.x, -p.y) * (camera.focal / p.z) + camera.centre, depth_of(p));
+    let end_place = vec3<f32>(vec2<f32>(q.x, -q.y) * (camera.focal / q.z) + camera.centre, depth_of(q));
+    draw_crossings(start, end_place, 0u);
+    draw_crossings(start, end_place, 1u);
 }

@@ -50,8 +50,8 @@ fn facet_hit(id: u32, px: vec2<f32>) -> vec2<i32> {
     return vec2<i32>(f.origin * UNITS) + vec2<i32>(round(along * f32(f.step * UNITS)));
 }
 
-// Where the map projection of a page place's ray leaves the DEM, in walk units; `from` where it never meets it.
-fn map_exit(px: vec2<f32>, from: vec2<i32>) -> vec2<i32> {
+// Where the map projection of a page place's ray leaves the DEM, in walk units; `origin` where it never meets it.
+fn map_exit(px: vec2<f32>, origin: vec2<i32>) -> vec2<i32> {
     let ray = ray_through(px).xy * vec2<f32>(1.0, -1.0);
     let eye = vec2<f32>(1.0, -1.0) * camera.eye_offset / scene.cell;
     let low = vec2<f32>(-camera.eye_cell) - eye;
@@ -62,7 +62,7 @@ fn map_exit(px: vec2<f32>, from: vec2<i32>) -> vec2<i32> {
     let exit = min(select(exits.x, 1e30, heading.x == 0.0), select(exits.y, 1e30, heading.y == 0.0));
     let entry = max(select(entries.x, -1e30, heading.x == 0.0), select(entries.y, -1e30, heading.y == 0.0));
     if exit <= max(entry, 0.0) || exit >= 1e30 {
-        return from;
+        return origin;
     }
     let end = clamp(heading * exit, low, high) - low;
     return vec2<i32>(round(end * f32(CELL_STEPS * UNITS)));

@@ -6,20 +6,17 @@ use crate::error::{Error, Result};
 use crate::gpu::buffers::{Counts, near_plane};
 use crate::gpu::{Buffers, CameraUniform, Gpu, Pass};
 use crate::gpu::{border, compose, facing, rasterize, rasterize_large, silhouette, tessellate};
+use crate::ink::InkRaster;
 use crate::plan::{Batch, Border, Method, batches};
 use crate::surface::rim::rim;
 use crate::surface::{Lattice, Level, Surface};
 use crate::view::Camera;
 
-/// What a frame leaves to read: two words a pixel, row by row, and what was counted on the way.
+/// What a frame leaves to read, and what was counted on the way.
 #[derive(Debug, Clone)]
 pub struct Frame {
-    /// Pixels across.
-    pub width: u32,
-    /// Pixels down.
-    pub height: u32,
-    /// Kind and sub-pixel place, then depth bits.
-    pub pixels: Vec<[u32; 2]>,
+    /// Ink, kind, sub-pixel place and depth of each pixel.
+    pub raster: InkRaster,
     /// Nodes the longest walk visited; 0 for other methods.
     pub longest_walk: u32,
 }
@@ -163,7 +160,8 @@ impl<'a> Renderer<'a> {
         if counts.orphans > 0 {
             return Err(Error::Gpu { what: format!("{} pixels have a depth and no facet", counts.orphans) });
         }
-        Ok(Frame { width, height, pixels: bytemuck::pod_collect_to_vec(&bytes), longest_walk: counts.longest_walk })
+        let raster = InkRaster { width, height, pixels: bytemuck::pod_collect_to_vec(&bytes) };
+        Ok(Frame { raster, longest_walk: counts.longest_walk })
     }
 
     fn run(&self, camera: &Camera, clock: &mut Clock) -> Result<()> {

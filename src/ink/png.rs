@@ -1,0 +1,199 @@
+//! A drawing as PNG.
+//!
+//! Method: a stroke is outlined as one tapered quad a segment with wedges or discs at its joints, all wound the same way,
+//! and a layer's outlines are filled at once by the non-zero rule: neither joints nor junctions are painted twice. The
+//! page is filled in tiles, at [`SCALE`] times its resolution and then averaged, since an anti-aliased fill knows four
+//! steps across a pixel only, too few for far lines of half a pixel; pages may be of any size.
+//!
+//! Cost: tiles with ink, about 1 ms each and core. Does not handle: opacity of the paper (it is painted over white).
+
+use std::f64::consts::TAU;
+use std::io::{self, Write};
+
+use glam::DVec2;
+use image::ImageEncoder;
+use image::codecs::png::PngEncoder;
+use rayon::prelude::*;
+use tiny_skia::{FillRule, Mask, PathBuilder, Transform};
+
+use super::{Drawing, Layer, Stroke};
+
+/// Side of a tile, px.
+const TILE: u32 = 128;
+/// Pixels of the fill across one pixel of the page.
+const SCALE: u32 = 4;
+/// Turning at a joint up to which a flat wedge is as good as a disc: cos 30 degrees.
+const WEDGE_COS: f64 = 0.866;
+
+/// A segment of a stroke as it is filled.
+struct Segment {
+    /// Places of both ends, px.
+    ends: [DVec2; 2],
+    /// Half the pen's width at both ends, px.
+    half: [f64; 2],
+    /// Unit direction of the next segment; `None` where the stroke ends.
+    next: Option<DVec2>,
+    /// Whether the stroke begins here.
+    first: bool,
+}
+
+/// Renders the drawing anti-aliased, one pixel of the page to one of the file, and writes it as 8-bit RGB.
+///
+/// Errors are those of the writer, and `InvalidInput` where PNG cannot hold the size (an empty page).
+pub fn write_png(drawing: &Drawing, out: impl Write) -> io::Result<()> {
+    if drawing.width == 0 || drawing.height == 0 {
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, "the page is empty"));
+    }
+    let colour = image::ExtendedColorType::Rgb8;
+    PngEncoder::new(out).write_image(&render(drawing), drawing.width, drawing.height, colour).map_err(|e| match e {
+        image::ImageError::IoError(inner) => inner,
+        other => io::Error::new(io::ErrorKind::InvalidInput, other),
+    })
+}
+
+/// The page, three bytes a pixel.
+fn render(drawing: &Drawing) -> Vec<u8> {
+    let layers: Vec<Vec<Segment>> = drawing.layers.iter().map(segments).collect();
+    let columns = drawing.width.div_ceil(TILE) as usize;
+    let tiles = sort_into_tiles(&layers, columns, drawing.height.div_ceil(TILE) as usize);
+    let paper = blend([255; 3], drawing.paper, 255);
+    let row_bytes = 3 * drawing.width as usize;
+    let mut page = paper.repeat(drawing.width as usize * drawing.height as usize);
+    page.par_chunks_mut(row_bytes * TILE as usize).enumerate().for_each(|(row, strip)| {
+        for (column, tile) in tiles[row * columns..][..columns].iter().enumerate() {
+            let corner = DVec2::new(column as f64, row as f64) * f64::from(TILE);
+            for group in tile.chunk_by(|a, b| a.0 == b.0) {
+                let layer = group[0].0;
+                let coverage = fill(group.iter().map(|&(_, i)| &layers[layer][i]), corner);
+                let colour = drawing.layers[layer].pen.colour;
+                for (row, coverage) in strip.chunks_mut(row_bytes).zip(coverage.chunks(TILE as usize)) {
+                    let pixels = row[3 * column * TILE as usize..].chunks_exact_mut(3);
+                    for (pixel, &coverage) in pixels.zip(coverage).filter(|(_, coverage)| **coverage > 0) {
+                        pixel.copy_from_slice(&blend([pixel[0], pixel[1], pixel[2]], colour, coverage));
+                    }
+                }
+            }
+        }
+    });
+    page
+}
+
+/// Which segments, as (layer, index), touch each tile, layers in order.
+fn sort_into_tiles(layers: &[Vec<Segment>], columns: usize, rows: usize) -> Vec<Vec<(usize, usize)>> {
+    let mut tiles = vec![Vec::new(); columns * rows];
+    let tile = |v: f64| (v / f64::from(TILE)).floor().max(0.0) as usize;
+    for (layer, segments) in layers.iter().enumerate() {
+        for (i, segment) in segments.iter().enumerate() {
+            let pad = DVec2::splat(segment.half[0].max(segment.half[1]) + 1.0);
+            let (low, high) = (segment.ends[0].min(segment.ends[1]) - pad, segment.ends[0].max(segment.ends[1]) + pad);
+            if high.min_element() < 0.0 {
+                continue;
+            }
+            for row in tile(low.y)..rows.min(tile(high.y) + 1) {
+                for column in tile(low.x)..columns.min(tile(high.x) + 1) {
+                    tiles[row * columns + column].push((layer, i));
+                }
+            }
+        }
+    }
+    tiles
+}
+
+/// A layer's strokes, cut into segments; a dot is a segment without length.
+fn segments(layer: &Layer) -> Vec<Segment> {
+    layer.strokes.iter().flat_map(|stroke| stroke_segments(stroke, layer.pen.width / 2.0)).collect()
+}
+
+/// The segments of one stroke; those without length are left out, unless the stroke is a dot.
+fn stroke_segments(stroke: &Stroke, half: f64) -> Vec<Segment> {
+    let mut points = stroke.points.clone();
+    if stroke.closed {
+        points.extend(stroke.points.first().copied());
+    }
+    points.dedup_by(|a, b| a.place == b.place);
+    if let [dot] = points[..] {
+        points.push(dot);
+    }
+    let direction = |i: usize| points.get(i + 1).and_then(|b| (b.place - points[i].place).try_normalize());
+    let last = points.len().saturating_sub(2);
+    (0..points.len().saturating_sub(1))
+        .map(|i| Segment {
+            ends: [points[i].place, points[i + 1].place],
+            half: [points[i].width * half, points[i + 1].width * half],
+            next: if i == last && stroke.closed { direction(0) } else { direction(i + 1) },
+            first: i == 0 && !stroke.closed,
+        })
+        .collect()
+}
+
+/// How much of each pixel of the tile at `corner` the segments cover, 0 to 255.
+fn fill<'a>(segments: impl Iterator<Item = &'a Segment>, corner: DVec2) -> Vec<u8> {
+    let mut path = PathBuilder::new();
+    for segment in segments {
+        outline(segment, corner, &mut path);
+    }
+    let (Some(path), Some(mut mask)) = (path.finish(), Mask::new(TILE * SCALE, TILE * SCALE)) else {
+        return Vec::new();
+    };
+    let scale = Transform::from_scale(SCALE as f32, SCALE as f32);
+    mask.fill_path(&path, FillRule::Winding, true, scale);
+    let (side, scale) = (TILE as usize, SCALE as usize);
+    let mut coverage = Vec::with_capacity(side * side);
+    for rows in mask.data().chunks_exact(side * scale * scale) {
+        for column in 0..side {
+            let square = (0..scale).flat_map(|r| &rows[r * side * scale + column * scale..][..scale]);
+            coverage.push((square.map(|&c| u32::from(c)).sum::<u32>() / (SCALE * SCALE)) as u8);
+        }
+    }
+    coverage
+}
+
+/// Adds a segment, its joint to the next one and its caps.
+fn outline(segment: &Segment, corner: DVec2, path: &mut PathBuilder) {
+    let [a, b] = segment.ends.map(|p| p - corner);
+    let [ha, hb] = segment.half;
+    let along = (b - a).try_normalize();
+    if let Some(n) = along.map(DVec2::perp) {
+        polygon(&[a + n * ha, b + n * hb, b - n * hb, a - n * ha], path);
+    }
+    if segment.first {
+        disc(a, ha, path);
+    }
+    match (along, segment.next) {
+        (Some(d), Some(next)) if d.dot(next) > WEDGE_COS => {
+            let outer = -d.perp_dot(next).signum() * hb;
+            polygon(&[b, b + d.perp() * outer, b + next.perp() * outer], path);
+        }
+        _ => disc(b, hb, path),
+    }
+}
+
+/// Adds a disc as a polygon that is nowhere 0.02 px off.
+fn disc(centre: DVec2, radius: f64, path: &mut PathBuilder) {
+    let sides = ((std::f64::consts::PI / (2.0 * 0.02 / radius.max(0.1)).sqrt()).ceil()).max(8.0);
+    let corners: Vec<DVec2> =
+        (0..sides as u32).map(|i| centre + DVec2::from_angle(TAU * f64::from(i) / sides) * radius).collect();
+    polygon(&corners, path);
+}
+
+/// Adds a polygon, wound the same way as all others whatever the order of its corners.
+fn polygon(corners: &[DVec2], path: &mut PathBuilder) {
+    let area: f64 = corners.windows(2).map(|w| (w[0] - corners[0]).perp_dot(w[1] - corners[0])).sum();
+    let put = |path: &mut PathBuilder, i: usize, p: &DVec2| match i {
+        0 => path.move_to(p.x as f32, p.y as f32),
+        _ => path.line_to(p.x as f32, p.y as f32),
+    };
+    if area < 0.0 {
+        corners.iter().rev().enumerate().for_each(|(i, p)| put(path, i, p));
+    } else {
+        corners.iter().enumerate().for_each(|(i, p)| put(path, i, p));
+    }
+    path.close();
+}
+
+/// A colour laid over another with this coverage, 0 to 255.
+fn blend(below: [u8; 3], colour: [u8; 4], coverage: u8) -> [u8; 3] {
+    let alpha = f32::from(colour[3]) * f32::from(coverage) / (255.0 * 255.0);
+    let mix = |i: usize| f32::from(below[i]) + (f32::from(colour[i]) - f32::from(below[i])) * alpha;
+    [0, 1, 2].map(|i| mix(i).round() as u8)
+}
