@@ -225,9 +225,10 @@ fn cannot_open(path: &Path, name: &Path, complaint: Option<String>) -> Error {
     }
 }
 
-/// GDAL's words on one line, with the file as the user named it, and no full stop.
+/// The first sentence of GDAL's words, with the file as the user named it, and no full stop.
 fn one_line(words: &str, path: &Path) -> String {
-    let line = words.lines().next().unwrap_or_default().trim().trim_end_matches('.');
+    let sentence = words.lines().next().unwrap_or_default().split(". ").next().unwrap_or_default();
+    let line = sentence.trim().trim_end_matches('.');
     let absolute = std::path::absolute(path).unwrap_or_default();
     match absolute.to_str() {
         Some(absolute) if !absolute.is_empty() => line.replace(absolute, &path.to_string_lossy()),
