@@ -133,6 +133,12 @@ fn nodata_is_the_number_as_stored() {
     let dir = folder();
     let zero_is_sea = Raster { nodata: Some(0.0), ..Raster::new(4, vec![0i16, 1, 2, 3, 4, 5, 6, 7]) };
     assert_eq!(read_all(&zero_is_sea.write("GTiff", &dir.path().join("sea.tif"))).voids(), 1);
+    let long = Raster::new(2, vec![5i64, 6, 7, 8]).write("GTiff", &dir.path().join("long.tif"));
+    let flags = GdalOpenFlags::GDAL_OF_UPDATE;
+    let file = Dataset::open_ex(&long, DatasetOptions { open_flags: flags, ..Default::default() }).unwrap();
+    file.rasterband(1).unwrap().set_no_data_value_i64(Some(6)).unwrap();
+    file.close().unwrap();
+    assert_eq!(read_all(&long).valid(), [true, false, true, true]);
     hill().write("GTiff", &dir.path().join("hill.tif"));
     let scaled = "<NoDataValue>105</NoDataValue><Scale>0.1</Scale><Offset>-3</Offset><SimpleSource>\
                   <SourceFilename relativeToVRT=\"1\">hill.tif</SourceFilename></SimpleSource>";

@@ -181,8 +181,7 @@ impl Grid {
         match (block, complaint) {
             (Ok(block), None) => Ok(block.into_shape_and_vec().1),
             // A driver that complains and goes on has made the numbers up.
-            (Ok(_), Some(words)) => Err(self.source.unreadable(&words)),
-            (Err(error), words) => Err(self.source.unreadable(&words.unwrap_or_else(|| error.to_string()))),
+            (_, words) => Err(self.source.unreadable(words.as_deref())),
         }
     }
 }

@@ -67,10 +67,14 @@ impl Source {
         Error::input(&self.path, what, remedy)
     }
 
-    /// The error for samples that cannot be read, with GDAL's words.
-    pub fn unreadable(&self, words: &str) -> Error {
-        let words = one_line(words, &self.path);
-        self.error(format!("is damaged or cut short ({words})"), "copy or download it again")
+    /// The error for samples that cannot be read, with GDAL's words where it has any: it says once, not twice, that a
+    /// part of a mosaic is missing.
+    pub fn unreadable(&self, words: Option<&str>) -> Error {
+        let what = match words {
+            Some(words) => format!("is damaged or cut short ({})", one_line(words, &self.path)),
+            None => "is damaged or cut short, or lacks a file that it refers to".to_owned(),
+        };
+        self.error(what, "copy or download it again")
     }
 
     /// One band of real numbers, wide and high enough for a cell.
@@ -116,7 +120,7 @@ impl Source {
         let promised = self.columns as u64 * self.rows as u64 * bytes;
         match fs::metadata(&self.path) {
             Ok(file) if file.len() < promised => {
-                Err(self.unreadable(&format!("{} of {promised} bytes are there", file.len())))
+                Err(self.unreadable(Some(&format!("{} of {promised} bytes are there", file.len()))))
             }
             _ => Ok(()),
         }
