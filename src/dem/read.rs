@@ -13,7 +13,7 @@ use super::georeference::{Georeference, Window};
 use super::source::{MIN_SIDE, Source, heard};
 use crate::error::{Error, Result};
 
-/// Most samples of a DEM: 4096 x 4096. Their two patches a cell are what one frame can hold.
+/// Most samples of a DEM: 4096 x 4096, 64 MiB of heights, half of the largest buffer that every GPU grants.
 pub const MAX_SAMPLES: usize = 4096 * 4096;
 
 /// Largest exaggeration: above it the highest mountain stands higher than the Earth is wide.

@@ -2,7 +2,8 @@
 //!
 //! GDAL prints its complaints on stderr as they come, often several for one fault. The first use of this module
 //! installs a process-wide GDAL error handler that prints nothing and keeps the first complaint of each thread as
-//! context for our own one line. Not handled: files on a network, directories that GDAL takes for one raster.
+//! context for our own one line. Not handled: files on a network, directories that GDAL takes for one raster, and
+//! HDF5, which prints diagnostics of its own when netCDF is read on another thread than the first.
 
 use std::cell::Cell;
 use std::ffi::OsStr;
