@@ -2,6 +2,8 @@
 //!
 //! Anything else is refused with the command that mends it. Not handled: degrees, feet, rotated and south-up grids.
 
+use std::ops::RangeInclusive;
+
 use gdal::spatial_ref::{AxisMappingStrategy, CoordTransform, SpatialRef};
 use glam::DVec2;
 
@@ -16,6 +18,10 @@ const CROP_CELLS: f64 = 1e-6;
 const METRE_EPSILON: f64 = 1e-9;
 /// Cells below this size, inside the range of degrees and without a CRS, are taken for degrees: 0.1 degree is 11 km.
 const DEGREE_CELL: f64 = 0.1;
+/// Sound cell sizes in any unit: from a centimetre in degrees to a thousand kilometres in metres.
+const CELLS: RangeInclusive<f64> = 1e-7..=1e6;
+/// No coordinate of a map is beyond this, in any unit.
+const FARTHEST: f64 = 1e9;
 /// Latitude where UTM ends in the north and in the south, degrees.
 const UTM_NORTH: f64 = 84.0;
 const UTM_SOUTH: f64 = -80.0;
@@ -49,17 +55,14 @@ impl Georeference {
         let reference = reference.ok();
         let transform = geotransform(source)?;
         check_north_up(source, &transform)?;
+        check_size(source, &transform)?;
         match &reference {
             Some(reference) => check_metres(source, &transform, reference)?,
             None => check_not_degrees(source, &transform)?,
         }
         let [x, dx, _, y, _, dy] = transform;
-        Ok(Self {
-            corner: DVec2::new(x, y),
-            cell: DVec2::new(dx, -dy),
-            crs: reference.as_ref().and_then(SpatialRef::name).unwrap_or_default(),
-            epsg: reference.as_ref().and_then(epsg),
-        })
+        let (crs, epsg) = reference.map(identity).unwrap_or_default();
+        Ok(Self { corner: DVec2::new(x, y), cell: DVec2::new(dx, -dy), crs, epsg })
     }
 
     /// Easting and northing of the centre of sample (c, r), metres.
@@ -115,6 +118,20 @@ fn check_north_up(source: &Source, &[_, dx, row_x, _, column_y, dy]: &[f64; 6]) 
         return Err(source.error("its rows run from south to north (south-up)", remedy));
     }
     Ok(())
+}
+
+/// Cells and coordinates that f64 tells apart and a planet holds, in whatever unit.
+fn check_size(source: &Source, transform: &[f64; 6]) -> Result<()> {
+    let &[x, dx, _, y, _, dy] = transform;
+    let [middle_x, middle_y] = centre(source, transform);
+    let near = [x, y, middle_x, middle_y].iter().all(|v| v.abs() <= FARTHEST);
+    if near && [dx, -dy].iter().all(|cell| CELLS.contains(cell)) {
+        return Ok(());
+    }
+    Err(source.error(
+        format!("its place makes no sense: cells of {dx} x {}, the north-west corner at {x},{y}", -dy),
+        "correct its edges: `gdal_translate -a_ullr WEST NORTH EAST SOUTH IN OUT.tif`",
+    ))
 }
 
 /// A projected CRS whose unit is the metre.
@@ -211,6 +228,18 @@ fn longitude_latitude(reference: &SpatialRef, [x, y]: [f64; 2]) -> Option<[f64; 
         Ok::<_, gdal::errors::GdalError>([x[0], y[0]])
     };
     heard(convert).0.ok().filter(|place| place.iter().all(|v| v.is_finite()))
+}
+
+/// Name and EPSG code of a CRS. Old formats give its parameters alone; those of UTM are recognised.
+fn identity(mut reference: SpatialRef) -> (String, Option<u32>) {
+    let name = reference.name().unwrap_or_default();
+    if let Some(code) = epsg(&reference) {
+        return (name, Some(code));
+    }
+    let (recognised, _) = heard(|| reference.auto_identify_epsg());
+    let code = recognised.ok().and_then(|()| epsg(&reference));
+    let (registered, _) = heard(|| code.and_then(|code| SpatialRef::from_epsg(code).ok()?.name()));
+    (registered.unwrap_or(name), code)
 }
 
 fn epsg(reference: &SpatialRef) -> Option<u32> {

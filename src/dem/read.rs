@@ -1,9 +1,11 @@
 //! Reads band 1 of a raster as metres: the window asked for, in blocks of rows.
 //!
 //! Cost: one pass over the window; memory is 5 bytes a sample and one block. Not handled: resampling, warping, several
-//! files, masks kept in a band of their own.
+//! files.
 
 use std::path::Path;
+
+use gdal::raster::{GdalType, RasterBand};
 
 use super::Dem;
 use super::elevation::{Elevation, Reading};
@@ -11,7 +13,7 @@ use super::georeference::{Georeference, Window};
 use super::source::{MIN_SIDE, Source, heard};
 use crate::error::{Error, Result};
 
-/// Most samples of a DEM: 4096 x 4096. Their two patches a cell are what one frame can hold.
+/// Most samples of a DEM: 4096 x 4096, 64 MiB of heights, half of the largest buffer that every GPU grants.
 pub const MAX_SAMPLES: usize = 4096 * 4096;
 
 /// Largest exaggeration: above it the highest mountain stands higher than the Earth is wide.
@@ -38,7 +40,7 @@ impl Default for ReadOptions {
 /// Reads band 1 of `path` as a DEM of at least 2 x 2 and at most [`MAX_SAMPLES`] samples, metres, north-up.
 ///
 /// Sample (c, r) lies in the middle of its pixel. Scale and offset of the band are applied, then the exaggeration.
-/// Voids are the declared nodata value, numbers that are not finite, and marks for no data that the file forgot to
+/// Voids are the declared nodata value, masked and transparent samples, numbers that are not finite, and marks for no data that the file forgot to
 /// declare: at or below -32767 m, above 100 000 m. A file without a coordinate reference system counts as metres.
 /// `path` may name one grid of a container as `NETCDF:file:grid`; `.gz` and `.zip` are read through.
 ///
@@ -148,25 +150,39 @@ impl Grid {
         )
     }
 
-    /// Hands the raw numbers of `window` to `take`, row-major, a few rows at a time.
+    /// Hands the raw numbers of `window` to `take`, row-major, a few rows at a time; NaN where the file masks them.
     fn each_block(&self, window: Window, mut take: impl FnMut(&[f64])) -> Result<()> {
         let band = self.source.band()?;
+        let masked = band.mask_flags().is_ok_and(|flags| flags.is_per_dataset());
+        let mask = if masked { band.open_mask_band().ok() } else { None };
         let ([column, first_row], [width, height]) = (window.first, window.size);
         let step = (BLOCK_SAMPLES / width).max(1);
         for row in (0..height).step_by(step) {
-            let size = (width, step.min(height - row));
             let place = (column as isize, (first_row + row) as isize);
-            let (block, complaint) = heard(|| band.read_as::<f64>(place, size, size, None));
-            match (block, complaint) {
-                (Ok(block), None) => take(block.data()),
-                // A driver that complains and goes on has made the numbers up.
-                (Ok(_), Some(words)) => return Err(self.source.unreadable(&words)),
-                (Err(error), words) => {
-                    return Err(self.source.unreadable(&words.unwrap_or_else(|| error.to_string())));
-                }
+            let size = (width, step.min(height - row));
+            let mut raw = self.block::<f64>(&band, place, size)?;
+            if let Some(mask) = &mask {
+                let seen = self.block::<u8>(mask, place, size)?;
+                raw.iter_mut().zip(seen).filter(|(_, seen)| *seen == 0).for_each(|(raw, _)| *raw = f64::NAN);
             }
+            take(&raw);
         }
         Ok(())
+    }
+
+    /// One block of numbers, or the error for a damaged file.
+    fn block<T: GdalType + Copy>(
+        &self,
+        band: &RasterBand,
+        place: (isize, isize),
+        size: (usize, usize),
+    ) -> Result<Vec<T>> {
+        let (block, complaint) = heard(|| band.read_as::<T>(place, size, size, None));
+        match (block, complaint) {
+            (Ok(block), None) => Ok(block.into_shape_and_vec().1),
+            // A driver that complains and goes on has made the numbers up.
+            (_, words) => Err(self.source.unreadable(words.as_deref())),
+        }
     }
 }
 
@@ -176,13 +192,11 @@ fn check_options(options: &ReadOptions) -> Result<()> {
         let what = format!("{factor} is no factor to draw with");
         return Err(Error::flag("--exaggeration", what, "give a number above 0 and at most 1000"));
     }
-    match options.crop {
-        Some([west, south, east, north])
-            if !(west < east && south < north) || [west, south, east, north].iter().any(|v| !v.is_finite()) =>
-        {
-            let what = format!("{west},{south},{east},{north} is no rectangle");
-            Err(Error::flag("--crop", what, "give west,south,east,north with west < east and south < north"))
-        }
-        _ => Ok(()),
+    let Some([west, south, east, north]) = options.crop else { return Ok(()) };
+    let finite = [west, south, east, north].iter().all(|edge| edge.is_finite());
+    if finite && west < east && south < north {
+        return Ok(());
     }
+    let what = format!("{west},{south},{east},{north} is no rectangle");
+    Err(Error::flag("--crop", what, "give west,south,east,north with west < east and south < north"))
 }

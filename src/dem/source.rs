@@ -2,7 +2,8 @@
 //!
 //! GDAL prints its complaints on stderr as they come, often several for one fault. The first use of this module
 //! installs a process-wide GDAL error handler that prints nothing and keeps the first complaint of each thread as
-//! context for our own one line. Not handled: files on a network, directories that GDAL takes for one raster.
+//! context for our own one line. Not handled: files on a network, directories that GDAL takes for one raster, and
+//! HDF5, which prints diagnostics of its own when netCDF is read on another thread than the first.
 
 use std::cell::Cell;
 use std::ffi::OsStr;
@@ -67,10 +68,14 @@ impl Source {
         Error::input(&self.path, what, remedy)
     }
 
-    /// The error for samples that cannot be read, with GDAL's words.
-    pub fn unreadable(&self, words: &str) -> Error {
-        let words = one_line(words, &self.path);
-        self.error(format!("is damaged or cut short ({words})"), "copy or download it again")
+    /// The error for samples that cannot be read, with GDAL's words where it has any: it says once, not twice, that a
+    /// part of a mosaic is missing.
+    pub fn unreadable(&self, words: Option<&str>) -> Error {
+        let what = match words {
+            Some(words) => format!("is damaged or cut short ({})", one_line(words, &self.path)),
+            None => "is damaged or cut short, or lacks a file that it refers to".to_owned(),
+        };
+        self.error(what, "copy or download it again")
     }
 
     /// One band of real numbers, wide and high enough for a cell.
@@ -116,7 +121,7 @@ impl Source {
         let promised = self.columns as u64 * self.rows as u64 * bytes;
         match fs::metadata(&self.path) {
             Ok(file) if file.len() < promised => {
-                Err(self.unreadable(&format!("{} of {promised} bytes are there", file.len())))
+                Err(self.unreadable(Some(&format!("{} of {promised} bytes are there", file.len()))))
             }
             _ => Ok(()),
         }
@@ -225,9 +230,10 @@ fn cannot_open(path: &Path, name: &Path, complaint: Option<String>) -> Error {
     }
 }
 
-/// GDAL's words on one line, with the file as the user named it, and no full stop.
+/// The first sentence of GDAL's words, with the file as the user named it, and no full stop.
 fn one_line(words: &str, path: &Path) -> String {
-    let line = words.lines().next().unwrap_or_default().trim().trim_end_matches('.');
+    let sentence = words.lines().next().unwrap_or_default().split(". ").next().unwrap_or_default();
+    let line = sentence.trim().trim_end_matches('.');
     let absolute = std::path::absolute(path).unwrap_or_default();
     match absolute.to_str() {
         Some(absolute) if !absolute.is_empty() => line.replace(absolute, &path.to_string_lossy()),
