@@ -1,1 +1,3 @@
 //! Every integration test in one binary: linked once, one module a subject.
+
+mod ink;

@@ -16,7 +16,7 @@ use super::{InkRaster, Kind};
 
 /// A chain is cut where ln depth jumps by more than this between the points before and after: 1.5 times the distance.
 const DEPTH_JUMP: f64 = 0.405;
-/// Points before and after that a cut looks at, so that single odd pixels cut nothing.
+/// Points before and after a cut that must all lie on their side of the jump: an odd pixel cuts nothing.
 const WINDOW: usize = 4;
 
 /// What a chain draws.
@@ -86,7 +86,11 @@ pub fn trace(raster: &InkRaster) -> Vec<Chain> {
         while let Some(e) = end.filter(|e| !done[e / 2]) {
             done[e / 2] = true;
             let branch = graph.branches[e / 2].iter().copied();
-            if e % 2 == 0 { cells.extend(branch) } else { cells.extend(branch.rev()) }
+            if e % 2 == 0 {
+                cells.extend(branch)
+            } else {
+                cells.extend(branch.rev())
+            }
             end = partners[e ^ 1];
         }
         cells.dedup();
@@ -108,15 +112,15 @@ fn cut(mut points: Vec<ChainPoint>, border: &[bool], closed: bool, chains: &mut 
             2 * window.iter().filter(|&&b| b).count() > window.len()
         })
         .collect();
-    let mut sums = vec![0.0];
-    sums.extend(points.iter().scan(0.0, |sum, p| {
-        *sum += p.log_depth();
-        Some(*sum)
-    }));
+    let logs: Vec<f64> = points.iter().map(ChainPoint::log_depth).collect();
+    let range = |part: &[f64]| part.iter().fold((f64::MAX, f64::MIN), |(low, high), &v| (v.min(low), v.max(high)));
+    // The gap between all points before and all after.
     let jump = |i: usize| {
-        let inside = i >= WINDOW && i + WINDOW < n;
-        let step = |i: usize| (sums[i + 1 + WINDOW] - sums[i + 1] - sums[i] + sums[i - WINDOW]) / WINDOW as f64;
-        if inside { step(i).abs() } else { 0.0 }
+        if i < WINDOW || i + WINDOW >= n {
+            return 0.0;
+        }
+        let (before, after) = (range(&logs[i - WINDOW..i]), range(&logs[i + 1..=i + WINDOW]));
+        (before.0 - after.1).max(after.0 - before.1)
     };
     let jumps: Vec<f64> = (0..n).map(jump).collect();
     let is_cut = |i: usize| {
