@@ -160,6 +160,29 @@ fn lines_two_pixels_apart_stay_apart() {
 }
 
 #[test]
+fn slanting_lines_that_touch_by_corners_have_no_rungs() {
+    let ladder = |gap: i64| {
+        let on = move |x: i64, y: i64| x == y + 1 + gap || (x == y + 1 && (6..24).contains(&y));
+        raster(40, 30, move |x, y| on(x, y).then_some((Kind::Silhouette, 1.0)))
+    };
+    for gap in [2, 4] {
+        let chains = trace(&ladder(gap));
+        assert_eq!(chains.len(), 2, "{gap} px apart");
+        assert!(chains.iter().all(|c| c.points.len() >= 18), "{gap} px apart");
+        assert!(farthest_ink(&ladder(gap), &chains) <= 1.5);
+    }
+}
+
+#[test]
+fn a_hole_of_one_pixel_is_no_loop() {
+    let pierced = picture(&["....###....", "#####.#####", "....###...."]);
+    assert_eq!(trace(&pierced).len(), 1);
+    assert!(farthest_ink(&pierced, &trace(&pierced)) <= 1.5);
+    let loops = picture(&["....#####....", "#####...#####", "....#####...."]);
+    assert!(trace(&loops).len() > 1);
+}
+
+#[test]
 fn the_near_line_runs_through_where_a_far_one_ends() {
     // Straight on from the left lies the far branch; the near line bends by 45 degrees and yet runs through.
     let junction = picture(&[

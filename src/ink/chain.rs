@@ -7,6 +7,8 @@
 //!
 //! Cost: 40 000 ink pixels take some 20 ms on one core. Does not handle: two lines less than 2 px apart (one chain).
 
+use std::collections::HashSet;
+
 use glam::DVec2;
 
 use super::graph::Graph;
@@ -75,6 +77,9 @@ pub fn trace(raster: &InkRaster) -> Vec<Chain> {
         let border: Vec<bool> = cells.iter().map(|&c| raster.pixels[pixel(c)].kind() == Kind::Border).collect();
         cut(points, &border, closed, &mut chains);
     };
+    let ends = |b: &Vec<usize>| [b[0], b[b.len() - 1]];
+    let crossed: HashSet<usize> =
+        graph.branches.iter().flat_map(ends).zip(&partners).filter(|(_, p)| p.is_some()).map(|(c, _)| c).collect();
     let mut done = vec![false; graph.branches.len()];
     // Open chains begin at ends without a partner; what is left then is closed.
     for (start, closed) in (0..2 * done.len()).map(|e| (e, false)).chain((0..2 * done.len()).map(|e| (e, true))) {
@@ -97,7 +102,12 @@ pub fn trace(raster: &InkRaster) -> Vec<Chain> {
         if closed && cells.len() > 1 && cells.first() == cells.last() {
             cells.pop();
         }
-        add(&cells, closed);
+        // Lines side by side may touch by a corner: such a rung between two that run through is none.
+        let alone = graph.branches[start / 2].len() == 2 && partners[start ^ 1].is_none();
+        let rung = alone && cells.iter().all(|c| crossed.contains(c));
+        if closed || !rung {
+            add(&cells, closed);
+        }
     }
     graph.rings.iter().for_each(|ring| add(ring, true));
     chains

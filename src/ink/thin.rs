@@ -90,8 +90,8 @@ fn small_holes(raster: &InkRaster, ink: &[usize], grid: &mut Grid) -> Vec<usize>
         let mut seen = 0;
         while seen < hole.len() && hole.len() <= HOLE && is_cover(hole[seen]) {
             let around = grid.around(hole[seen]);
-            let open = [0, 2, 4, 6].map(|side| around[side]).into_iter().filter(|&c| !grid.has(c));
-            let new: Vec<usize> = open.filter(|c| !hole.contains(c)).collect();
+            // Corners too: what parts two slanting lines is a row of paper pixels that touch by corners.
+            let new: Vec<usize> = around.into_iter().filter(|&c| !grid.has(c) && !hole.contains(&c)).collect();
             hole.extend(new);
             seen += 1;
         }
