@@ -151,6 +151,20 @@ fn rings_close_and_lone_pixels_are_dots() {
 }
 
 #[test]
+fn chains_run_through_the_places_of_their_pixels() {
+    let y = |x: f64| 5.0 + 0.3 * x;
+    let mut line = graph_of(80, 40, y);
+    for (i, pixel) in line.pixels.iter_mut().enumerate().filter(|(_, p)| p.is_ink()) {
+        let centre = DVec2::new((i % 80) as f64 + 0.5, (i / 80) as f64 + 0.5);
+        *pixel = Pixel::new(Kind::Silhouette, DVec2::new(0.0, y(centre.x) - centre.y), 1.0);
+    }
+    let off = |c: &Chain| c.points.iter().map(|p| (p.place.y - y(p.place.x)).abs()).fold(0.0, f64::max);
+    let raw = trace(&line);
+    assert!(off(&raw[0]) <= 0.5 / 64.0 && off(&smooth(&raw, TOLERANCE)[0]) < 0.01);
+    assert!(off(&trace(&graph_of(80, 40, y))[0]) > 0.3, "without places the line is pixel stairs");
+}
+
+#[test]
 fn lines_two_pixels_apart_stay_apart() {
     let chains = trace(&picture(&["............", ".##########.", "............", "##########..", "............"]));
     assert_eq!(chains.len(), 2);
@@ -267,7 +281,7 @@ fn circles_come_out_round() {
 
 #[test]
 fn smoothing_keeps_its_tolerance_on_anything() {
-    for (share, tolerance) in [(20, 0.6), (50, 0.3), (80, 1.0)] {
+    for (share, tolerance) in [(20, 0.6), (50, 0.3), (80, 1.0), (50, 0.001)] {
         let raw = trace(&speckled(share));
         for (chain, smoothed) in raw.iter().zip(smooth(&raw, tolerance)) {
             let off = chain.points.iter().map(|p| distance_to(&smoothed, p.place)).fold(0.0, f64::max);
