@@ -10,11 +10,14 @@ fn faces_eye(lowest: vec3<f32>, edge_1: vec3<f32>, edge_2: vec3<f32>) -> bool {
 }
 
 @compute @workgroup_size(64)
-fn facing(@builtin(global_invocation_id) invocation: vec3<u32>) {
-    let slot = batch.first_slot + invocation.y;
+fn facing(@builtin(global_invocation_id) invocation: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {
+    let slot = batch.first_slot + group.y;
+    if !in_wedge(sphere_of(slot)) {
+        return;
+    }
     let chunk = chunks[slot];
     let local = invocation.x * 32u;
-    let base = invocation.y * CHUNK_VERTICES;
+    let base = group.y * CHUNK_VERTICES;
     var bits = 0u;
     var missing = 0u;
     for (var k = 0u; k < 32u; k += 2u) {
@@ -39,7 +42,7 @@ fn facing(@builtin(global_invocation_id) invocation: vec3<u32>) {
         bits |= (select(0u, 1u, away_0) | select(0u, 2u, away_1)) << k;
         missing |= select(0u, 1u, lacks_0 || lacks_1);
     }
-    out_facing[(batch.part_slot + invocation.y) * CHUNK_WORDS + invocation.x] = bits;
+    out_facing[(batch.part_slot + group.y) * CHUNK_WORDS + invocation.x] = bits;
     let block = invocation.x >> 2u;
     let summary = select(0u, 1u << block, bits != 0u) | (missing << (block + 16u));
     if summary != 0u {

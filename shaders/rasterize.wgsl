@@ -76,10 +76,14 @@ fn rasterize_small(t_in: Triangle, id: u32, away: bool) {
 }
 
 @compute @workgroup_size(64)
-fn rasterize(@builtin(global_invocation_id) invocation: vec3<u32>) {
-    let id = (batch.first_slot + invocation.y) * CHUNK_FACETS + invocation.x;
+fn rasterize(@builtin(global_invocation_id) invocation: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {
+    let slot = batch.first_slot + group.y;
+    if !in_view(sphere_of(slot)) {
+        return;
+    }
+    let id = slot * CHUNK_FACETS + invocation.x;
     let quad = local_quad(invocation.x);
-    let v = invocation.y * CHUNK_VERTICES + quad.y * CHUNK_SIDE + quad.x;
+    let v = group.y * CHUNK_VERTICES + quad.y * CHUNK_SIDE + quad.x;
     let half = id & 1u;
     let a = screens[v];
     let b = screens[v + CHUNK_SIDE + half];

@@ -8,9 +8,9 @@ use crate::surface::lattice::CHUNK_FACETS;
 /// The composed shader that keeps what `visibility` says.
 pub fn source(visibility: Visibility) -> &'static str {
     match visibility {
-        Visibility::Key64 => crate::shader!("scene", "lattice", "emit_u64", "triangle", "rasterize"),
-        Visibility::Key32 => crate::shader!("scene", "lattice", "emit_u32", "triangle", "rasterize"),
-        Visibility::TwoDepths => crate::shader!("scene", "lattice", "emit_two_depths", "triangle", "rasterize"),
+        Visibility::Key64 => crate::shader!("scene", "lattice", "emit_u64", "triangle", "cull", "rasterize"),
+        Visibility::Key32 => crate::shader!("scene", "lattice", "emit_u32", "triangle", "cull", "rasterize"),
+        Visibility::TwoDepths => crate::shader!("scene", "lattice", "emit_two_depths", "triangle", "cull", "rasterize"),
     }
 }
 
