@@ -79,6 +79,8 @@ const BESIDE: i32 = 31;
 const BEYOND_GUARD: i32 = 32;
 const CLIPPED: i32 = 48;
 const MISSING: i32 = 64;
+// X of a clipped or missing vertex: look at its flags.
+const NO_PLACE: i32 = -0x7fffffff - 1;
 
 // Nearer depth of the pixel; 0 is sky.
 fn pixel_depth(pixel: vec2<u32>) -> u32 {

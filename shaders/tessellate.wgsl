@@ -44,8 +44,8 @@ fn tessellate(@builtin(global_invocation_id) invocation: vec3<u32>, @builtin(wor
     let place = vertex_place(at);
     let q = camera_space(eye_relative(at / CELL_STEPS, place));
     let flags = view_flags(q) | select(0, MISSING, is_missing(at));
-    var screen = vec4<i32>(0, 0, 0, flags);
-    if (flags & CLIPPED) == 0 {
+    var screen = vec4<i32>(NO_PLACE, 0, 0, flags);
+    if (flags & (CLIPPED | MISSING)) == 0 {
         screen = vec4<i32>(snapped(q), bitcast<i32>(depth_of(q)), flags);
     }
     let i = group.y * CHUNK_VERTICES + v;

@@ -22,7 +22,10 @@ pub fn pass(gpu: &Gpu, visibility: Visibility, constants: &[(&str, f64)]) -> Res
     Pass::new(gpu, "rasterize", source(visibility), constants)
 }
 
-/// One invocation a facet, one row a chunk.
+/// Facets of a column of eight quads.
+const STRIP_FACETS: u32 = 16;
+
+/// One invocation a column of eight quads, one row a chunk.
 pub fn invocations(batch: &Batch) -> [u32; 2] {
-    [CHUNK_FACETS, batch.chunks]
+    [CHUNK_FACETS / STRIP_FACETS, batch.chunks]
 }
