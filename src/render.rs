@@ -79,9 +79,8 @@ impl<'a> Renderer<'a> {
             ("conservative", flag(method == Method::TowardAway { wide: true })),
         ];
         let bind = |pass: Pass| {
-            let of = |(i, batch): (usize, &Batch), round| {
-                pass.bind(gpu, |name| buffers.resource(name, i, round, *batch))
-            };
+            let of =
+                |(i, batch): (usize, &Batch), round| pass.bind(gpu, |name| buffers.resource(name, i, round, *batch));
             let rounds = 0..visibility.rounds();
             let groups = batches.iter().enumerate().flat_map(|b| rounds.clone().map(move |round| (b, round)));
             let groups = groups.map(|(b, round)| of(b, round)).collect::<Result<Vec<_>>>()?;
@@ -127,7 +126,7 @@ impl<'a> Renderer<'a> {
         near_plane(self.surface.dem())
     }
 
-    /// Draws a frame and waits for it. Nothing but the camera is uploaded.
+    /// Draws a frame to its mask and waits for it. Nothing but the camera is uploaded.
     ///
     /// # Errors
     /// Whatever the driver reports; [`Error::Flag`] for an eye out of reach.
@@ -148,12 +147,16 @@ impl<'a> Renderer<'a> {
         })
     }
 
-    /// Copies the last frame to the CPU.
+    /// Composes the last frame and copies it to the CPU.
     ///
     /// # Errors
     /// Whatever the driver reports; [`Error::Gpu`] when a pixel has a depth and no ID.
     pub fn read(&self) -> Result<Frame> {
         let [width, height] = self.size;
+        let mut clock = Clock::Whole;
+        let mut work = Work::new(self.gpu, &self.buffers, &mut clock);
+        work.record(&self.compose, 0, self.size)?;
+        work.finish()?;
         let bytes = self.gpu.read(self.buffers.get("page")?, u64::from(width) * u64::from(height) * 8)?;
         let counts = self.gpu.read(self.buffers.get("counts")?, size_of::<Counts>() as u64)?;
         let counts: Counts = bytemuck::pod_read_unaligned(&counts);
@@ -179,7 +182,6 @@ impl<'a> Renderer<'a> {
         if let Some(stage) = &self.border {
             work.record(stage, 0, border::invocations(&stage.pass, self.rim_edges, self.lattice.level()))?;
         }
-        work.record(&self.compose, 0, compose::invocations(camera))?;
         work.finish()
     }
 
@@ -233,10 +235,9 @@ impl<'a> Work<'a> {
     }
 
     fn record(&mut self, stage: &Stage, group: usize, invocations: [u32; 2]) -> Result<()> {
-        let mut pass = self.encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-            label: Some(stage.pass.name),
-            timestamp_writes: None,
-        });
+        let mut pass = self
+            .encoder
+            .begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(stage.pass.name), timestamp_writes: None });
         if let Some(group) = stage.groups.get(group) {
             stage.pass.record(&mut pass, group, invocations);
         }

@@ -57,10 +57,7 @@ impl Gpu {
         let adapter = find(choice)?;
         let wanted = wgpu::Features::SHADER_INT64 | wgpu::Features::SHADER_INT64_ATOMIC_MIN_MAX;
         let int64 = int64 == Int64::IfPresent && adapter.features().contains(wanted);
-        let limits = wgpu::Limits {
-            max_storage_buffers_per_shader_stage: STORAGE_BUFFERS,
-            ..wgpu::Limits::default()
-        };
+        let limits = wgpu::Limits { max_storage_buffers_per_shader_stage: STORAGE_BUFFERS, ..wgpu::Limits::default() };
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("hachure"),
             required_features: if int64 { wanted } else { wgpu::Features::empty() },

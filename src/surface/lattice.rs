@@ -157,7 +157,8 @@ fn is_void(dem: &Dem, chunk: &Chunk) -> bool {
         let end = (chunk.origin[axis] + CHUNK_QUADS * chunk.step).div_ceil(CELL_STEPS);
         first as usize..(end as usize).min(samples - 1)
     };
-    !cells(1, dem.rows()).any(|r| cells(0, dem.columns()).any(|c| patch_exists(dem, c, r, 0) || patch_exists(dem, c, r, 1)))
+    !cells(1, dem.rows())
+        .any(|r| cells(0, dem.columns()).any(|c| patch_exists(dem, c, r, 0) || patch_exists(dem, c, r, 1)))
 }
 
 /// Whether patch 0 (NW, SW, SE) or 1 (NW, SE, NE) of cell (c, r) has all its corners.
