@@ -21,6 +21,13 @@ pub struct Frame {
     pub longest_walk: u32,
 }
 
+impl Frame {
+    /// How many pixels are ink.
+    pub fn inked(&self) -> usize {
+        self.raster.pixels.iter().filter(|p| p.is_ink()).count()
+    }
+}
+
 /// Wall-clock milliseconds of one pass.
 #[derive(Debug, Clone, serde::Serialize)]
 pub struct PassTime {
@@ -114,6 +121,11 @@ impl<'a> Renderer<'a> {
     /// The lattice whose facets are drawn.
     pub fn lattice(&self) -> &Lattice {
         &self.lattice
+    }
+
+    /// How many facets the scene has.
+    pub fn facets(&self) -> u64 {
+        self.surface.patches() * u64::from(self.lattice.level().subdivisions()).pow(2)
     }
 
     /// The buffers, for reading what passes left.
