@@ -79,9 +79,8 @@ impl<'a> Renderer<'a> {
             ("conservative", flag(method == Method::TowardAway { wide: true })),
         ];
         let bind = |pass: Pass| {
-            let of = |(i, batch): (usize, &Batch), round| {
-                pass.bind(gpu, |name| buffers.resource(name, i, round, *batch))
-            };
+            let of =
+                |(i, batch): (usize, &Batch), round| pass.bind(gpu, |name| buffers.resource(name, i, round, *batch));
             let rounds = 0..visibility.rounds();
             let groups = batches.iter().enumerate().flat_map(|b| rounds.clone().map(move |round| (b, round)));
             let groups = groups.map(|(b, round)| of(b, round)).collect::<Result<Vec<_>>>()?;
@@ -146,6 +145,25 @@ impl<'a> Renderer<'a> {
             Clock::ByPass(times) => times,
             Clock::Whole => Vec::new(),
         })
+    }
+
+    /// Uploads the camera and records the vertices of the scene's only batch, for callers that draw them by other
+    /// means.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] when the scene has several batches, which share one vertex buffer; [`Error::Flag`] for an eye
+    /// out of reach.
+    pub fn record_vertices(&self, camera: &Camera, encoder: &mut wgpu::CommandEncoder) -> Result<()> {
+        let ([batch], [stage, ..]) = (self.batches.as_slice(), &self.per_batch) else {
+            return Err(Error::Limit {
+                what: format!("the vertices take {} batches, one can be drawn", self.batches.len()),
+                remedy: "use a lower --level or a --crop".into(),
+            });
+        };
+        self.buffers.write_camera(self.gpu, &CameraUniform::new(self.surface.dem(), camera)?)?;
+        let mut pass = encoder.begin_compute_pass(&Default::default());
+        stage.pass.record(&mut pass, &stage.groups[0], tessellate::invocations(batch));
+        Ok(())
     }
 
     /// Copies the last frame to the CPU.
@@ -233,10 +251,9 @@ impl<'a> Work<'a> {
     }
 
     fn record(&mut self, stage: &Stage, group: usize, invocations: [u32; 2]) -> Result<()> {
-        let mut pass = self.encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-            label: Some(stage.pass.name),
-            timestamp_writes: None,
-        });
+        let mut pass = self
+            .encoder
+            .begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(stage.pass.name), timestamp_writes: None });
         if let Some(group) = stage.groups.get(group) {
             stage.pass.record(&mut pass, group, invocations);
         }

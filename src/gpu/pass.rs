@@ -68,7 +68,8 @@ impl Pass {
     /// [`Error::Gpu`] when the shader or the driver refuses.
     pub fn new(gpu: &Gpu, name: &'static str, source: &str, constants: &[(&str, f64)]) -> Result<Self> {
         let reflection = reflect(name, source)?;
-        let known = |constant: &str| reflection.module.overrides.iter().any(|(_, o)| o.name.as_deref() == Some(constant));
+        let known =
+            |constant: &str| reflection.module.overrides.iter().any(|(_, o)| o.name.as_deref() == Some(constant));
         let constants: Vec<_> = constants.iter().copied().filter(|(constant, _)| known(constant)).collect();
         let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(name),

@@ -32,10 +32,9 @@ pub fn passes(gpu: &Gpu, method: Method, constants: &[(&str, f64)]) -> Result<Ve
             let wide = f64::from(u8::from(wide));
             Ok(vec![Pass::new(gpu, "toward_away", TOWARD_AWAY, &with("wide_block", wide))?])
         }
-        Method::Walk => Ok(vec![
-            Pass::new(gpu, "candidates", CANDIDATES, constants)?,
-            Pass::new(gpu, "walk", WALK, constants)?,
-        ]),
+        Method::Walk => {
+            Ok(vec![Pass::new(gpu, "candidates", CANDIDATES, constants)?, Pass::new(gpu, "walk", WALK, constants)?])
+        }
     }
 }
 

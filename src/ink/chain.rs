@@ -86,7 +86,11 @@ pub fn trace(raster: &InkRaster) -> Vec<Chain> {
         while let Some(e) = end.filter(|e| !done[e / 2]) {
             done[e / 2] = true;
             let branch = graph.branches[e / 2].iter().copied();
-            if e % 2 == 0 { cells.extend(branch) } else { cells.extend(branch.rev()) }
+            if e % 2 == 0 {
+                cells.extend(branch)
+            } else {
+                cells.extend(branch.rev())
+            }
             end = partners[e ^ 1];
         }
         cells.dedup();

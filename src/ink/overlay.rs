@@ -29,13 +29,7 @@ pub enum Cover {
 /// The visible parts of a polyline, given in metres of the (exaggerated) world, as crease chains on the page.
 ///
 /// `near` is the near plane's distance in metres that the raster's depths are made with.
-pub fn project_polyline(
-    points: &[DVec3],
-    camera: &Camera,
-    raster: &InkRaster,
-    near: f64,
-    cover: Cover,
-) -> Vec<Chain> {
+pub fn project_polyline(points: &[DVec3], camera: &Camera, raster: &InkRaster, near: f64, cover: Cover) -> Vec<Chain> {
     let mut chains = Vec::new();
     let mut run: Vec<ChainPoint> = Vec::new();
     for segment in points.windows(2) {

@@ -61,9 +61,15 @@ fn is_end(i: usize, n: usize) -> bool {
 /// Places of chain ends at which another chain's point lies.
 fn shared_places(chains: &[Chain]) -> HashSet<(u64, u64)> {
     let open = chains.iter().filter(|c| !c.closed && c.points.len() > 1);
-    let ends: HashSet<_> = open.flat_map(|c| [key(c.points[0].place), key(c.points[c.points.len() - 1].place)]).collect();
+    let ends: HashSet<_> =
+        open.flat_map(|c| [key(c.points[0].place), key(c.points[c.points.len() - 1].place)]).collect();
     let mut seen = HashSet::new();
-    chains.iter().flat_map(|c| &c.points).map(|p| key(p.place)).filter(|k| ends.contains(k) && !seen.insert(*k)).collect()
+    chains
+        .iter()
+        .flat_map(|c| &c.points)
+        .map(|p| key(p.place))
+        .filter(|k| ends.contains(k) && !seen.insert(*k))
+        .collect()
 }
 
 /// The places of one chain, as many as it has points, each within `radius` of its own.

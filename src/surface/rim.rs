@@ -37,8 +37,5 @@ pub fn rim(dem: &Dem) -> Vec<RimEdge> {
             half: u32::from(s[1]),
         })
     };
-    (0..dem.rows())
-        .into_par_iter()
-        .flat_map_iter(|r| (0..dem.columns()).flat_map(move |c| edges_at(c, r)))
-        .collect()
+    (0..dem.rows()).into_par_iter().flat_map_iter(|r| (0..dem.columns()).flat_map(move |c| edges_at(c, r))).collect()
 }
