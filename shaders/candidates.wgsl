@@ -1,5 +1,6 @@
-// One invocation a pixel: lists the pixels, and of each the neighbours, between which a walk could meet an away
-// facet. The others are blank for certain: no block of facets between the two holds an away one.
+// One invocation a column of eight pixels: lists the pixels, and of each the pairs with its eastern and southern
+// neighbours, between which a walk could meet an away facet. Most pairs lie in one chunk and are dismissed by its
+// summary; what remains is looked at by the walk itself.
 
 struct Candidates {
     count: atomic<u32>,
@@ -7,72 +8,53 @@ struct Candidates {
 }
 
 @group(0) @binding(21) var<storage, read_write> out_candidates: Candidates;
-@group(0) @binding(22) var<storage, read_write> out_ink: array<u32>;
 
-// Blocks of a chunk between two of its facets, as bits of its summary.
-fn blocks_between(local_p: u32, local_q: u32) -> u32 {
-    let p = local_p >> 7u;
-    let q = local_q >> 7u;
-    let low_x = min(p & 3u, q & 3u);
-    let high_x = max(p & 3u, q & 3u);
-    let low_y = min(p, q) >> 2u;
-    let high_y = max(p, q) >> 2u;
-    let row = ((2u << high_x) - 1u) & ~((1u << low_x) - 1u);
-    let rows = ((16u << (4u * high_y)) - 1u) & ~((1u << (4u * low_y)) - 1u);
-    return (row * 0x1111u) & rows;
+const STRIP: i32 = 8;
+
+// ID + 1 of the facet in a pixel; 0 is sky. Off the page the nearest pixel counts.
+fn shown(at: vec2<i32>) -> u32 {
+    return pixels[pixel_index(clamp(at, vec2<i32>(0), vec2<i32>(camera.size) - 1))].x;
 }
 
-// Whether no facet between two is away. Of facets in chunks that are no neighbours it does not know.
-fn is_quiet(p: u32, q: u32) -> bool {
-    let slot_p = p / CHUNK_FACETS;
-    let slot_q = q / CHUNK_FACETS;
-    if slot_p == slot_q {
-        return (summaries[slot_p] & blocks_between(p % CHUNK_FACETS, q % CHUNK_FACETS)) == 0u;
-    }
-    let size = CHUNK_QUADS * scene.step;
-    let chunk_p = chunks[slot_p].origin / size;
-    let chunk_q = chunks[slot_q].origin / size;
-    if any(max(chunk_p, chunk_q) - min(chunk_p, chunk_q) > vec2<u32>(1u)) {
+// Whether a walk between two pixels must be looked at; `slot` and `summary` belong to `p`.
+fn is_open(p: u32, q: u32, slot: u32, summary: u32) -> bool {
+    if p == q {
         return false;
     }
-    let beside = slots[chunk_p.y * scene.chunk_grid.x + chunk_q.x];
-    let above = slots[chunk_q.y * scene.chunk_grid.x + chunk_p.x];
-    var summary = summaries[slot_p] | summaries[slot_q];
-    if beside != NO_SLOT {
-        summary |= summaries[beside];
+    if p == 0u || q == 0u || (q - 1u) / CHUNK_FACETS != slot {
+        return true;
     }
-    if above != NO_SLOT {
-        summary |= summaries[above];
-    }
-    return (summary & 0xffffu) == 0u;
+    return (summary & blocks_between((p - 1u) % CHUNK_FACETS, (q - 1u) % CHUNK_FACETS)) != 0u;
 }
 
 @compute @workgroup_size(64)
 fn candidates(@builtin(global_invocation_id) invocation: vec3<u32>) {
-    let at = vec2<i32>(invocation.xy);
+    var at = vec2<i32>(i32(invocation.x), i32(invocation.y) * STRIP);
     if !on_page(at) {
         return;
     }
-    let i = pixel_index(at);
-    out_ink[i] = 0u;
-    let p = pixels[i];
-    if p.y == 0u {
-        return;
-    }
-    var neighbours = 0u;
-    for (var k = 0u; k < 8u; k++) {
-        let to = at + neighbour(k);
-        if !on_page(to) {
-            continue;
+    let end = min(at.y + STRIP, i32(camera.size.y));
+    var here = shown(at);
+    var east = shown(at + vec2<i32>(1, 0));
+    for (; at.y < end; at.y++) {
+        let south_west = shown(at + vec2<i32>(-1, 1));
+        let south = shown(at + vec2<i32>(0, 1));
+        let south_east = shown(at + vec2<i32>(1, 1));
+        var slot = NO_SLOT;
+        var summary = 0u;
+        if here != 0u {
+            slot = (here - 1u) / CHUNK_FACETS;
+            summary = summaries[slot];
         }
-        let q = pixels[pixel_index(to)];
-        // Equal depth: the lower ID is nearer.
-        let farther = q.y < p.y || (q.y == p.y && q.x > p.x);
-        if farther && (q.y == 0u || !is_quiet(p.x - 1u, q.x - 1u)) {
-            neighbours |= 1u << k;
+        // In the order of `neighbour`, from 4.
+        let pairs = select(0u, 16u, is_open(here, east, slot, summary))
+            | select(0u, 32u, is_open(here, south_west, slot, summary))
+            | select(0u, 64u, is_open(here, south, slot, summary))
+            | select(0u, 128u, is_open(here, south_east, slot, summary));
+        if pairs != 0u {
+            out_candidates.pixels[atomicAdd(&out_candidates.count, 1u)] = pixel_index(at) | (pairs << 24u);
         }
-    }
-    if neighbours != 0u {
-        out_candidates.pixels[atomicAdd(&out_candidates.count, 1u)] = i | (neighbours << 24u);
+        here = south;
+        east = south_east;
     }
 }

@@ -36,9 +36,9 @@ fn patch_of(at: vec2<u32>, above: bool) -> Patch {
     );
 }
 
-// What of an edge lies in the tangent plane with that normal.
-fn tangent(edge: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
-    return edge - normal * (dot(edge, normal) / dot(normal, normal));
+// A third of what of an edge lies in the tangent plane with that normal; `scale` is 1 / its squared length.
+fn tangent(edge: vec3<f32>, normal: vec3<f32>, scale: f32) -> vec3<f32> {
+    return (edge - normal * (dot(edge, normal) * scale)) * (1.0 / 3.0);
 }
 
 // Offset in metres from the NW sample to the point at (u, v) of the cell, u east, v south, 0 to 1.
@@ -47,13 +47,16 @@ fn patch_point(p: Patch, at: vec2<f32>) -> vec3<f32> {
     let b = min(at.x, at.y);
     let c = abs(at.x - at.y);
     let across = p.to_third - p.to_se;
-    let ab = tangent(p.to_se, p.normal_nw) / 3.0;
-    let ba = p.to_se - tangent(p.to_se, p.normal_se) / 3.0;
-    let ac = tangent(p.to_third, p.normal_nw) / 3.0;
-    let ca = p.to_third - tangent(p.to_third, p.normal_third) / 3.0;
-    let bc = p.to_se + tangent(across, p.normal_se) / 3.0;
-    let cb = p.to_third - tangent(across, p.normal_third) / 3.0;
-    let centre = (ab + ba + ac + ca + bc + cb) / 4.0 - (p.to_se + p.to_third) / 6.0;
+    let nw = 1.0 / dot(p.normal_nw, p.normal_nw);
+    let se = 1.0 / dot(p.normal_se, p.normal_se);
+    let third = 1.0 / dot(p.normal_third, p.normal_third);
+    let ab = tangent(p.to_se, p.normal_nw, nw);
+    let ba = p.to_se - tangent(p.to_se, p.normal_se, se);
+    let ac = tangent(p.to_third, p.normal_nw, nw);
+    let ca = p.to_third - tangent(p.to_third, p.normal_third, third);
+    let bc = p.to_se + tangent(across, p.normal_se, se);
+    let cb = p.to_third - tangent(across, p.normal_third, third);
+    let centre = (ab + ba + ac + ca + bc + cb) * 0.25 - (p.to_se + p.to_third) * (1.0 / 6.0);
     let a3 = 3.0 * a;
     let b3 = 3.0 * b;
     let c3 = 3.0 * c;

@@ -1,5 +1,6 @@
-// One invocation a candidate pixel: from its point on the surface it walks the lattice to the points of its farther
-// neighbours, facet by facet, in integers. An away facet on the way makes it ink; a void or the outside ends the walk.
+// One invocation a candidate pixel: of each pair with a neighbour, walks the lattice from the nearer pixel's point on
+// the surface to the farther one's, facet by facet, in integers. An away facet on the way makes the nearer one ink; a
+// void or the outside ends the walk.
 
 struct Candidates {
     count: u32,
@@ -7,7 +8,7 @@ struct Candidates {
 }
 
 @group(0) @binding(21) var<storage, read> candidates: Candidates;
-@group(0) @binding(22) var<storage, read_write> out_ink: array<u32>;
+@group(0) @binding(22) var<storage, read_write> out_ink: array<atomic<u32>>;
 @group(0) @binding(23) var<storage, read_write> out_counts: Counts;
 
 // Walk units in a lattice step of the finest level.
@@ -232,48 +233,47 @@ fn place_of(f: Facet, at: vec2<f32>) -> vec2<f32> {
     return vec2<f32>(q.x, -q.y) * (camera.focal / q.z) + camera.centre;
 }
 
-fn walk_from(i: u32, neighbours: u32) {
-    let p = pixels[i];
-    if is_away(p.x - 1u) {
-        return;
+// Inks the nearer pixel of a pair if the walk to the farther one meets an away facet. Says how far it walked.
+fn walk_pair(one: vec2<i32>, other: vec2<i32>) -> u32 {
+    let first = pixels[pixel_index(one)];
+    let second = pixels[pixel_index(other)];
+    // Equal depth: the lower ID is nearer.
+    let swapped = second.y > first.y || (second.y == first.y && second.x < first.x);
+    let p = select(first, second, swapped);
+    let q = select(second, first, swapped);
+    if p.x == q.x || (q.y != 0u && is_quiet(p.x - 1u, q.x - 1u)) || is_away(p.x - 1u) {
+        return 0u;
     }
-    let at = vec2<i32>(vec2<u32>(i % camera.size.x, i / camera.size.x));
+    let at = select(one, other, swapped);
     let centre = vec2<f32>(at) + 0.5;
+    let to_centre = vec2<f32>(select(other, one, swapped)) + 0.5;
     let origin = facet_hit(p.x - 1u, centre);
-    var inked = false;
-    var nearest = vec2<f32>(1e9);
-    var steps = 0u;
-    for (var k = 0u; k < 8u; k++) {
-        if ((neighbours >> k) & 1u) == 0u {
-            continue;
-        }
-        let to = at + neighbour(k);
-        let q = pixels[pixel_index(to)];
-        let to_centre = vec2<f32>(to) + 0.5;
-        var end: vec2<i32>;
-        if q.y == 0u || is_away(q.x - 1u) {
-            end = map_exit(to_centre, origin);
-        } else {
-            end = facet_hit(q.x - 1u, to_centre);
-        }
-        let meeting = walk_between(origin, end);
-        steps = max(steps, meeting.steps);
-        if meeting.met {
-            inked = true;
-            let offset = place_of(meeting.facet, meeting.entered) - centre;
-            nearest = select(nearest, offset, dot(offset, offset) < dot(nearest, nearest));
-        }
+    var end: vec2<i32>;
+    if q.y == 0u || is_away(q.x - 1u) {
+        end = map_exit(to_centre, origin);
+    } else {
+        end = facet_hit(q.x - 1u, to_centre);
     }
-    if inked {
-        out_ink[i] = silhouette_at(nearest);
+    let meeting = walk_between(origin, end);
+    if meeting.met {
+        // Of the walks that ink a pixel, the one whose line runs nearest to its centre gives the place.
+        atomicMax(&out_ink[pixel_index(at)], silhouette_at(place_of(meeting.facet, meeting.entered) - centre));
     }
-    atomicMax(&out_counts.longest_walk, steps);
+    return meeting.steps;
 }
 
 @compute @workgroup_size(64)
 fn walk(@builtin(global_invocation_id) invocation: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    var longest = 0u;
     for (var k = invocation.x; k < candidates.count; k += groups.x * 64u) {
-        let candidate = candidates.pixels[k];
-        walk_from(candidate & 0xffffffu, candidate >> 24u);
+        let i = candidates.pixels[k] & 0xffffffu;
+        let at = vec2<i32>(vec2<u32>(i % camera.size.x, i / camera.size.x));
+        for (var pairs = candidates.pixels[k] >> 24u; pairs != 0u; pairs &= pairs - 1u) {
+            let to = at + neighbour(firstTrailingBit(pairs));
+            if on_page(to) {
+                longest = max(longest, walk_pair(at, to));
+            }
+        }
     }
+    atomicMax(&out_counts.longest_walk, longest);
 }

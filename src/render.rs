@@ -21,6 +21,13 @@ pub struct Frame {
     pub longest_walk: u32,
 }
 
+impl Frame {
+    /// How many pixels are ink.
+    pub fn inked(&self) -> usize {
+        self.raster.pixels.iter().filter(|p| p.is_ink()).count()
+    }
+}
+
 /// Wall-clock milliseconds of one pass.
 #[derive(Debug, Clone, serde::Serialize)]
 pub struct PassTime {
@@ -116,6 +123,11 @@ impl<'a> Renderer<'a> {
         &self.lattice
     }
 
+    /// How many facets the scene has.
+    pub fn facets(&self) -> u64 {
+        self.surface.patches() * u64::from(self.lattice.level().subdivisions()).pow(2)
+    }
+
     /// The buffers, for reading what passes left.
     pub fn buffers(&self) -> &Buffers {
         &self.buffers
@@ -126,7 +138,7 @@ impl<'a> Renderer<'a> {
         near_plane(self.surface.dem())
     }
 
-    /// Draws a frame and waits for it. Nothing but the camera is uploaded.
+    /// Draws a frame to its mask and waits for it. Nothing but the camera is uploaded.
     ///
     /// # Errors
     /// Whatever the driver reports; [`Error::Flag`] for an eye out of reach.
@@ -148,7 +160,7 @@ impl<'a> Renderer<'a> {
     }
 
     /// Uploads the camera and records the vertices of the scene's only batch, for callers that draw them by other
-    /// means.
+    /// means. Chunks that cannot appear keep what they had, zeros at first.
     ///
     /// # Errors
     /// [`Error::Limit`] when the scene has several batches, which share one vertex buffer; [`Error::Flag`] for an eye
@@ -161,17 +173,21 @@ impl<'a> Renderer<'a> {
             });
         };
         self.buffers.write_camera(self.gpu, &CameraUniform::new(self.surface.dem(), camera)?)?;
-        let mut pass = encoder.begin_compute_pass(&Default::default());
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
         stage.pass.record(&mut pass, &stage.groups[0], tessellate::invocations(batch));
         Ok(())
     }
 
-    /// Copies the last frame to the CPU.
+    /// Composes the last frame and copies it to the CPU.
     ///
     /// # Errors
     /// Whatever the driver reports; [`Error::Gpu`] when a pixel has a depth and no ID.
     pub fn read(&self) -> Result<Frame> {
         let [width, height] = self.size;
+        let mut clock = Clock::Whole;
+        let mut work = Work::new(self.gpu, &self.buffers, &mut clock);
+        work.record(&self.compose, 0, self.size)?;
+        work.finish()?;
         let bytes = self.gpu.read(self.buffers.get("page")?, u64::from(width) * u64::from(height) * 8)?;
         let counts = self.gpu.read(self.buffers.get("counts")?, size_of::<Counts>() as u64)?;
         let counts: Counts = bytemuck::pod_read_unaligned(&counts);
@@ -197,7 +213,6 @@ impl<'a> Renderer<'a> {
         if let Some(stage) = &self.border {
             work.record(stage, 0, border::invocations(&stage.pass, self.rim_edges, self.lattice.level()))?;
         }
-        work.record(&self.compose, 0, compose::invocations(camera))?;
         work.finish()
     }
 

@@ -2,3 +2,4 @@
 
 mod common;
 mod dem;
+mod ink;

@@ -10,9 +10,9 @@ pub const ADJACENCY: &str = crate::shader!("scene", "lattice", "ink", "adjacency
 /// The composed shader of toward-away.
 pub const TOWARD_AWAY: &str = crate::shader!("scene", "ink", "toward_away");
 /// The composed shader that lists where a walk is needed.
-pub const CANDIDATES: &str = crate::shader!("scene", "lattice", "candidates");
+pub const CANDIDATES: &str = crate::shader!("scene", "lattice", "quiet", "candidates");
 /// The composed shader of the walk.
-pub const WALK: &str = crate::shader!("scene", "lattice", "surface", "wide", "ink", "walk");
+pub const WALK: &str = crate::shader!("scene", "lattice", "surface", "quiet", "wide", "ink", "walk");
 
 /// Workgroups that share the list of candidates, however long it is.
 const WALK_WORKGROUPS: u32 = 512;
@@ -38,7 +38,14 @@ pub fn passes(gpu: &Gpu, method: Method, constants: &[(&str, f64)]) -> Result<Ve
     }
 }
 
-/// One invocation a pixel; for the walk a fixed number of workgroups.
+/// Pixels of a column that one invocation works off.
+const STRIP: u32 = 8;
+
+/// One invocation a pixel or a column of pixels; for the walk a fixed number of workgroups.
 pub fn invocations(pass: &Pass, camera: &Camera) -> [u32; 2] {
-    if pass.name == "walk" { [WALK_WORKGROUPS * pass.workgroup[0], 1] } else { [camera.width, camera.height] }
+    match pass.name {
+        "walk" => [WALK_WORKGROUPS * pass.workgroup[0], 1],
+        "adjacency" => [camera.width, camera.height],
+        _ => [camera.width, camera.height.div_ceil(STRIP)],
+    }
 }
