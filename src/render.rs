@@ -159,6 +159,25 @@ impl<'a> Renderer<'a> {
         })
     }
 
+    /// Uploads the camera and records the vertices of the scene's only batch, for callers that draw them by other
+    /// means. Chunks that cannot appear keep what they had, zeros at first.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] when the scene has several batches, which share one vertex buffer; [`Error::Flag`] for an eye
+    /// out of reach.
+    pub fn record_vertices(&self, camera: &Camera, encoder: &mut wgpu::CommandEncoder) -> Result<()> {
+        let ([batch], [stage, ..]) = (self.batches.as_slice(), &self.per_batch) else {
+            return Err(Error::Limit {
+                what: format!("the vertices take {} batches, one can be drawn", self.batches.len()),
+                remedy: "use a lower --level or a --crop".into(),
+            });
+        };
+        self.buffers.write_camera(self.gpu, &CameraUniform::new(self.surface.dem(), camera)?)?;
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        stage.pass.record(&mut pass, &stage.groups[0], tessellate::invocations(batch));
+        Ok(())
+    }
+
     /// Composes the last frame and copies it to the CPU.
     ///
     /// # Errors

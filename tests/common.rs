@@ -2,7 +2,19 @@
 
 use std::io::{Write, stderr};
 use std::path::PathBuf;
+use std::sync::OnceLock;
 use std::thread;
+
+use hachure::gpu::{AdapterChoice, Gpu, Int64};
+
+/// The device of all tests, with 64-bit atomics where the adapter has them.
+///
+/// # Panics
+/// Without an adapter: nothing drawn is nothing proven.
+pub fn gpu() -> &'static Gpu {
+    static GPU: OnceLock<Gpu> = OnceLock::new();
+    GPU.get_or_init(|| Gpu::open(&AdapterChoice::Best, Int64::IfPresent).expect("an adapter"))
+}
 
 /// The folder of shared terrain named by `HACHURE_DEMS`. `None`, with a line that says so, when the variable is
 /// unset: the test that called is skipped.

@@ -2,5 +2,14 @@
 
 mod cli;
 mod common;
+mod coverage;
 mod dem;
+mod drawn;
+mod gpu_errors;
+mod hardware;
 mod ink;
+mod mesh;
+mod reflection;
+mod tolerances;
+mod vertices;
+mod watertight;

@@ -9,20 +9,18 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 
 use super::device::Gpu;
+use super::sizes::{self, fits};
 use crate::dem::Dem;
 use crate::error::{Error, Result};
-use crate::plan::batches::{BATCH_CHUNKS, PART_CHUNKS};
+use crate::plan::batches::PART_CHUNKS;
 use crate::plan::{Batch, Visibility};
 use crate::surface::bounds::spheres;
-use crate::surface::lattice::{CHUNK_FACETS, CHUNK_VERTICES, CHUNK_WORDS};
 use crate::surface::rim::RimEdge;
 use crate::surface::{Lattice, Surface};
 use crate::view::Camera;
 
 /// Bytes between entries of a uniform buffer that are bound one at a time.
 const UNIFORM_STRIDE: u64 = 256;
-/// The largest storage binding every WebGPU device grants.
-pub const LARGEST_BINDING: u64 = 128 << 20;
 /// The near plane in cells: a power of two, so that depths scale without rounding.
 pub const NEAR_CELLS: f64 = 1.0 / 1024.0;
 
@@ -190,28 +188,9 @@ impl Buffers {
         buffers.upload(gpu, "valid", bytemuck::cast_slice(&if voids { valid_bits(dem) } else { vec![0] }))?;
         buffers.upload(gpu, "rim", bytemuck::cast_slice(rim))?;
 
-        let chunks = lattice.chunks().len() as u64;
-        let (part, batch) = (u64::from(PART_CHUNKS), chunks.min(u64::from(BATCH_CHUNKS)));
-        for (name, start) in ["facing_0", "facing_1", "facing_2", "facing_3"].into_iter().zip((0..).step_by(1 << 19)) {
-            let held = chunks.saturating_sub(start).min(part);
-            buffers.create(gpu, name, held * u64::from(CHUNK_WORDS) * 4)?;
+        for (name, size) in sizes::written(lattice.chunks().len() as u64, [width, height])? {
+            buffers.create(gpu, name, size)?;
         }
-        buffers.create(gpu, "summaries", chunks * 4)?;
-        buffers.create(gpu, "places", batch * u64::from(CHUNK_VERTICES) * 16)?;
-        buffers.create(gpu, "screens", batch * u64::from(CHUNK_VERTICES) * 16)?;
-        buffers.create(gpu, "queue", 4 + batch * u64::from(CHUNK_FACETS) * 4)?;
-        let pixels = u64::from(width) * u64::from(height);
-        if pixels * 8 > LARGEST_BINDING {
-            return Err(Error::Limit {
-                what: format!("--size {width}x{height} has {pixels} pixels, a page holds {}", LARGEST_BINDING / 8),
-                remedy: "use a smaller --size".into(),
-            });
-        }
-        buffers.create(gpu, "pixels", pixels * 8)?;
-        buffers.create(gpu, "ink", pixels * 4)?;
-        buffers.create(gpu, "candidates", 4 + pixels * 4)?;
-        buffers.create(gpu, "page", pixels * 8)?;
-        buffers.create(gpu, "counts", size_of::<Counts>() as u64)?;
         gpu.check()?;
         Ok(buffers)
     }
@@ -267,16 +246,6 @@ impl Buffers {
         self.named.insert(name, gpu.device.create_buffer(&descriptor));
         Ok(())
     }
-}
-
-fn fits(name: &str, size: u64) -> Result<()> {
-    if size <= LARGEST_BINDING {
-        return Ok(());
-    }
-    Err(Error::Limit {
-        what: format!("this DEM needs {} MiB of {name}, a device binds {}", size >> 20, LARGEST_BINDING >> 20),
-        remedy: "use a --crop".into(),
-    })
 }
 
 fn upload(gpu: &Gpu, name: &'static str, bytes: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {

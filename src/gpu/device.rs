@@ -54,13 +54,21 @@ impl Gpu {
     /// # Errors
     /// [`Error::NoAdapter`] when none fits, [`Error::Gpu`] when it opens no device.
     pub fn open(choice: &AdapterChoice, int64: Int64) -> Result<Self> {
+        Self::open_with(choice, int64, wgpu::Features::empty())
+    }
+
+    /// Opens an adapter with those of the `extra` features it has: for callers that add passes of their own.
+    ///
+    /// # Errors
+    /// As [`Self::open`].
+    pub fn open_with(choice: &AdapterChoice, int64: Int64, extra: wgpu::Features) -> Result<Self> {
         let adapter = find(choice)?;
         let wanted = wgpu::Features::SHADER_INT64 | wgpu::Features::SHADER_INT64_ATOMIC_MIN_MAX;
         let int64 = int64 == Int64::IfPresent && adapter.features().contains(wanted);
         let limits = wgpu::Limits { max_storage_buffers_per_shader_stage: STORAGE_BUFFERS, ..wgpu::Limits::default() };
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("hachure"),
-            required_features: if int64 { wanted } else { wgpu::Features::empty() },
+            required_features: if int64 { wanted } else { wgpu::Features::empty() } | extra & adapter.features(),
             required_limits: limits,
             ..Default::default()
         }))

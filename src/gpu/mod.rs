@@ -9,6 +9,7 @@ pub mod pass;
 pub mod rasterize;
 pub mod rasterize_large;
 pub mod silhouette;
+pub mod sizes;
 pub mod tessellate;
 
 pub use buffers::{Buffers, CameraUniform};

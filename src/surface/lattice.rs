@@ -92,13 +92,15 @@ impl Lattice {
         let quads = |samples: usize| (samples as u64 - 1) * u64::from(level.subdivisions());
         let across = |samples: usize| quads(samples).div_ceil(u64::from(CHUNK_QUADS));
         let (columns, rows) = (across(dem.columns()), across(dem.rows()));
-        if columns * rows * u64::from(CHUNK_FACETS) > 1 << 32 {
+        // A pixel holds ID + 1 in 32 bits: the last ID cannot be used.
+        if columns * rows * u64::from(CHUNK_FACETS) >= 1 << 32 {
             return Err(Error::Limit {
                 what: format!(
-                    "level {} gives {} facets, at most {} have an ID",
+                    "level {} gives {} facets in {} chunks, fewer than {} chunks of {CHUNK_FACETS} have IDs",
                     level.subdivisions(),
                     2 * quads(dem.columns()) * quads(dem.rows()),
-                    1_u64 << 32
+                    columns * rows,
+                    (1_u64 << 32) / u64::from(CHUNK_FACETS)
                 ),
                 remedy: "use a lower --level or a --crop".into(),
             });

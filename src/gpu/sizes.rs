@@ -1,0 +1,58 @@
+//! How large each buffer is: numbers alone, so that limits are known before anything is allocated.
+
+use super::buffers::Counts;
+use crate::error::{Error, Result};
+use crate::plan::batches::{BATCH_CHUNKS, PART_CHUNKS};
+use crate::surface::lattice::{CHUNK_FACETS, CHUNK_VERTICES, CHUNK_WORDS};
+
+/// The largest storage binding every WebGPU device grants, in bytes.
+pub const LARGEST_BINDING: u64 = 128 << 20;
+/// Pixels along the longest page side: beyond it, places within the guard band would leave +-2^15 px.
+pub const LARGEST_SIDE: u32 = 16_384;
+/// The parts of the facing bits.
+const FACING: [&str; 4] = ["facing_0", "facing_1", "facing_2", "facing_3"];
+
+/// Name and bytes of every buffer that passes write, for so many chunks and a page of `width` x `height` pixels.
+///
+/// # Errors
+/// [`Error::Limit`] when the page is larger than a binding or the guard band allows.
+pub fn written(chunks: u64, [width, height]: [u32; 2]) -> Result<Vec<(&'static str, u64)>> {
+    let pixels = u64::from(width) * u64::from(height);
+    let refused = |what: String| Err(Error::Limit { what, remedy: "use a smaller --size".into() });
+    if width.max(height) > LARGEST_SIDE {
+        return refused(format!("--size {width}x{height} is longer than the {LARGEST_SIDE} pixels a page side holds"));
+    }
+    if pixels * 8 > LARGEST_BINDING {
+        return refused(format!("--size {width}x{height} has {pixels} pixels, a page holds {}", LARGEST_BINDING / 8));
+    }
+    let batch = chunks.min(u64::from(BATCH_CHUNKS));
+    let part = u64::from(PART_CHUNKS);
+    let facing = (0..).map(|i| chunks.saturating_sub(i * part).min(part) * u64::from(CHUNK_WORDS) * 4);
+    let mut sizes: Vec<_> = FACING.into_iter().zip(facing).collect();
+    sizes.extend([
+        ("summaries", chunks * 4),
+        ("places", batch * u64::from(CHUNK_VERTICES) * 16),
+        ("screens", batch * u64::from(CHUNK_VERTICES) * 16),
+        ("queue", 4 + batch * u64::from(CHUNK_FACETS) * 4),
+        ("pixels", pixels * 8),
+        ("ink", pixels * 4),
+        ("candidates", 4 + pixels * 4),
+        ("page", pixels * 8),
+        ("counts", size_of::<Counts>() as u64),
+    ]);
+    Ok(sizes)
+}
+
+/// Whether a storage buffer can be bound whole.
+///
+/// # Errors
+/// [`Error::Limit`] when it cannot.
+pub fn fits(name: &str, size: u64) -> Result<()> {
+    if size <= LARGEST_BINDING {
+        return Ok(());
+    }
+    Err(Error::Limit {
+        what: format!("this DEM needs {} MiB of {name}, a device binds {}", size >> 20, LARGEST_BINDING >> 20),
+        remedy: "use a --crop".into(),
+    })
+}
