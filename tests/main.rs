@@ -1,4 +1,9 @@
 //! Every integration test in one binary: linked once, one module a subject.
 
+mod closed_forms;
 mod common;
 mod dem;
+mod forms;
+mod metrics;
+mod scenes;
+mod tolerances;

@@ -1,0 +1,63 @@
+//! Every tolerance of the integration tests, each with its unit and a worked example.
+
+/// How far an inked pixel's centre may lie from the true line, px: k + 0.5 with k = 1.
+///
+/// Example: a true line runs along a row's upper edge, y = 10.0. Pixels of rows 9 and 10 (centres 9.5 and 10.5) are the
+/// line itself, rows 8 and 11 (centres 8.5 and 11.5) lie at 1.5 and still count as within one pixel of it.
+pub const REACH_PX: f64 = 1.5;
+
+/// Share of the true line's length that must lie within [`REACH_PX`] of ink.
+///
+/// Example: of a line of 500 px at most 5 px may be missed.
+pub const RECALL: f64 = 0.99;
+
+/// The same for plain toward-away, which leaves gaps where the away slope is thinner than a pixel.
+///
+/// Example: of a line of 500 px at most 50 px may be missed.
+pub const RECALL_TOWARD_AWAY: f64 = 0.90;
+
+/// How far facets may lie from the mathematical surface, px on the page.
+///
+/// Example: seen with 330 px per unit of tangent from 1 000 m, 0.25 px are 0.76 m.
+pub const GRID_ERROR_PX: f64 = 0.25;
+
+/// Longest piece of a true line, px: visibility is decided once a piece.
+///
+/// Example: where a hill cuts a line off, the true line ends at most 0.125 px wrong.
+pub const TRUTH_PIECE_PX: f64 = 0.25;
+
+/// How far a true line may lie from its closed form (sphere, cone, saddle), as a share of the scene's size.
+///
+/// Example: on a sphere of 400 m radius 1e-6 are 0.4 mm.
+pub const CLOSED_FORM: f64 = 1e-6;
+
+/// Mean distance of the walk's sub-pixel places from the true line, px.
+///
+/// Example: pixel centres lie 0.39 px off on average; places 0.13 px off would draw a line three times as true.
+pub const PLACE_MEAN_PX: f64 = 0.25;
+
+/// Least ratio of the mean distance of pixel centres to that of sub-pixel places.
+///
+/// Example: centres 0.40 px off, places at most 0.26 px off.
+pub const PLACE_GAIN: f64 = 1.5;
+
+/// How far inked pixels may be from the published or measured number, as a share of it.
+///
+/// Example: 4 215 pixels: 4 089 to 4 341 pass.
+pub const COUNT_SHARE: f64 = 0.03;
+
+/// How far from the mathematical place a hidden part of a polyline may begin or end, px.
+///
+/// Example: samples every 0.5 px, hidden only if four neighbours hide it too (1 px), a cover up to 0.4 % nearer still
+/// shows: with a steep ridge the line comes out 1.5 px from where it should.
+pub const COVER_PX: f64 = 2.0;
+
+/// Share of ink of one level that may lie farther than [`REACH_PX`] from any ink of the next finer level.
+///
+/// Example: of 400 px at most 4 px between level 16 and level 32.
+pub const LEVEL_STRAYS: f64 = 0.01;
+
+/// Least number of facets that a walk over a plain passes for each node it visits.
+///
+/// Example: two neighbouring pixels 200 cells apart at level 4 have 1 600 facets between them: at most 80 nodes.
+pub const FACETS_A_LEAP: f64 = 20.0;
