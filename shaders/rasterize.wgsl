@@ -1,4 +1,5 @@
-// One invocation a facet, both sides: small ones are drawn here, large and clipped ones queued.
+// One invocation a column of eight quads, facet by facet, both sides: each vertex is read once. Small facets are drawn
+// here, large and clipped ones queued.
 
 struct Queue {
     count: atomic<u32>,
@@ -9,6 +10,8 @@ struct Queue {
 
 // Beyond this box, in 1/256 px, products of two differences overflow i32.
 const LARGEST_BOX: i32 = 126 * 256;
+// Facets of a column of eight quads.
+const STRIP_FACETS: u32 = 16u;
 
 fn enqueue(id: u32) {
     out_queue.ids[atomicAdd(&out_queue.count, 1u)] = id;
@@ -75,23 +78,49 @@ fn rasterize_small(t_in: Triangle, id: u32, away: bool) {
     }
 }
 
-@compute @workgroup_size(64)
-fn rasterize(@builtin(global_invocation_id) invocation: vec3<u32>) {
-    let id = (batch.first_slot + invocation.y) * CHUNK_FACETS + invocation.x;
-    let quad = local_quad(invocation.x);
-    let v = invocation.y * CHUNK_VERTICES + quad.y * CHUNK_SIDE + quad.x;
-    let half = id & 1u;
-    let a = screens[v];
-    let b = screens[v + CHUNK_SIDE + half];
-    let c = screens[v + CHUNK_SIDE * (1u - half) + 1u];
-    let any_flag = a.w | b.w | c.w;
-    if (any_flag & MISSING) != 0 || (a.w & b.w & c.w & BESIDE) != 0 {
+// One half of the quad whose north-west vertex is `v`.
+fn rasterize_facet(id: u32, a: vec3<i32>, b: vec3<i32>, c: vec3<i32>, v: u32) {
+    if any(vec3<i32>(a.x, b.x, c.x) == vec3<i32>(NO_PLACE)) {
+        let third = v + select(CHUNK_SIDE, 1u, (id & 1u) == 1u);
+        let flags = vec3<i32>(screens[v].w, screens[v + CHUNK_SIDE + 1u].w, screens[third].w);
+        let seen = (flags.x & flags.y & flags.z & BESIDE) == 0;
+        if ((flags.x | flags.y | flags.z) & MISSING) == 0 && seen {
+            enqueue(id);
+        }
         return;
     }
     let extent = max(a.xy, max(b.xy, c.xy)) - min(a.xy, min(b.xy, c.xy));
-    if (any_flag & CLIPPED) != 0 || max(extent.x, extent.y) > LARGEST_BOX {
-        enqueue(id);
+    let t = Triangle(a.xy, b.xy, c.xy, bitcast<vec3<f32>>(vec3<i32>(a.z, b.z, c.z)));
+    if max(extent.x, extent.y) <= LARGEST_BOX {
+        rasterize_small(t, id, away_of(id));
     } else {
-        rasterize_small(screen_triangle(a, b, c), id, away_of(id));
+        let box = pixel_box(t, true);
+        if all(box.low <= box.high) {
+            enqueue(id);
+        }
+    }
+}
+
+@compute @workgroup_size(64)
+fn rasterize(@builtin(global_invocation_id) invocation: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {
+    let slot = batch.first_slot + group.y;
+    if !in_view(sphere_of(slot)) {
+        return;
+    }
+    let local = invocation.x * STRIP_FACETS;
+    let quad = local_quad(local);
+    var id = slot * CHUNK_FACETS + local;
+    var v = group.y * CHUNK_VERTICES + quad.y * CHUNK_SIDE + quad.x;
+    var nw = screens[v].xyz;
+    var ne = screens[v + 1u].xyz;
+    for (var k = 0u; k < STRIP_FACETS; k += 2u) {
+        let sw = screens[v + CHUNK_SIDE].xyz;
+        let se = screens[v + CHUNK_SIDE + 1u].xyz;
+        rasterize_facet(id, nw, sw, se, v);
+        rasterize_facet(id + 1u, nw, se, ne, v);
+        nw = sw;
+        ne = se;
+        v += CHUNK_SIDE;
+        id += 2u;
     }
 }

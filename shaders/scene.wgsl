@@ -19,6 +19,7 @@ struct Camera {
     focal: f32,             // pixels per unit of tangent
     pad: u32,
     size: vec2<u32>,        // pixels across, down
+    wedge: vec4<f32>,       // inward normals of the two sides of the page's map projection; 0 where it is no wedge
 }
 
 struct Batch {
@@ -37,6 +38,7 @@ struct Chunk {
 override has_voids: bool = false;
 override facing_parts: u32 = 1u;
 override two_depths: bool = false;
+override culled: bool = true;
 
 @group(0) @binding(0) var<uniform> scene: Scene;
 @group(0) @binding(1) var<uniform> camera: Camera;
@@ -54,6 +56,7 @@ override two_depths: bool = false;
 @group(0) @binding(13) var<storage, read> places: array<vec4<f32>>;
 @group(0) @binding(14) var<storage, read> screens: array<vec4<i32>>;
 @group(0) @binding(15) var<storage, read> pixels: array<vec2<u32>>;
+@group(0) @binding(16) var<storage, read> spheres: array<vec4<f32>>;
 
 const CELL_STEPS: u32 = 64u;
 const CHUNK_QUADS: u32 = 32u;
@@ -76,6 +79,8 @@ const BESIDE: i32 = 31;
 const BEYOND_GUARD: i32 = 32;
 const CLIPPED: i32 = 48;
 const MISSING: i32 = 64;
+// X of a clipped or missing vertex: look at its flags.
+const NO_PLACE: i32 = -0x7fffffff - 1;
 
 // Nearer depth of the pixel; 0 is sky.
 fn pixel_depth(pixel: vec2<u32>) -> u32 {

@@ -33,21 +33,22 @@ fn is_missing(at: vec2<u32>) -> bool {
 }
 
 @compute @workgroup_size(64)
-fn tessellate(@builtin(global_invocation_id) invocation: vec3<u32>) {
+fn tessellate(@builtin(global_invocation_id) invocation: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {
     let v = invocation.x;
-    if v >= CHUNK_VERTICES {
+    let slot = batch.first_slot + group.y;
+    if v >= CHUNK_VERTICES || !in_wedge(sphere_of(slot)) {
         return;
     }
-    let chunk = chunks[batch.first_slot + invocation.y];
+    let chunk = chunks[slot];
     let at = chunk.origin + vec2<u32>(v % CHUNK_SIDE, v / CHUNK_SIDE) * chunk.step;
     let place = vertex_place(at);
     let q = camera_space(eye_relative(at / CELL_STEPS, place));
     let flags = view_flags(q) | select(0, MISSING, is_missing(at));
-    var screen = vec4<i32>(0, 0, 0, flags);
-    if (flags & CLIPPED) == 0 {
+    var screen = vec4<i32>(NO_PLACE, 0, 0, flags);
+    if (flags & (CLIPPED | MISSING)) == 0 {
         screen = vec4<i32>(snapped(q), bitcast<i32>(depth_of(q)), flags);
     }
-    let i = invocation.y * CHUNK_VERTICES + v;
+    let i = group.y * CHUNK_VERTICES + v;
     out_places[i] = place;
     out_screens[i] = screen;
 }

@@ -4,6 +4,7 @@ mod closed_forms;
 mod common;
 mod dem;
 mod forms;
+mod ink;
 mod metrics;
 mod scenes;
 mod tolerances;

@@ -13,6 +13,7 @@ use crate::dem::Dem;
 use crate::error::{Error, Result};
 use crate::plan::batches::{BATCH_CHUNKS, PART_CHUNKS};
 use crate::plan::{Batch, Visibility};
+use crate::surface::bounds::spheres;
 use crate::surface::lattice::{CHUNK_FACETS, CHUNK_VERTICES, CHUNK_WORDS};
 use crate::surface::rim::RimEdge;
 use crate::surface::{Lattice, Surface};
@@ -65,6 +66,8 @@ pub struct CameraUniform {
     pub pad: u32,
     /// Pixels across, down.
     pub size: [u32; 2],
+    /// Inward normals of the two sides of the page's map projection; 0 where it is no wedge.
+    pub wedge: [f32; 4],
 }
 
 /// `Batch` of scene.wgsl.
@@ -139,6 +142,7 @@ impl CameraUniform {
             focal: camera.focal() as f32,
             pad: 0,
             size: [camera.width, camera.height],
+            wedge: camera.wedge().map_or([0.0; 4], |[a, b]| [a.x as f32, a.y as f32, b.x as f32, b.y as f32]),
         })
     }
 
@@ -178,6 +182,7 @@ impl Buffers {
         buffers.uniform(gpu, "scene", bytemuck::bytes_of(&SceneUniform::new(dem, lattice)));
         buffers.uniform(gpu, "camera", bytemuck::bytes_of(&CameraUniform::zeroed()));
         buffers.upload(gpu, "chunks", bytemuck::cast_slice(lattice.chunks()))?;
+        buffers.upload(gpu, "spheres", bytemuck::cast_slice(&spheres(surface, lattice)))?;
         buffers.upload(gpu, "slots", bytemuck::cast_slice(lattice.slots()))?;
         buffers.upload(gpu, "heights", bytemuck::cast_slice(dem.heights()))?;
         buffers.upload(gpu, "gradients", bytemuck::cast_slice(surface.gradients()))?;

@@ -6,7 +6,7 @@ use crate::plan::Batch;
 use crate::surface::lattice::CHUNK_WORDS;
 
 /// The composed shader.
-pub const SOURCE: &str = crate::shader!("scene", "lattice", "surface", "facing");
+pub const SOURCE: &str = crate::shader!("scene", "lattice", "surface", "cull", "facing");
 
 /// Compiles the pass.
 ///

@@ -8,9 +8,9 @@ use crate::surface::lattice::CHUNK_FACETS;
 /// The composed shader that keeps what `visibility` says.
 pub fn source(visibility: Visibility) -> &'static str {
     match visibility {
-        Visibility::Key64 => crate::shader!("scene", "lattice", "emit_u64", "triangle", "rasterize"),
-        Visibility::Key32 => crate::shader!("scene", "lattice", "emit_u32", "triangle", "rasterize"),
-        Visibility::TwoDepths => crate::shader!("scene", "lattice", "emit_two_depths", "triangle", "rasterize"),
+        Visibility::Key64 => crate::shader!("scene", "lattice", "emit_u64", "triangle", "cull", "rasterize"),
+        Visibility::Key32 => crate::shader!("scene", "lattice", "emit_u32", "triangle", "cull", "rasterize"),
+        Visibility::TwoDepths => crate::shader!("scene", "lattice", "emit_two_depths", "triangle", "cull", "rasterize"),
     }
 }
 
@@ -22,7 +22,10 @@ pub fn pass(gpu: &Gpu, visibility: Visibility, constants: &[(&str, f64)]) -> Res
     Pass::new(gpu, "rasterize", source(visibility), constants)
 }
 
-/// One invocation a facet, one row a chunk.
+/// Facets of a column of eight quads.
+const STRIP_FACETS: u32 = 16;
+
+/// One invocation a column of eight quads, one row a chunk.
 pub fn invocations(batch: &Batch) -> [u32; 2] {
-    [CHUNK_FACETS, batch.chunks]
+    [CHUNK_FACETS / STRIP_FACETS, batch.chunks]
 }

@@ -6,7 +6,7 @@ use crate::plan::Batch;
 use crate::surface::lattice::CHUNK_VERTICES;
 
 /// The composed shader.
-pub const SOURCE: &str = crate::shader!("scene", "lattice", "surface", "tessellate");
+pub const SOURCE: &str = crate::shader!("scene", "lattice", "surface", "cull", "tessellate");
 
 /// Compiles the pass.
 ///

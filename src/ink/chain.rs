@@ -7,6 +7,8 @@
 //!
 //! Cost: 40 000 ink pixels take some 20 ms on one core. Does not handle: two lines less than 2 px apart (one chain).
 
+use std::collections::HashSet;
+
 use glam::DVec2;
 
 use super::graph::Graph;
@@ -16,7 +18,7 @@ use super::{InkRaster, Kind};
 
 /// A chain is cut where ln depth jumps by more than this between the points before and after: 1.5 times the distance.
 const DEPTH_JUMP: f64 = 0.405;
-/// Points before and after that a cut looks at, so that single odd pixels cut nothing.
+/// Points before and after a cut that must all lie on their side of the jump: an odd pixel cuts nothing.
 const WINDOW: usize = 4;
 
 /// What a chain draws.
@@ -65,7 +67,9 @@ pub fn trace(raster: &InkRaster) -> Vec<Chain> {
     let point = |&cell: &usize| {
         let pixel = raster.pixels[pixel(cell)];
         let centre = DVec2::new((cell % lines.stride) as f64 - 0.5, (cell / lines.stride) as f64 - 0.5);
-        ChainPoint { place: centre + pixel.place(), depth: pixel.depth() }
+        // A filled hole has no line of its own.
+        let offset = if pixel.is_ink() { pixel.place() } else { DVec2::ZERO };
+        ChainPoint { place: centre + offset, depth: pixel.depth() }
     };
     let points: Vec<Vec<ChainPoint>> = graph.branches.iter().map(|branch| branch.iter().map(point).collect()).collect();
     let partners = partners(&graph.branches, &points);
@@ -75,28 +79,48 @@ pub fn trace(raster: &InkRaster) -> Vec<Chain> {
         let border: Vec<bool> = cells.iter().map(|&c| raster.pixels[pixel(c)].kind() == Kind::Border).collect();
         cut(points, &border, closed, &mut chains);
     };
-    let mut done = vec![false; graph.branches.len()];
-    // Open chains begin at ends without a partner; what is left then is closed.
-    for (start, closed) in (0..2 * done.len()).map(|e| (e, false)).chain((0..2 * done.len()).map(|e| (e, true))) {
-        if done[start / 2] || (!closed && partners[start].is_some()) {
-            continue;
-        }
-        let mut cells: Vec<usize> = Vec::new();
-        let mut end = Some(start);
-        while let Some(e) = end.filter(|e| !done[e / 2]) {
-            done[e / 2] = true;
-            let branch = graph.branches[e / 2].iter().copied();
-            if e % 2 == 0 { cells.extend(branch) } else { cells.extend(branch.rev()) }
-            end = partners[e ^ 1];
-        }
-        cells.dedup();
-        if closed && cells.len() > 1 && cells.first() == cells.last() {
-            cells.pop();
-        }
+    for (cells, closed) in walks(&graph.branches, &partners) {
         add(&cells, closed);
     }
     graph.rings.iter().for_each(|ring| add(ring, true));
     chains
+}
+
+/// Branches joined to walks as their ends go on into each other, each with whether it is closed.
+fn walks(branches: &[Vec<usize>], partners: &[Option<usize>]) -> Vec<(Vec<usize>, bool)> {
+    let ends = branches.iter().flat_map(|b| [b[0], b[b.len() - 1]]);
+    let run_through: HashSet<usize> = ends.zip(partners).filter(|(_, p)| p.is_some()).map(|(cell, _)| cell).collect();
+    // Lines side by side may touch by a corner: such a rung between two that run through is no line.
+    let is_rung = |b: usize| {
+        let alone = partners[2 * b].is_none() && partners[2 * b + 1].is_none();
+        alone && branches[b].len() == 2 && branches[b].iter().all(|cell| run_through.contains(cell))
+    };
+    let mut done: Vec<bool> = (0..branches.len()).map(is_rung).collect();
+    let mut walks = Vec::new();
+    // Open walks begin at ends without a partner; what is left then is closed.
+    for closed in [false, true] {
+        for start in 0..partners.len() {
+            if done[start / 2] || (!closed && partners[start].is_some()) {
+                continue;
+            }
+            let mut cells: Vec<usize> = Vec::new();
+            let mut next = Some(start);
+            while let Some(end) = next.filter(|end| !done[end / 2]) {
+                done[end / 2] = true;
+                match end % 2 {
+                    0 => cells.extend(&branches[end / 2]),
+                    _ => cells.extend(branches[end / 2].iter().rev()),
+                }
+                next = partners[end ^ 1];
+            }
+            cells.dedup();
+            if closed && cells.len() > 1 && cells.first() == cells.last() {
+                cells.pop();
+            }
+            walks.push((cells, closed));
+        }
+    }
+    walks
 }
 
 /// Cuts a run of points where its depth jumps or its kind changes; the pieces share the points of the cuts.
@@ -108,15 +132,15 @@ fn cut(mut points: Vec<ChainPoint>, border: &[bool], closed: bool, chains: &mut 
             2 * window.iter().filter(|&&b| b).count() > window.len()
         })
         .collect();
-    let mut sums = vec![0.0];
-    sums.extend(points.iter().scan(0.0, |sum, p| {
-        *sum += p.log_depth();
-        Some(*sum)
-    }));
+    let logs: Vec<f64> = points.iter().map(ChainPoint::log_depth).collect();
+    let range = |part: &[f64]| part.iter().fold((f64::MAX, f64::MIN), |(low, high), &v| (v.min(low), v.max(high)));
+    // The gap between all points before and all after.
     let jump = |i: usize| {
-        let inside = i >= WINDOW && i + WINDOW < n;
-        let step = |i: usize| (sums[i + 1 + WINDOW] - sums[i + 1] - sums[i] + sums[i - WINDOW]) / WINDOW as f64;
-        if inside { step(i).abs() } else { 0.0 }
+        if i < WINDOW || i + WINDOW >= n {
+            return 0.0;
+        }
+        let (before, after) = (range(&logs[i - WINDOW..i]), range(&logs[i + 1..=i + WINDOW]));
+        (before.0 - after.1).max(after.0 - before.1)
     };
     let jumps: Vec<f64> = (0..n).map(jump).collect();
     let is_cut = |i: usize| {

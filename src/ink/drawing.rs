@@ -40,8 +40,8 @@ pub struct Style {
     pub paper: [u8; 4],
     /// Width of the farthest lines as a share of the nearest, above 0 to 1.
     pub far_width: f64,
-    /// Strokes shorter than this are left out, px: specks of a pixel or two say nothing.
-    pub speck: f64,
+    /// Whether lone pixels are drawn, as dots; else they are left out as specks that say nothing.
+    pub dots: bool,
 }
 
 impl Style {
@@ -57,7 +57,7 @@ impl Style {
             crease: pen(0.6),
             paper: [251, 248, 240, 255],
             far_width: 0.35,
-            speck: 2.0,
+            dots: false,
         }
     }
 
@@ -151,18 +151,13 @@ pub fn stroke(chains: &[Chain], line: Line, style: &Style, raster: &InkRaster, r
     };
     let strokes = chains
         .iter()
-        .filter(|chain| chain.line == line && length(chain) >= style.speck)
+        .filter(|chain| chain.line == line && (style.dots || chain.points.len() > 1))
         .map(|chain| Stroke {
             points: stepped(chain).map(|p| StrokePoint { place: p.place, width: width(&p) }).collect(),
             closed: chain.closed,
         })
         .collect();
     Layer { name: name.to_owned(), pen, strokes }
-}
-
-/// Length of a chain in px; 0 for a dot.
-fn length(chain: &Chain) -> f64 {
-    chain.points.windows(2).map(|w| w[0].place.distance(w[1].place)).sum()
 }
 
 /// The chain's points with others between them, so that widths can change at least every [`STEP`] px.

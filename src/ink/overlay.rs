@@ -6,7 +6,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{Chain, ChainPoint, InkRaster, Kind, Line};
+use super::{Chain, ChainPoint, InkRaster, Kind, Line, Pixel};
 use crate::view::Camera;
 
 /// How much nearer than a line the cover must be to hide it, as a share of the distance.
@@ -29,13 +29,7 @@ pub enum Cover {
 /// The visible parts of a polyline, given in metres of the (exaggerated) world, as crease chains on the page.
 ///
 /// `near` is the near plane's distance in metres that the raster's depths are made with.
-pub fn project_polyline(
-    points: &[DVec3],
-    camera: &Camera,
-    raster: &InkRaster,
-    near: f64,
-    cover: Cover,
-) -> Vec<Chain> {
+pub fn project_polyline(points: &[DVec3], camera: &Camera, raster: &InkRaster, near: f64, cover: Cover) -> Vec<Chain> {
     let mut chains = Vec::new();
     let mut run: Vec<ChainPoint> = Vec::new();
     for segment in points.windows(2) {
@@ -117,7 +111,7 @@ fn samples(a: (DVec2, f64), b: (DVec2, f64)) -> Vec<ChainPoint> {
 fn hidden(raster: &InkRaster, point: ChainPoint) -> bool {
     let (column, row) = (point.place.x.floor() as i64, point.place.y.floor() as i64);
     let around = [(0, 0), (1, 0), (-1, 0), (0, 1), (0, -1)].map(|(dx, dy)| raster.at(column + dx, row + dy));
-    let shown = around.into_iter().flatten().filter(|p| p.kind() != Kind::Sky || p.depth() == 0.0);
-    let farthest = shown.map(|p| f64::from(p.depth())).min_by(f64::total_cmp);
+    let depth = |p: Pixel| if p.kind() == Kind::Sky { 0.0 } else { f64::from(p.depth()) };
+    let farthest = around.into_iter().flatten().map(depth).min_by(f64::total_cmp);
     farthest.is_some_and(|depth| depth > f64::from(point.depth) * (1.0 + COVER_TOLERANCE))
 }

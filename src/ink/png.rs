@@ -2,7 +2,7 @@
 //!
 //! Method: a stroke is outlined as one tapered quad a segment with wedges or discs at its joints, all wound the same way,
 //! and a layer's outlines are filled at once by the non-zero rule: neither joints nor junctions are painted twice. The
-//! page is filled in tiles, at [`SCALE`] times its resolution and then averaged, since an anti-aliased fill knows four
+//! page is filled in tiles, at four times its resolution and then averaged, since an anti-aliased fill knows four
 //! steps across a pixel only, too few for far lines of half a pixel; pages may be of any size.
 //!
 //! Cost: tiles with ink, about 1 ms each and core. Does not handle: opacity of the paper (it is painted over white).

@@ -10,8 +10,9 @@
 //! ```
 //!
 //! A chunk is 32 x 32 lattice quads at its level, in 4 x 4 blocks of 8 x 8 quads. Facet `local` of a chunk is
-//! `block * 128 + quad in block * 2 + facet of quad`, both row-major, so that a block's facing bits are four words in a
-//! row. A facet's ID in a frame is `slot * 2048 + local`.
+//! `block * 128 + quad in block * 2 + facet of quad`, blocks row by row, quads of a block column by column: a block's
+//! facing bits are four words in a row, and a column of 8 quads is what one invocation works off, vertex by vertex. A
+//! facet's ID in a frame is `slot * 2048 + local`.
 
 use crate::dem::Dem;
 use crate::error::{Error, Result};
@@ -139,8 +140,8 @@ impl Lattice {
     pub fn facet(&self, id: u32) -> [LatticePoint; 3] {
         let chunk = self.chunks[(id / CHUNK_FACETS) as usize];
         let (block, quad) = (id % CHUNK_FACETS / 128, id % 128 / 2);
-        let column = block % 4 * 8 + quad % 8;
-        let row = block / 4 * 8 + quad / 8;
+        let column = block % 4 * 8 + quad / 8;
+        let row = block / 4 * 8 + quad % 8;
         let at = |dx: u32, dy: u32| LatticePoint {
             x: chunk.origin[0] + (column + dx) * chunk.step,
             y: chunk.origin[1] + (row + dy) * chunk.step,

@@ -1,5 +1,6 @@
 //! The smooth surface: vertex normals on the CPU, PN-triangle patches, and the integer lattice that names facets.
 
+pub mod bounds;
 pub mod lattice;
 pub mod normals;
 pub mod patch;

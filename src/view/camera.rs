@@ -55,4 +55,33 @@ impl Camera {
         let d = (place - centre) / self.focal();
         forward + right * d.x - up * d.y
     }
+
+    /// The page's map projection as two inward normals in the map (x east, y north): a direction v is on the page only
+    /// where both n . v >= 0. `None` where the projection is no wedge of less than half the horizon. A pixel of margin.
+    pub fn wedge(&self) -> Option<[DVec2; 2]> {
+        let [right, up, forward] = self.axes();
+        let (width, height) = (f64::from(self.width), f64::from(self.height));
+        let tangents = DVec2::new(width / 2.0 + 1.0, height / 2.0 + 1.0) / self.focal();
+        let sees = |d: DVec3| {
+            let w = d.dot(forward);
+            w > 0.0 && d.dot(right).abs() <= tangents.x * w && d.dot(up).abs() <= tangents.y * w
+        };
+        if sees(DVec3::Z) || sees(DVec3::NEG_Z) {
+            return None;
+        }
+        let ahead = self.azimuth.to_radians();
+        let corners = [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)];
+        let angles = corners.map(|(x, y)| {
+            let d = forward + right * (tangents.x * x) + up * (tangents.y * y);
+            let angle = d.x.atan2(d.y) - ahead;
+            angle.sin().atan2(angle.cos())
+        });
+        let low = angles.into_iter().fold(f64::INFINITY, f64::min);
+        let high = angles.into_iter().fold(f64::NEG_INFINITY, f64::max);
+        if high - low > 3.1 {
+            return None;
+        }
+        let normal = |angle: f64| DVec2::new((ahead + angle).cos(), -(ahead + angle).sin());
+        Some([normal(low), -normal(high)])
+    }
 }

@@ -1,0 +1,452 @@
+//! Ink: from pixels to strokes, on rasters made here.
+
+use std::f64::consts::TAU;
+
+use glam::{DVec2, DVec3};
+use hachure::error::Error;
+use hachure::ink::{
+    Chain, Cover, Drawing, InkRaster, Kind, Layer, Line, Output, Pen, Pixel, Recession, Stroke, StrokePoint, Style,
+    draw, project_polyline, smooth, stroke, trace, write_mask, write_png,
+};
+use hachure::view::Camera;
+
+const TOLERANCE: f64 = 0.6;
+
+/// A raster of cover at depth 0.01 with ink wherever `ink` gives a kind and a depth for column and row.
+fn raster(width: u32, height: u32, ink: impl Fn(i64, i64) -> Option<(Kind, f32)>) -> InkRaster {
+    let places = (0..i64::from(height)).flat_map(|y| (0..i64::from(width)).map(move |x| (x, y)));
+    let pixel = |(x, y)| {
+        let (kind, depth) = ink(x, y).unwrap_or((Kind::Cover, 0.01));
+        Pixel::new(kind, DVec2::ZERO, depth)
+    };
+    InkRaster { width, height, pixels: places.map(pixel).collect() }
+}
+
+/// A raster from rows of text: `#` and digits are silhouette (a digit d at depth 1 / 2^d), `b` is border.
+fn picture(rows: &[&str]) -> InkRaster {
+    let at = |x: i64, y: i64| match rows[y as usize].as_bytes()[x as usize] {
+        b'#' => Some((Kind::Silhouette, 1.0)),
+        b'b' => Some((Kind::Border, 1.0)),
+        d @ b'0'..=b'9' => Some((Kind::Silhouette, 0.5_f32.powi(i32::from(d - b'0')))),
+        _ => None,
+    };
+    raster(rows[0].len() as u32, rows.len() as u32, at)
+}
+
+/// A raster of silhouette pixels nearest to a line y(x).
+fn graph_of(width: u32, height: u32, y: impl Fn(f64) -> f64) -> InkRaster {
+    raster(width, height, |column, row| {
+        (y(column as f64 + 0.5).floor() as i64 == row).then_some((Kind::Silhouette, 1.0))
+    })
+}
+
+/// Largest distance of an ink pixel's centre from the nearest chain point, px.
+fn farthest_ink(raster: &InkRaster, chains: &[Chain]) -> f64 {
+    let centre = |i: usize| DVec2::new((i as u32 % raster.width) as f64, (i as u32 / raster.width) as f64) + 0.5;
+    let points: Vec<DVec2> = chains.iter().flat_map(|c| &c.points).map(|p| p.place).collect();
+    let ink = raster.pixels.iter().enumerate().filter(|(_, p)| p.is_ink()).map(|(i, _)| centre(i));
+    ink.map(|c| points.iter().map(|p| p.distance(c)).fold(f64::INFINITY, f64::min)).fold(0.0, f64::max)
+}
+
+/// Distance of a place from a chain's polyline, px.
+fn distance_to(chain: &Chain, place: DVec2) -> f64 {
+    let closing = chain.closed.then(|| chain.points[0]);
+    let points: Vec<DVec2> = chain.points.iter().chain(&closing).map(|p| p.place).collect();
+    let to = |a: DVec2, b: DVec2| {
+        let t = ((place - a).dot(b - a) / (b - a).length_squared().max(1e-12)).clamp(0.0, 1.0);
+        place.distance(a.lerp(b, t))
+    };
+    points.windows(2).map(|w| to(w[0], w[1])).fold(points[0].distance(place), f64::min)
+}
+
+/// Largest turning angle between two segments of a chain, degrees.
+fn sharpest_turn(chain: &Chain) -> f64 {
+    let points: Vec<DVec2> = chain.points.iter().map(|p| p.place).collect();
+    points.windows(3).map(|w| (w[1] - w[0]).angle_to(w[2] - w[1]).abs().to_degrees()).fold(0.0, f64::max)
+}
+
+/// A wild but repeatable picture: blobs, speckles and lines.
+fn speckled(share: u64) -> InkRaster {
+    raster(90, 70, |x, y| {
+        let mut h = (x as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ (y as u64).wrapping_mul(0xC2B2_AE3D_27D4_EB4F);
+        h = (h ^ (h >> 29)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        ((h >> 33) % 100 < share).then_some((Kind::Silhouette, 1.0))
+    })
+}
+
+#[test]
+fn pixel_packs_kind_place_and_depth() {
+    for kind in [Kind::Sky, Kind::Cover, Kind::Silhouette, Kind::Border] {
+        let pixel = Pixel::new(kind, DVec2::new(-1.5, 0.734375), 0.25);
+        assert_eq!((pixel.kind(), pixel.place(), pixel.depth()), (kind, DVec2::new(-1.5, 0.734375), 0.25));
+        assert_eq!(pixel.is_ink(), matches!(kind, Kind::Silhouette | Kind::Border));
+        assert_eq!(pixel.distance(2.0), 8.0);
+    }
+    let words = [2 | 0xA0 << 8 | 47 << 16, 0.25_f32.to_bits()];
+    assert_eq!(
+        bytemuck::cast_slice::<u32, Pixel>(&words),
+        [Pixel::new(Kind::Silhouette, DVec2::new(-1.5, 0.734375), 0.25)]
+    );
+}
+
+#[test]
+fn mask_has_one_bit_a_pixel_and_ink_is_0() {
+    let raster = picture(&["#..b.....#.", "...........", "..........#"]);
+    let mut file = Vec::new();
+    write_mask(&raster, &mut file).unwrap();
+    assert_eq!((file[24], file[25]), (1, 0), "bit depth and colour type of the PNG header");
+    let read = image::load_from_memory(&file).unwrap().to_luma8();
+    assert_eq!(read.dimensions(), (11, 3));
+    let expected: Vec<u8> = raster.pixels.iter().map(|p| if p.is_ink() { 0 } else { 255 }).collect();
+    assert_eq!(read.into_raw(), expected);
+    assert!(write_mask(&InkRaster { width: 0, height: 0, pixels: vec![] }, Vec::new()).is_err());
+}
+
+#[test]
+fn a_line_is_one_chain_and_a_gap_cuts_it() {
+    let line = graph_of(80, 40, |x| 5.0 + 0.3 * x);
+    assert_eq!(trace(&line).len(), 1);
+    // One missing pixel is bridged, five are not.
+    let without = |gap: std::ops::Range<i64>| {
+        let mut cut = line.clone();
+        let width = i64::from(cut.width);
+        for (i, pixel) in cut.pixels.iter_mut().enumerate() {
+            if gap.contains(&(i as i64 % width)) {
+                *pixel = Pixel::new(Kind::Cover, DVec2::ZERO, 0.01);
+            }
+        }
+        cut
+    };
+    assert_eq!(trace(&without(40..41)).len(), 1);
+    assert_eq!(trace(&without(40..45)).len(), 2);
+    // The coverage check notices a chain that lacks a run.
+    assert!(farthest_ink(&line, &trace(&line)) <= 1.5);
+    assert!(farthest_ink(&line, &trace(&without(40..45))) > 1.5);
+}
+
+#[test]
+fn nothing_inked_is_lost() {
+    for share in [0, 1, 10, 30, 50, 70, 90, 97, 100] {
+        let raster = speckled(share);
+        let chains = trace(&raster);
+        assert!(farthest_ink(&raster, &chains) <= 1.5, "{share} % ink");
+        assert_eq!(chains, trace(&raster), "{share} % ink: another run, another result");
+        assert!(chains.iter().all(|c| !c.points.is_empty()));
+    }
+}
+
+#[test]
+fn rings_close_and_lone_pixels_are_dots() {
+    let ring = raster(60, 60, |x, y| {
+        let r = ((x as f64 - 30.0).powi(2) + (y as f64 - 30.0).powi(2)).sqrt();
+        ((r - 20.0).abs() < 0.7).then_some((Kind::Silhouette, 1.0))
+    });
+    let chains = trace(&ring);
+    assert_eq!(chains.iter().map(|c| c.closed).collect::<Vec<_>>(), [true]);
+    let dot = trace(&picture(&["...", ".#.", "..."]));
+    assert_eq!((dot.len(), dot[0].points.len(), dot[0].points[0].place), (1, 1, DVec2::new(1.5, 1.5)));
+    let style = Style::for_page(3);
+    assert!(draw(&picture(&["...", ".#.", "..."]), &style).layers.is_empty());
+    assert_eq!(draw(&picture(&["...", ".#.", "..."]), &Style { dots: true, ..style }).layers[0].strokes.len(), 1);
+}
+
+#[test]
+fn chains_run_through_the_places_of_their_pixels() {
+    let y = |x: f64| 5.0 + 0.3 * x;
+    let mut line = graph_of(80, 40, y);
+    for (i, pixel) in line.pixels.iter_mut().enumerate().filter(|(_, p)| p.is_ink()) {
+        let centre = DVec2::new((i % 80) as f64 + 0.5, (i / 80) as f64 + 0.5);
+        *pixel = Pixel::new(Kind::Silhouette, DVec2::new(0.0, y(centre.x) - centre.y), 1.0);
+    }
+    let off = |c: &Chain| c.points.iter().map(|p| (p.place.y - y(p.place.x)).abs()).fold(0.0, f64::max);
+    let raw = trace(&line);
+    assert!(off(&raw[0]) <= 0.5 / 64.0 && off(&smooth(&raw, TOLERANCE)[0]) < 0.01);
+    assert!(off(&trace(&graph_of(80, 40, y))[0]) > 0.3, "without places the line is pixel stairs");
+}
+
+#[test]
+fn lines_two_pixels_apart_stay_apart() {
+    let chains = trace(&picture(&["............", ".##########.", "............", "##########..", "............"]));
+    assert_eq!(chains.len(), 2);
+    for chain in chains {
+        assert!(chain.points.iter().all(|p| p.place.y == chain.points[0].place.y));
+    }
+}
+
+#[test]
+fn slanting_lines_that_touch_by_corners_have_no_rungs() {
+    let ladder = |gap: i64| {
+        let on = move |x: i64, y: i64| x == y + 1 + gap || (x == y + 1 && (6..24).contains(&y));
+        raster(40, 30, move |x, y| on(x, y).then_some((Kind::Silhouette, 1.0)))
+    };
+    for gap in [2, 4] {
+        let chains = trace(&ladder(gap));
+        assert_eq!(chains.len(), 2, "{gap} px apart");
+        assert!(chains.iter().all(|c| c.points.len() >= 18), "{gap} px apart");
+        assert!(farthest_ink(&ladder(gap), &chains) <= 1.5);
+    }
+}
+
+#[test]
+fn a_hole_of_one_pixel_is_no_loop() {
+    let pierced = picture(&["....###....", "#####.#####", "....###...."]);
+    assert_eq!(trace(&pierced).len(), 1);
+    assert!(farthest_ink(&pierced, &trace(&pierced)) <= 1.5);
+    let loops = picture(&["....#####....", "#####...#####", "....#####...."]);
+    assert!(trace(&loops).len() > 1);
+}
+
+#[test]
+fn the_near_line_runs_through_where_a_far_one_ends() {
+    // Straight on from the left lies the far branch; the near line bends by 45 degrees and yet runs through.
+    let junction = picture(&[
+        ".......................",
+        "00000000000333333333333",
+        "...........0...........",
+        "............0..........",
+        ".............0.........",
+        "..............0........",
+        "...............0.......",
+        "................0......",
+    ]);
+    let chains = trace(&junction);
+    assert_eq!(chains.len(), 2);
+    let is_near = |c: &&Chain| c.points.iter().filter(|p| p.depth == 1.0).count() > 10;
+    let near = chains.iter().find(is_near).unwrap();
+    assert!(near.points.iter().any(|p| p.place.x < 1.0) && near.points.iter().any(|p| p.place.y > 7.0));
+    let far = chains.iter().find(|c| !is_near(c)).unwrap();
+    let meets = |chains: &[Chain]| {
+        let ends = |c: &Chain| [c.points[0].place, c.points[c.points.len() - 1].place];
+        let (long, short) = (&chains[0], &chains[1]);
+        ends(short).into_iter().map(|end| distance_to(long, end)).fold(f64::INFINITY, f64::min)
+    };
+    assert_eq!(meets(&[near.clone(), far.clone()]), 0.0);
+    let smoothed = smooth(&[near.clone(), far.clone()], TOLERANCE);
+    assert!(meets(&smoothed) < 0.05, "strokes connect after smoothing: {} px", meets(&smoothed));
+    // The same picture at one depth: straight on is the better way.
+    let mut level = junction.clone();
+    level.pixels.iter_mut().filter(|p| p.is_ink()).for_each(|p| *p = Pixel::new(p.kind(), p.place(), 1.0));
+    let straight = |c: &Chain| c.points.iter().all(|p| p.place.y < 3.0) && c.points.len() > 20;
+    assert!(trace(&level).iter().any(straight) && !chains.iter().any(straight));
+}
+
+#[test]
+fn a_jump_in_depth_ends_a_line() {
+    assert_eq!(trace(&picture(&["0000000000000000000000"])).len(), 1);
+    let chains = trace(&picture(&["0000000000033333333333"]));
+    assert_eq!(chains.len(), 2);
+    assert_eq!(chains[0].points.last(), chains[1].points.first());
+}
+
+#[test]
+fn border_and_silhouette_go_to_layers_of_their_own() {
+    let raster = picture(&["####################bbbbbbbbbbbbbbbbbbbb", "........................................"]);
+    let drawing = draw(&raster, &Style::for_page(1280));
+    let names: Vec<&str> = drawing.layers.iter().map(|l| l.name.as_str()).collect();
+    assert_eq!(names, ["border", "silhouette"]);
+    assert!(drawing.layers[0].pen.width < drawing.layers[1].pen.width);
+    assert!(drawing.layers.iter().all(|l| l.strokes.len() == 1));
+}
+
+#[test]
+fn stairs_come_out_straight() {
+    let raw = trace(&graph_of(200, 80, |x| 5.0 + 0.3 * x));
+    let chain = &smooth(&raw, TOLERANCE)[0];
+    assert!(raw[0].points.iter().all(|p| distance_to(chain, p.place) <= TOLERANCE));
+    let off = chain.points.iter().map(|p| (p.place.y - 5.0 - 0.3 * p.place.x).abs()).fold(0.0, f64::max);
+    assert!(off < 0.35, "{off} px off the true line");
+    assert!(sharpest_turn(chain) < 3.0, "turns by {}", sharpest_turn(chain));
+    assert!(sharpest_turn(&raw[0]) > 40.0, "the stairs themselves are not smooth");
+}
+
+#[test]
+fn circles_come_out_round() {
+    let centre = DVec2::new(60.3, 60.1);
+    for radius in [15.0, 50.0] {
+        let raster = raster(120, 120, |x, y| {
+            let r = DVec2::new(x as f64 + 0.5, y as f64 + 0.5).distance(centre);
+            ((r - radius).abs() < 0.6).then_some((Kind::Silhouette, 1.0))
+        });
+        let raw = trace(&raster);
+        let smoothed = smooth(&raw, TOLERANCE);
+        assert_eq!((smoothed.len(), smoothed[0].closed), (1, true));
+        let chain = &smoothed[0];
+        assert!(raw[0].points.iter().all(|p| distance_to(chain, p.place) <= TOLERANCE));
+        let off = chain.points.iter().map(|p| (p.place.distance(centre) - radius).abs()).fold(0.0, f64::max);
+        assert!(off < TOLERANCE + 0.3, "radius {radius}: {off} px off the circle");
+        assert!(sharpest_turn(chain) < 16.0, "radius {radius}: turns by {}", sharpest_turn(chain));
+        assert!(sharpest_turn(&raw[0]) > 40.0);
+    }
+}
+
+#[test]
+fn smoothing_keeps_its_tolerance_on_anything() {
+    for (share, tolerance) in [(20, 0.6), (50, 0.3), (80, 1.0), (50, 0.001)] {
+        let raw = trace(&speckled(share));
+        for (chain, smoothed) in raw.iter().zip(smooth(&raw, tolerance)) {
+            let off = chain.points.iter().map(|p| distance_to(&smoothed, p.place)).fold(0.0, f64::max);
+            assert!(off <= tolerance + 1e-9, "{share} % ink: {off} px");
+        }
+    }
+}
+
+#[test]
+fn lines_thin_with_distance_and_in_crowds() {
+    let rows: Vec<i64> = vec![5, 25, 45];
+    let depths = [1.0, 0.1, 0.01];
+    let single = raster(200, 60, |_, y| rows.iter().position(|&r| r == y).map(|i| (Kind::Silhouette, depths[i])));
+    let layer = &draw(&single, &Style::for_page(200)).layers[0];
+    let widths: Vec<f64> = layer.strokes.iter().map(|s| s.points[s.points.len() / 2].width).collect();
+    assert!((widths[0] - 1.0).abs() < 0.01 && (widths[1] - 0.675).abs() < 0.01 && (widths[2] - 0.35).abs() < 0.01);
+    let crowd = raster(200, 60, |_, y| (y % 2 == 0).then_some((Kind::Silhouette, 1.0)));
+    let crowded = &draw(&crowd, &Style::for_page(200)).layers[0].strokes[10].points[3];
+    assert!(crowded.width < 0.8, "{}", crowded.width);
+}
+
+/// A camera towards north, and a raster whose rows from `crest` down show a near surface.
+fn ridge(crest: u32) -> (Camera, InkRaster) {
+    let (width, height) = (100, 80);
+    let camera = Camera { eye: DVec3::ZERO, azimuth: 0.0, altitude: 0.0, fov: 60.0, width, height };
+    let near_rows = |row: i64| row >= i64::from(crest);
+    let pixels = raster(width, height, |_, row| near_rows(row).then_some((Kind::Cover, 0.01)));
+    let sky = |(i, p): (usize, &Pixel)| {
+        if near_rows((i / 100) as i64) { *p } else { Pixel::new(Kind::Sky, DVec2::ZERO, 0.0) }
+    };
+    (camera, InkRaster { pixels: pixels.pixels.iter().enumerate().map(sky).collect(), ..pixels })
+}
+
+#[test]
+fn cover_hides_what_lies_behind_it() {
+    let near = 1.0;
+    let (camera, raster) = ridge(40);
+    // From high above the crest to far below it, 1 km behind the eye's ridge of 100 m.
+    let line = [DVec3::new(-100.0, 1000.0, 300.0), DVec3::new(100.0, 1000.0, -300.0)];
+    let shown = project_polyline(&line, &camera, &raster, near, Cover::On);
+    let all = project_polyline(&line, &camera, &raster, near, Cover::Off);
+    assert_eq!((shown.len(), all.len()), (1, 1));
+    assert_eq!(shown[0].points, all[0].points[..shown[0].points.len()], "the visible part is unchanged");
+    let lowest = |chains: &[Chain]| chains[0].points.iter().map(|p| p.place.y).fold(0.0, f64::max);
+    assert!((lowest(&shown) - 41.0).abs() <= 1.0, "{}", lowest(&shown));
+    assert!(lowest(&all) > 60.0);
+    assert!(all[0].points.windows(2).all(|w| w[0].place.distance(w[1].place) <= 0.5 + 1e-9));
+    // On the surface or before it nothing is hidden, a little behind it everything below the crest is.
+    let at = |distance: f64| line.map(|p| DVec3::new(p.x / 10.0, distance, p.z / 10.0));
+    let length = |distance| {
+        let chains = project_polyline(&at(distance), &camera, &raster, near, Cover::On);
+        chains.iter().map(|c| c.points.len()).sum::<usize>()
+    };
+    assert!(length(100.0) == length(99.9) && length(100.3) >= length(100.0) - 2);
+    assert!(length(101.0) < length(100.0) * 6 / 10);
+}
+
+#[test]
+fn polylines_are_clipped_to_the_near_plane_and_the_page() {
+    let (camera, raster) = ridge(80);
+    let through_eye = [DVec3::new(5.0, -1e6, 1.0), DVec3::new(5.0, 1e6, 1.0)];
+    let chains = project_polyline(&through_eye, &camera, &raster, 1.0, Cover::Off);
+    assert_eq!(chains.len(), 1);
+    let inside = |p: DVec2| (-1e-6..=100.0 + 1e-6).contains(&p.x) && (-1e-6..=80.0 + 1e-6).contains(&p.y);
+    assert!(chains[0].points.iter().all(|p| inside(p.place) && p.depth <= 1.0));
+    let behind = [DVec3::new(0.0, -10.0, 0.0), DVec3::new(1.0, -5.0, 0.0)];
+    assert!(project_polyline(&behind, &camera, &raster, 1.0, Cover::Off).is_empty());
+    assert!(project_polyline(&[], &camera, &raster, 1.0, Cover::Off).is_empty());
+    // Off the page and back on it: two chains, not one across the margin.
+    let out_and_in = [(-5.0, 0.0), (-99.0, 0.0), (-99.0, 5.0), (-5.0, 5.0)].map(|(x, z)| DVec3::new(x, 20.0, z));
+    assert_eq!(project_polyline(&out_and_in, &camera, &raster, 1.0, Cover::Off).len(), 2);
+    let layer = stroke(&chains, Line::Crease, &Style::for_page(100), &raster, Recession::of(&raster));
+    assert_eq!((layer.name.as_str(), layer.strokes.len()), ("crease", 1));
+}
+
+/// The page of one layer in black on white, gray values by row and column.
+fn page(width: u32, height: u32, pen: f64, strokes: Vec<Stroke>) -> image::GrayImage {
+    let pen = Pen { width: pen, colour: [0, 0, 0, 255] };
+    let layers = vec![Layer { name: "ink".into(), pen, strokes }];
+    let mut file = Vec::new();
+    write_png(&Drawing { width, height, paper: [255; 4], layers }, &mut file).unwrap();
+    image::load_from_memory(&file).unwrap().to_luma8()
+}
+
+/// A stroke of full width through these places.
+fn through(places: &[(f64, f64)]) -> Stroke {
+    let point = |&(x, y): &(f64, f64)| StrokePoint { place: DVec2::new(x, y), width: 1.0 };
+    Stroke { points: places.iter().map(point).collect(), closed: false }
+}
+
+/// Ink on a page in whole black pixels.
+fn ink_of(page: &image::GrayImage) -> f64 {
+    page.pixels().map(|p| 1.0 - f64::from(p.0[0]) / 255.0).sum()
+}
+
+#[test]
+fn strokes_have_their_width_without_beads_gaps_or_seams() {
+    // Across tile borders, with many joints, thinner than a pixel.
+    for (pen, joints) in [(0.6, 2), (0.6, 300), (3.0, 300)] {
+        let places: Vec<(f64, f64)> = (0..joints)
+            .map(|i| 10.0 + 280.0 * f64::from(i) / f64::from(joints - 1))
+            .map(|x| (x, 100.0 + x / 7.0))
+            .collect();
+        let page = page(300, 200, pen, vec![through(&places)]);
+        let column = |x: u32| (0..200).map(|y| 1.0 - f64::from(page.get_pixel(x, y).0[0]) / 255.0).sum::<f64>();
+        let expected = pen * (1.0_f64 + 1.0 / 49.0).sqrt();
+        for x in 20..280 {
+            assert!((column(x) - expected).abs() < 0.05, "pen {pen}, {joints} joints, column {x}: {}", column(x));
+        }
+    }
+}
+
+#[test]
+fn junctions_are_not_darker_and_dots_are_round() {
+    let cross = page(64, 64, 0.8, vec![through(&[(5.0, 32.5), (59.0, 32.5)]), through(&[(32.5, 5.0), (32.5, 59.0)])]);
+    let (arm, heart) = (cross.get_pixel(20, 32).0[0], cross.get_pixel(32, 32).0[0]);
+    assert!(arm > 40 && heart < arm, "the pixel of the crossing is fuller, {heart} against {arm}");
+    let twice = page(64, 64, 0.8, vec![through(&[(5.0, 32.5), (59.0, 32.5)]), through(&[(5.0, 32.5), (40.0, 32.5)])]);
+    assert_eq!(twice.get_pixel(20, 32), twice.get_pixel(50, 32), "a line drawn twice is not darker");
+    let dot = ink_of(&page(20, 20, 6.0, vec![through(&[(10.3, 9.6)])]));
+    assert!((dot - TAU / 2.0 * 9.0).abs() < 0.5, "{dot}");
+    assert_eq!(ink_of(&page(20, 20, 6.0, vec![])), 0.0);
+}
+
+#[test]
+fn closed_strokes_and_huge_pages_are_drawn_whole() {
+    let corners = (0..40).map(|i| DVec2::from_angle(TAU * f64::from(i) / 40.0) * 20.0 + 32.0);
+    let points = corners.map(|place| StrokePoint { place, width: 1.0 }).collect();
+    let ring = ink_of(&page(64, 64, 2.0, vec![Stroke { points, closed: true }]));
+    assert!((ring - TAU * 20.0 * 2.0).abs() < 3.0, "{ring}");
+    let wide = page(40_000, 4, 1.0, vec![through(&[(-10.0, 2.5), (40_010.0, 2.5)])]);
+    assert!(wide.enumerate_pixels().all(|(_, y, p)| (p.0[0] < 5) == (y == 2)));
+    assert!(write_png(&Drawing { width: 0, height: 5, paper: [255; 4], layers: vec![] }, Vec::new()).is_err());
+}
+
+#[test]
+fn outputs_appear_whole_or_not_at_all() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("out.png");
+    let files = || std::fs::read_dir(folder.path()).unwrap().count();
+    let output = Output::create(&path).unwrap();
+    assert!(!path.exists());
+    output.commit(|file| file.write_all(b"whole")).unwrap();
+    assert_eq!((std::fs::read(&path).unwrap(), files()), (b"whole".to_vec(), 1));
+    let broken = Output::create(&path).unwrap().commit(|file| {
+        file.write_all(b"half")?;
+        Err(std::io::Error::other("the disk is full"))
+    });
+    assert!(matches!(broken, Err(Error::Output { path: p, what }) if p == path && what == "the disk is full"));
+    drop(Output::create(&path).unwrap());
+    assert_eq!((std::fs::read(&path).unwrap(), files()), (b"whole".to_vec(), 1));
+    for wrong in [folder.path().to_owned(), folder.path().join("missing/out.png"), "".into(), path.join("out.png")] {
+        assert!(matches!(Output::create(&wrong), Err(Error::Output { .. })), "{}", wrong.display());
+    }
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        let plain = folder.path().join("plain");
+        std::fs::write(&plain, "").unwrap();
+        let mode = |path: &std::path::Path| std::fs::metadata(path).unwrap().permissions().mode();
+        assert_eq!(mode(&path), mode(&plain), "permissions of any new file");
+        let link = folder.path().join("link");
+        std::os::unix::fs::symlink(&plain, &link).unwrap();
+        Output::create(&link).unwrap().commit(|file| file.write_all(b"linked")).unwrap();
+        assert_eq!(std::fs::read(&plain).unwrap(), b"linked", "a link stays a link");
+        assert!(Output::create(std::path::Path::new("/dev/null")).is_err(), "a device stays a device");
+    }
+}
