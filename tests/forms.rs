@@ -76,9 +76,10 @@ impl Form {
     /// The visible contours on the page, and their points about the middle.
     pub fn contours(&self, camera: &Camera) -> (Truth, Vec<DVec3>) {
         let (eye, half) = (about_middle(camera.eye), self.half());
-        let side = 2.0 * half / MAP_CELLS as f64;
-        // Half a step off the samples: an apex stands on a sample and has no gradient.
-        let at = |i: usize, j: usize| DVec2::new(i as f64 + 0.37, j as f64 + 0.53) * side - half;
+        // A little beyond the DEM, and off the samples: an apex stands on a sample and has no gradient.
+        let side = 2.0 * half / (MAP_CELLS - 3) as f64;
+        let at = |i: usize, j: usize| DVec2::new(i as f64 - 0.63, j as f64 - 0.47) * side - half;
+        let on_map = |p: DVec2| p.abs().max_element() <= half;
         let sign: Vec<Vec<bool>> =
             (0..MAP_CELLS).map(|j| (0..MAP_CELLS).map(|i| self.facing(at(i, j), eye) > 0.0).collect()).collect();
         let mut truth = Truth::default();
@@ -92,7 +93,7 @@ impl Form {
                 .collect();
             for pair in crossings.chunks_exact(2) {
                 self.pieces(pair[0], pair[1], camera, &mut |a, b, middle| {
-                    if self.sees(eye, middle, &|p| p.abs().max_element() <= half) {
+                    if on_map(middle.truncate()) && self.sees(eye, middle, &on_map) {
                         truth.pieces.push([a, b]);
                         points.push(middle);
                     }

@@ -7,4 +7,5 @@ mod forms;
 mod ink;
 mod metrics;
 mod scenes;
+mod silhouettes;
 mod tolerances;

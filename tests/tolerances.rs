@@ -31,15 +31,31 @@ pub const TRUTH_PIECE_PX: f64 = 0.25;
 /// Example: on a sphere of 400 m radius 1e-6 are 0.4 mm.
 pub const CLOSED_FORM: f64 = 1e-6;
 
+/// The same distance for wide toward-away, which looks at the nearest away depth of the 3 x 3 block and so lengthens a
+/// line's ends by a pixel, 1.5 + sqrt 2 px.
+///
+/// Example: a line ends in the middle of a pixel. The next but one along the diagonal (2.83 px) may be ink, no other.
+pub const WIDE_REACH_PX: f64 = 2.915;
+
+/// Least share of ink within [`REACH_PX`] for wide toward-away; the other methods have no ink beyond.
+///
+/// Example: of 460 inked pixels two at either end of a line may be its lengthening.
+pub const WIDE_PRECISION: f64 = 0.99;
+
+/// Least precision and recall of adjacency by corners on coarse facets.
+///
+/// Example: of 925 inked pixels 185 may lie beside the line, where facets are seen edge-on.
+pub const ADJACENCY_CORNER: [f64; 2] = [0.8, 0.95];
+
 /// Mean distance of the walk's sub-pixel places from the true line, px.
 ///
-/// Example: pixel centres lie 0.39 px off on average; places 0.13 px off would draw a line three times as true.
-pub const PLACE_MEAN_PX: f64 = 0.25;
+/// Example: places are kept in 1/64 px; rounding alone is 0.004 px off on average.
+pub const PLACE_MEAN_PX: f64 = 0.02;
 
 /// Least ratio of the mean distance of pixel centres to that of sub-pixel places.
 ///
-/// Example: centres 0.40 px off, places at most 0.26 px off.
-pub const PLACE_GAIN: f64 = 1.5;
+/// Example: centres 0.66 px off (lines are two pixels wide), places at most 0.033 px off.
+pub const PLACE_GAIN: f64 = 20.0;
 
 /// How far inked pixels may be from the published or measured number, as a share of it.
 ///
