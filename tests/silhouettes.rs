@@ -44,19 +44,20 @@ fn west_temple_has_the_published_ink() {
     assert!(!near(count_ink(&draw(&surface, &camera, level(2), method, Border::Off).raster), 4_571));
 }
 
-/// A plain of 10 m cells, 64 columns wide and `rows` long; at its far end, if `hill`, a hill that hides its own back.
+/// A plain of 10 m cells, 65 columns wide and `rows` long; 600 m from its near end, if `hill`, a hill. At level 4 a
+/// width and length of whole blocks: a block that the DEM's edge cuts is walked quad by quad.
 fn plain(rows: usize, hill: bool) -> Surface {
     let height = |c: usize, r: usize| {
-        let d = DVec2::new(c as f64 - 32.0, r as f64 - 30.0).length_squared();
-        if hill { (40.0 * (-d / 50.0).exp()) as f32 } else { 0.0 }
+        let d = DVec2::new(c as f64 - 32.0, r as f64 - (rows - 60) as f64).length_squared();
+        if hill { (30.0 * (-d / 20.0).exp()) as f32 } else { 0.0 }
     };
-    let heights = (0..64 * rows).map(|i| height(i % 64, i / 64)).collect();
-    Surface::new(Dem::from_heights(64, DVec2::splat(10.0), MIDDLE, heights))
+    let heights = (0..65 * rows).map(|i| height(i % 65, i / 65)).collect();
+    Surface::new(Dem::from_heights(65, DVec2::splat(10.0), MIDDLE, heights))
 }
 
 #[test]
 fn a_walk_over_a_plain_leaps_and_leaves_it_blank() {
-    let rows = 600;
+    let rows = 601;
     let eye = MIDDLE.extend(0.0) + DVec3::new(320.0, -10.0 * (rows as f64 + 20.0), 12.0);
     let camera = Camera { eye, azimuth: 0.0, altitude: 0.0, fov: 60.0, width: 512, height: 192 };
     let flat = draw(&plain(rows, false), &camera, level(4), Method::Walk, Border::Off);
@@ -65,17 +66,22 @@ fn a_walk_over_a_plain_leaps_and_leaves_it_blank() {
     let surface = plain(rows, true);
     let frame = draw(&surface, &camera, level(4), Method::Walk, Border::Off);
     let ink = centres(&frame.raster, Kind::Silhouette);
-    let foot = camera.project(MIDDLE.extend(0.0) + DVec3::new(320.0, -500.0, 0.0)).0;
+    let foot = |x: f64| camera.project(MIDDLE.extend(0.0) + DVec3::new(320.0 + x, -10.0 * (rows - 60) as f64, 0.0)).0;
+    let (west, east) = (foot(-100.0), foot(100.0));
     assert!(ink.len() > 20, "the hill has a silhouette");
-    assert!(ink.iter().all(|p| p.y < foot.y + 1.0 && (p.x - foot.x).abs() < 60.0), "ink on the plain");
+    assert!(ink.iter().all(|p| p.y < west.y && p.x > west.x && p.x < east.x), "ink on the plain");
     // Facets between the two farthest neighbouring rows of pixels on the plain, along the middle column.
-    let horizon = f64::from(camera.height) / 2.0;
     let row = |k: f64| 12.0 * camera.focal() / (k + 0.5) / 10.0;
     let first = (1..90).map(f64::from).find(|&k| row(k) < rows as f64 - 45.0).expect("a row on the plain");
     let facets = (row(first) - row(first + 1.0)) * 4.0 * 2.0;
-    println!("plain: {facets:.0} facets between rows {first} and {}, longest walk {}", first + 1.0, frame.longest_walk);
-    assert!(horizon > first && facets > 400.0, "the view is not grazing");
-    assert!(frame.longest_walk > 0 && f64::from(frame.longest_walk) * FACETS_A_LEAP <= facets);
+    // And from the hill to the far end of the plain.
+    let beyond = (rows - 60) as f64 * 4.0 * 2.0;
+    let [on_plain, beside_hill] = [flat.longest_walk, frame.longest_walk].map(f64::from);
+    println!("plain: {facets:.0} facets between rows {first} and {}, longest walk {on_plain} nodes", first + 1.0);
+    println!("plain with a hill: {beyond:.0} facets behind it, longest walk {beside_hill} nodes");
+    assert!(facets > 400.0, "the view is not grazing");
+    assert!(on_plain > 0.0 && on_plain * FACETS_A_LEAP <= facets);
+    assert!(beside_hill > 0.0 && beside_hill * FACETS_A_LEAP <= beyond);
 }
 
 #[test]
