@@ -80,7 +80,11 @@ impl Pass {
             layout: None,
             module: &module,
             entry_point: Some(name),
-            compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
+            compilation_options: wgpu::PipelineCompilationOptions {
+                constants: &constants,
+                // Passes read of it only what they wrote.
+                zero_initialize_workgroup_memory: false,
+            },
             cache: None,
         });
         gpu.check()?;
