@@ -8,8 +8,9 @@ struct Queue {
 
 @group(0) @binding(21) var<storage, read_write> out_queue: Queue;
 
-// Beyond this box, in 1/256 px, products of two differences overflow i32.
-const LARGEST_BOX: i32 = 126 * 256;
+// Beyond 126 px products of two differences, in 1/256 px, overflow i32. A column of such boxes would be 16 x 127 x 127
+// turns of the loop; the software driver ends an invocation's loops, all together, after 65 535: 16 x 61 x 61 are fewer.
+const LARGEST_BOX: i32 = 60 * 256;
 // Facets of a column of eight quads.
 const STRIP_FACETS: u32 = 16u;
 

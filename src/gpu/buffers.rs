@@ -118,7 +118,7 @@ impl CameraUniform {
     pub fn new(dem: &Dem, camera: &Camera) -> Result<Self> {
         let place = dem.grid_place(camera.eye.truncate());
         let eye_cell = place.floor();
-        if !(eye_cell.abs().max_element() < f64::from(1 << 22)) {
+        if !camera.eye.is_finite() || eye_cell.abs().max_element() >= f64::from(1 << 22) {
             return Err(Error::flag(
                 "--eye",
                 format!("{:.0},{:.0} is more than 4 million cells from the DEM", camera.eye.x, camera.eye.y),
