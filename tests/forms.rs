@@ -148,7 +148,8 @@ impl Form {
     pub fn deviation(&self, surface: &Surface, level: Level, camera: &Camera) -> f64 {
         let n = (self.samples - 1) * level.subdivisions() as usize + 1;
         let vertex = |i: usize| LatticePoint { y: (i / n) as u32 * level.step(), x: (i % n) as u32 * level.step() };
-        let vertices: Vec<DVec3> = (0..n * n).map(|i| about_middle(surface.position(vertex(i)).expect("no voids"))).collect();
+        let vertices: Vec<DVec3> =
+            (0..n * n).map(|i| about_middle(surface.position(vertex(i)).expect("no voids"))).collect();
         let off = |p: DVec3| {
             let (_, distance) = camera.project(from_middle(p));
             let slope = (self.gradient)(p.truncate()).length_squared();
@@ -158,7 +159,8 @@ impl Form {
         let quads = (0..n - 1).flat_map(|r| (0..n - 1).map(move |c| r * n + c));
         let quad = |i: usize| {
             let [nw, ne, sw, se] = [i, i + 1, i + n, i + n + 1].map(|i| vertices[i]);
-            let middles = [(nw + sw + se) / 3.0, (nw + se + ne) / 3.0, nw.midpoint(se), nw.midpoint(sw), nw.midpoint(ne)];
+            let middles =
+                [(nw + sw + se) / 3.0, (nw + se + ne) / 3.0, nw.midpoint(se), nw.midpoint(sw), nw.midpoint(ne)];
             middles.into_iter().chain([nw, se]).map(off).fold(0.0, f64::max)
         };
         quads.map(quad).fold(0.0, f64::max)

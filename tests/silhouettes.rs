@@ -136,7 +136,11 @@ fn levels_converge() {
         ink[a].iter().filter(|p| !near(p.0)).count() as f64 / ink[a].len() as f64
     };
     let pairs = [(0, 3), (1, 2), (2, 1), (2, 3), (3, 2)];
-    println!("levels 4, 16, 32, 64: {:?} px, strays {:?}", ink.each_ref().map(Vec::len), pairs.map(|(a, b)| strays(a, b)));
+    println!(
+        "levels 4, 16, 32, 64: {:?} px, strays {:?}",
+        ink.each_ref().map(Vec::len),
+        pairs.map(|(a, b)| strays(a, b))
+    );
     for (a, b) in &pairs[1..] {
         assert!(strays(*a, *b) <= LEVEL_STRAYS, "levels {a} and {b} of 4, 16, 32, 64 differ");
     }
