@@ -94,7 +94,7 @@ impl Random {
 
     /// A whole number from 0 to `end - 1`.
     pub fn below(&mut self, end: u32) -> u32 {
-        (u64::from(self.bits()) * u64::from(end) >> 32) as u32
+        ((u64::from(self.bits()) * u64::from(end)) >> 32) as u32
     }
 }
 

@@ -78,6 +78,12 @@ pub const LEVEL_STRAYS: f64 = 0.01;
 /// Example: two neighbouring pixels 200 cells apart at level 4 have 1 600 facets between them: at most 80 nodes.
 pub const FACETS_A_LEAP: f64 = 20.0;
 
+/// Share of border pixels that may lie on the rim where something hides it: a rim is drawn where its pixel or one of the
+/// four beside it shows something farther, so that it runs on for a pixel square to the silhouette, more at a slant.
+///
+/// Example: of 816 border pixels at most 24, six at each of four places where a hill hides the rim.
+pub const HIDDEN_SHARE: f64 = 0.03;
+
 /// What the rasterizer may differ by.
 pub mod raster {
     /// Distance on the page between a vertex of the GPU and its f64 evaluation, px.
