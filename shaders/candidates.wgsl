@@ -2,7 +2,11 @@
 // neighbours, between which a walk could meet an away facet. Most pairs lie in one chunk and are dismissed by its
 // summary; what remains is looked at by the walk itself.
 
+// Pixels for another pass, and the workgroups of 64 that it takes along x, as far as they go.
 struct Candidates {
+    groups_x: atomic<u32>,
+    groups_y: u32,
+    groups_z: u32,
     count: atomic<u32>,
     pixels: array<u32>,
 }
@@ -52,7 +56,11 @@ fn candidates(@builtin(global_invocation_id) invocation: vec3<u32>) {
             | select(0u, 64u, is_open(here, south, slot, summary))
             | select(0u, 128u, is_open(here, south_east, slot, summary));
         if pairs != 0u {
-            out_candidates.pixels[atomicAdd(&out_candidates.count, 1u)] = pixel_index(at) | (pairs << 24u);
+            let n = atomicAdd(&out_candidates.count, 1u);
+            out_candidates.pixels[n] = pixel_index(at) | (pairs << 24u);
+            if n % 64u == 0u {
+                atomicMax(&out_candidates.groups_x, min(n / 64u + 1u, MOST_GROUPS));
+            }
         }
         here = south;
         east = south_east;

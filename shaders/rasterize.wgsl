@@ -1,7 +1,11 @@
 // One invocation a column of eight quads, facet by facet, both sides: each vertex is read once. Small facets are drawn
 // here, large and clipped ones queued.
 
+// Facets for another pass, and the workgroups it takes: one a facet along x, as far as they go.
 struct Queue {
+    groups_x: atomic<u32>,
+    groups_y: u32,
+    groups_z: u32,
     count: atomic<u32>,
     ids: array<u32>,
 }
@@ -15,7 +19,9 @@ const LARGEST_BOX: i32 = 60 * 256;
 const STRIP_FACETS: u32 = 16u;
 
 fn enqueue(id: u32) {
-    out_queue.ids[atomicAdd(&out_queue.count, 1u)] = id;
+    let n = atomicAdd(&out_queue.count, 1u);
+    out_queue.ids[n] = id;
+    atomicMax(&out_queue.groups_x, min(n + 1u, MOST_GROUPS));
 }
 
 // `wide`: the corner of the pixel that lies deepest inside counts.

@@ -2,14 +2,16 @@
 // parts with 64-bit edge functions.
 
 struct Queue {
+    groups_x: u32,
+    groups_y: u32,
+    groups_z: u32,
     count: u32,
     ids: array<u32>,
 }
 
 @group(0) @binding(21) var<storage, read> queue: Queue;
 
-// Shares of a facet; tiles are 32 x 32 px, an invocation draws half a column.
-const SHARES: u32 = 8u;
+// Tiles are 32 x 32 px, an invocation draws half a column.
 const TILE: i32 = 32;
 // Limits the tile-local part of an edge function to i32: see `tile_edge`.
 const EDGE_LIMIT: i32 = 1 << 30;
@@ -110,7 +112,7 @@ fn rasterize_tile(t: Triangle, box: Box, tile: vec2<i32>, lane: u32, area: f32, 
     }
 }
 
-fn rasterize_triangle(t_in: Triangle, share: u32, lane: u32, id: u32, away: bool) {
+fn rasterize_triangle(t_in: Triangle, share: vec2<u32>, lane: u32, id: u32, away: bool) {
     var t = t_in;
     let wide = conservative && away;
     let ab = t.b - t.a;
@@ -131,14 +133,14 @@ fn rasterize_triangle(t_in: Triangle, share: u32, lane: u32, id: u32, away: bool
         return;
     }
     let tiles = vec2<u32>((box.high - box.low) / TILE + 1);
-    for (var k = share; k < tiles.x * tiles.y; k += SHARES) {
+    for (var k = share.x; k < tiles.x * tiles.y; k += share.y) {
         let tile = vec2<i32>(i32(k % tiles.x), i32(k / tiles.x));
         rasterize_tile(t, box, tile, lane, abs(wide_f32(area)), id, away, wide);
     }
 }
 
-// Draws a share of one facet of the batch.
-fn rasterize_facet(id: u32, share: u32, lane: u32) {
+// Draws a share of one facet of the batch: which, of how many.
+fn rasterize_facet(id: u32, share: vec2<u32>, lane: u32) {
     let slot = id / CHUNK_FACETS - batch.first_slot;
     let quad = local_quad(id % CHUNK_FACETS);
     let facet = facet_of(id);
@@ -186,7 +188,7 @@ fn rasterize_large(
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
 ) {
-    for (var k = group.x; k < queue.count * SHARES; k += groups.x) {
-        rasterize_facet(queue.ids[k / SHARES], k % SHARES, lane);
+    for (var k = group.x; k < queue.count; k += groups.x) {
+        rasterize_facet(queue.ids[k], vec2<u32>(group.y, groups.y), lane);
     }
 }

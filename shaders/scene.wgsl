@@ -64,6 +64,8 @@ const CHUNK_FACETS: u32 = 2048u;
 const CHUNK_SIDE: u32 = 33u;
 const CHUNK_VERTICES: u32 = 1089u;
 const CHUNK_WORDS: u32 = 64u;
+// Workgroups along one dimension.
+const MOST_GROUPS: u32 = 65535u;
 const NO_SLOT: u32 = 0xffffffffu;
 // Facing words of one part: 128 MiB.
 const PART_WORDS_LOG2: u32 = 25u;

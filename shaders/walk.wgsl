@@ -3,6 +3,9 @@
 // void or the outside ends the walk.
 
 struct Candidates {
+    groups_x: u32,
+    groups_y: u32,
+    groups_z: u32,
     count: u32,
     pixels: array<u32>,
 }
@@ -112,6 +115,7 @@ fn open_goal(id: u32, centre: vec2<f32>, to_centre: vec2<f32>, origin: vec2<i32>
 struct Meeting {
     met: bool,
     left_land: bool,
+    done: bool,
     facet: Facet,
     entered: vec2<f32>,
     steps: u32,
@@ -150,6 +154,7 @@ fn walk_between(origin: vec2<i32>, end: vec2<i32>) -> Meeting {
     var meeting: Meeting;
     meeting.met = false;
     meeting.left_land = false;
+    meeting.done = true;
     meeting.steps = 0u;
     let d = end - origin;
     let a = vec2<u32>(abs(d));
@@ -171,6 +176,8 @@ fn walk_between(origin: vec2<i32>, end: vec2<i32>) -> Meeting {
     var lead = wide_sub(wide_mul_u32(u32(to_line.x), a.y), wide_mul_u32(u32(to_line.y), a.x));
     let per_column = wide_mul_u32(u32(side), a.y);
     let per_row = wide_mul_u32(u32(side), a.x);
+    // Some drivers end a loop that takes too long: then this stays false.
+    meeting.done = false;
     var entry = half_at(start.x - start.y, d.x - d.y);
     var crossed = vec2<bool>(false);
     loop {
@@ -178,6 +185,7 @@ fn walk_between(origin: vec2<i32>, end: vec2<i32>) -> Meeting {
         let slot = slot_of(quad);
         if slot == NO_SLOT {
             meeting.left_land = true;
+            meeting.done = true;
             break;
         }
         let inner = vec2<u32>(quad) & vec2<u32>(CHUNK_QUADS - 1u);
@@ -204,10 +212,12 @@ fn walk_between(origin: vec2<i32>, end: vec2<i32>) -> Meeting {
                 let f = Facet(vec2<u32>(quad) * scene.step, scene.step, half);
                 if is_missing(f) {
                     meeting.left_land = true;
+                    meeting.done = true;
                     return meeting;
                 }
                 if is_away(word + half) {
                     meeting.met = true;
+                    meeting.done = true;
                     meeting.facet = f;
                     meeting.entered = entry_point(origin - (quad << shift), d, through, half != entry);
                     return meeting;
@@ -219,6 +229,7 @@ fn walk_between(origin: vec2<i32>, end: vec2<i32>) -> Meeting {
             }
         }
         if ends {
+            meeting.done = true;
             break;
         }
         // Lines of the other direction met on the way to the node's side.
@@ -303,6 +314,9 @@ fn walk_pair(one: vec2<i32>, other: vec2<i32>) -> u32 {
     for (var legs = select(1u, 2u, goal.goes_on); legs > 0u; legs--) {
         meeting = walk_between(start, goal.at);
         longest = max(longest, meeting.steps);
+        if !meeting.done {
+            atomicAdd(&out_counts.cut_short, 1u);
+        }
         if meeting.met || meeting.left_land {
             break;
         }
