@@ -1,1 +1,87 @@
-//! x
+//! What cannot be drawn is refused with what, where and remedy, before anything is allocated.
+
+use glam::DVec2;
+use hachure::dem::Dem;
+use hachure::error::{Error, Result};
+use hachure::gpu::{AdapterChoice, CameraUniform, Gpu, Int64};
+use hachure::plan::{Border, Method};
+use hachure::render::Renderer;
+use hachure::surface::{Lattice, Surface};
+
+use crate::common::gpu;
+use crate::drawn::{BY_ID, level, look, over, renderer, rough};
+
+/// The error of a call that must fail, with the words it must contain.
+fn refused<T>(outcome: Result<T>, words: &[&str]) -> Error {
+    let Err(error) = outcome else { panic!("this must be refused: {words:?}") };
+    let line = error.to_string();
+    assert!(!line.contains('\n'), "one line: {line}");
+    words.iter().for_each(|word| assert!(line.contains(word), "`{word}` is missing in: {line}"));
+    error
+}
+
+fn flat(columns: usize, rows: usize) -> Dem {
+    Dem::from_heights(columns, DVec2::splat(30.0), DVec2::ZERO, vec![0.0; columns * rows])
+}
+
+#[test]
+fn an_adapter_of_no_name_is_refused_with_those_there_are() {
+    let there = &gpu().info.name;
+    let choice = AdapterChoice::Named("no such".into());
+    let error = refused(Gpu::open(&choice, Int64::IfPresent), &["no such", "there is: ", there]);
+    assert!(matches!(error, Error::NoAdapter { .. }));
+    assert_eq!(error.exit_code(), 1);
+}
+
+#[test]
+fn facets_beyond_their_ids_are_refused_with_numbers() {
+    // 1448 x 1448 chunks of 2048 facets have IDs, 1449 x 1449 have not; at level 64 a chunk is half a cell.
+    assert!(Lattice::uniform(&flat(725, 725), level(64)).is_ok());
+    let error =
+        refused(Lattice::uniform(&flat(726, 726), level(64)), &["level 64", "4305920000 facets", "2097152", "--level"]);
+    assert!(matches!(error, Error::Limit { .. }));
+    // 1024 x 2048 chunks would need an ID of 2^32 - 1, and a pixel holds ID + 1.
+    refused(Lattice::uniform(&flat(513, 1025), level(64)), &["level 64", "2097152 chunks"]);
+    assert!(Lattice::uniform(&flat(512, 1025), level(64)).is_ok());
+}
+
+#[test]
+fn pages_too_large_are_refused_with_numbers() {
+    let scene = Surface::new(flat(4, 4));
+    let draw = |size| Renderer::new(gpu(), &scene, level(1), Method::Walk, Border::On, size);
+    for (size, words) in [
+        ([5000, 4000], ["5000x4000", "20000000", "16777216", "--size"]),
+        ([16_385, 16], ["16385x16", "16384", "page side", "--size"]),
+        ([16, 20_000], ["16x20000", "16384", "page side", "--size"]),
+    ] {
+        assert!(matches!(refused(draw(size), &words), Error::Limit { .. }));
+    }
+    assert!(draw([16_384, 16]).is_ok());
+}
+
+#[test]
+fn an_eye_out_of_reach_is_wrong_usage() {
+    let scene = rough(1, [8, 8], 50.0, 40.0);
+    let renderer = renderer(gpu(), &scene, 1, BY_ID, [64, 64]);
+    let near = look(over(&scene, 3.0, 3.0, 50.0), 0.0, 0.0, [64, 64]);
+    renderer.frame(&near).expect("an eye over the DEM");
+    for eye in [near.eye * 1e6, near.eye.with_x(f64::NAN), near.eye.with_y(f64::INFINITY)] {
+        let far = hachure::view::Camera { eye, ..near };
+        let error = refused(renderer.frame(&far), &["--eye", "million cells", "CRS"]);
+        assert!(matches!(error, Error::Flag { .. }));
+        assert_eq!(error.exit_code(), 2);
+        assert!(CameraUniform::new(scene.dem(), &far).is_err());
+    }
+}
+
+#[test]
+#[should_panic(expected = "this must be refused")]
+fn a_refusal_that_does_not_come_is_noticed() {
+    refused(Lattice::uniform(&flat(4, 4), level(1)), &["level"]);
+}
+
+#[test]
+#[should_panic(expected = "is missing in")]
+fn a_refusal_without_its_numbers_is_noticed() {
+    refused(Lattice::uniform(&flat(726, 726), level(64)), &["level 32"]);
+}

@@ -1,1 +1,227 @@
-//! x
+//! What Rust and WGSL both say, they say alike: structs, constants, bindings, the lattice. Read from the composed
+//! shaders by naga, and from the device by wrapper kernels that return what a WGSL function returns.
+
+use std::collections::BTreeMap;
+use std::mem::offset_of;
+
+use hachure::gpu::buffers::{BatchUniform, Counts, SceneUniform};
+use hachure::gpu::pass::reflect;
+use hachure::gpu::sizes::{LARGEST_BINDING, fits, written};
+use hachure::gpu::{CameraUniform, border, compose, facing, rasterize, rasterize_large, silhouette, tessellate};
+use hachure::plan::Visibility;
+use hachure::plan::batches::{BATCH_CHUNKS, PART_CHUNKS};
+use hachure::surface::rim::RimEdge;
+use hachure::surface::{Chunk, Lattice, lattice};
+use wgpu::naga;
+
+use crate::drawn::{BESIDE, CLIPPED, MISSING, level};
+
+mod on_device;
+
+/// Entry point and source of every composed shader.
+fn shaders() -> Vec<(&'static str, &'static str)> {
+    let mut all = vec![
+        ("tessellate", tessellate::SOURCE),
+        ("facing", facing::SOURCE),
+        ("border", border::SOURCE),
+        ("compose", compose::SOURCE),
+        ("adjacency", silhouette::ADJACENCY),
+        ("toward_away", silhouette::TOWARD_AWAY),
+        ("candidates", silhouette::CANDIDATES),
+        ("walk", silhouette::WALK),
+    ];
+    for visibility in [Visibility::Key64, Visibility::Key32, Visibility::TwoDepths] {
+        all.push(("rasterize", rasterize::source(visibility)));
+        all.push(("rasterize_large", rasterize_large::source(visibility)));
+    }
+    all
+}
+
+/// Members of a struct: name, offset and size in bytes; and the struct's own size.
+type Layout = (Vec<(String, usize, usize)>, usize);
+
+/// The layouts of all named structs of a module.
+fn layouts(module: &naga::Module) -> BTreeMap<String, Layout> {
+    let size = |ty| module.types[ty].inner.size(module.to_ctx()) as usize;
+    let structs = module.types.iter().filter_map(|(_, ty)| match &ty.inner {
+        naga::TypeInner::Struct { members, span } => {
+            let member = |m: &naga::StructMember| (m.name.clone().unwrap_or_default(), m.offset as usize, size(m.ty));
+            Some((ty.name.clone()?, (members.iter().map(member).collect(), *span as usize)))
+        }
+        _ => None,
+    });
+    structs.collect()
+}
+
+/// The layout of a Rust struct. A field that is not named does not compile.
+macro_rules! layout {
+    ($type:ident: $($field:ident),+) => {{
+        let $type { $($field),+ } = <$type as bytemuck::Zeroable>::zeroed();
+        let members = vec![$((stringify!($field).to_owned(), offset_of!($type, $field), size_of_val(&$field))),+];
+        (members, size_of::<$type>())
+    }};
+}
+
+/// WGSL name and Rust layout of every struct both know.
+fn shared_structs() -> Vec<(&'static str, Layout)> {
+    vec![
+        ("Scene", layout!(SceneUniform: cell, samples, chunk_grid, step, near)),
+        (
+            "Camera",
+            layout!(CameraUniform: right, up, forward, eye_cell, eye_offset, eye_height, centre, focal, pad, size, wedge),
+        ),
+        ("Batch", layout!(BatchUniform: first_slot, part_slot, round, pad)),
+        ("Counts", layout!(Counts: longest_walk, orphans)),
+        ("Chunk", layout!(Chunk: origin, step, pad)),
+        ("RimEdge", layout!(RimEdge: sample, direction, half)),
+    ]
+}
+
+/// The constants of a module that are one number.
+fn constants(module: &naga::Module) -> BTreeMap<String, i64> {
+    let value = |c: &naga::Constant| match module.global_expressions[c.init] {
+        naga::Expression::Literal(naga::Literal::U32(n)) => Some(i64::from(n)),
+        naga::Expression::Literal(naga::Literal::I32(n)) => Some(i64::from(n)),
+        _ => None,
+    };
+    module.constants.iter().filter_map(|(_, c)| Some((c.name.clone()?, value(c)?))).collect()
+}
+
+/// Name and value of every constant both know.
+fn shared_constants() -> Vec<(&'static str, i64)> {
+    let words = PART_CHUNKS * lattice::CHUNK_WORDS;
+    assert!(words.is_power_of_two());
+    vec![
+        ("CELL_STEPS", i64::from(lattice::CELL_STEPS)),
+        ("CHUNK_QUADS", i64::from(lattice::CHUNK_QUADS)),
+        ("CHUNK_FACETS", i64::from(lattice::CHUNK_FACETS)),
+        ("CHUNK_SIDE", i64::from(lattice::CHUNK_SIDE)),
+        ("CHUNK_VERTICES", i64::from(lattice::CHUNK_VERTICES)),
+        ("CHUNK_WORDS", i64::from(lattice::CHUNK_WORDS)),
+        ("NO_SLOT", i64::from(lattice::NO_SLOT)),
+        ("PART_WORDS_LOG2", i64::from(words.ilog2())),
+        ("STRIP_FACETS", i64::from(rasterize::STRIP_FACETS)),
+        ("BESIDE", i64::from(BESIDE)),
+        ("CLIPPED", i64::from(CLIPPED)),
+        ("MISSING", i64::from(MISSING)),
+    ]
+}
+
+/// What a module says of shared names, and how it differs from Rust.
+fn differences(module: &naga::Module) -> (Vec<String>, Vec<String>) {
+    let (structs, numbers) = (layouts(module), constants(module));
+    let (mut seen, mut differ) = (Vec::new(), Vec::new());
+    for (name, rust) in shared_structs() {
+        let Some(wgsl) = structs.get(name) else { continue };
+        seen.push(name.to_owned());
+        if *wgsl != rust {
+            differ.push(format!("{name}: WGSL {wgsl:?}, Rust {rust:?}"));
+        }
+    }
+    for (name, rust) in shared_constants() {
+        let Some(wgsl) = numbers.get(name) else { continue };
+        seen.push(name.to_owned());
+        if *wgsl != rust {
+            differ.push(format!("{name}: WGSL {wgsl}, Rust {rust}"));
+        }
+    }
+    (seen, differ)
+}
+
+/// Whether a type holds a three-component vector, whose size and stride differ between WGSL and Rust.
+fn holds_vec3(module: &naga::Module, ty: naga::Handle<naga::Type>) -> bool {
+    match &module.types[ty].inner {
+        naga::TypeInner::Vector { size, .. } => *size == naga::VectorSize::Tri,
+        naga::TypeInner::Matrix { rows, .. } => *rows == naga::VectorSize::Tri,
+        naga::TypeInner::Array { base, .. } => holds_vec3(module, *base),
+        naga::TypeInner::Struct { members, .. } => members.iter().any(|m| holds_vec3(module, m.ty)),
+        _ => false,
+    }
+}
+
+/// Names of the bound globals that hold a three-component vector.
+fn globals_with_vec3(module: &naga::Module) -> Vec<String> {
+    let bound = module.global_variables.iter().filter(|(_, g)| g.binding.is_some());
+    bound.filter(|(_, g)| holds_vec3(module, g.ty)).map(|(_, g)| g.name.clone().unwrap_or_default()).collect()
+}
+
+#[test]
+fn every_composed_shader_is_valid_and_agrees_with_rust() {
+    let mut seen = Vec::new();
+    for (name, source) in shaders() {
+        let reflection = reflect(name, source).expect("valid WGSL with this entry point");
+        assert!(!reflection.bindings.is_empty(), "{name} binds nothing");
+        assert!(reflection.workgroup.iter().product::<u32>() >= 32, "{name}: {:?}", reflection.workgroup);
+        let (found, differ) = differences(&reflection.module);
+        assert!(differ.is_empty(), "{name}: {}", differ.join("; "));
+        assert_eq!(globals_with_vec3(&reflection.module), Vec::<String>::new(), "{name}");
+        seen.extend(found);
+    }
+    let all = shared_structs().into_iter().map(|(name, _)| name).chain(shared_constants().into_iter().map(|c| c.0));
+    let missed: Vec<_> = all.filter(|name| !seen.iter().any(|s| s == name)).collect();
+    assert!(missed.is_empty(), "no shader has {missed:?}");
+}
+
+#[test]
+fn one_name_has_one_value_in_all_shaders() {
+    let mut values = BTreeMap::new();
+    for (name, source) in shaders() {
+        for (constant, value) in constants(&reflect(name, source).expect("valid WGSL").module) {
+            let first = *values.entry(constant.clone()).or_insert(value);
+            assert_eq!(first, value, "{constant} in {name}");
+        }
+    }
+    assert!(values.len() > 20, "{values:?}");
+}
+
+#[test]
+fn differences_between_rust_and_wgsl_are_noticed() {
+    let source = tessellate::SOURCE;
+    let differ = |from: &str, to: &str| {
+        assert!(source.contains(from), "`{from}` is no longer there");
+        let module = naga::front::wgsl::parse_str(&source.replacen(from, to, 1)).expect("WGSL");
+        differences(&module).1.join("; ")
+    };
+    assert_eq!(differ("struct Chunk", "struct Chunk"), "");
+    assert!(differ("    pad: u32,\n    size", "    fill: u32,\n    size").starts_with("Camera"));
+    assert!(differ("step: u32,\n    pad: u32", "pad: u32,\n    step: u32").starts_with("Chunk"));
+    assert!(differ("near: f32,", "near: f32, far: f32,").starts_with("Scene"));
+    assert!(differ("part_slot: u32,", "slot_of_part: u32,").starts_with("Batch"));
+    assert!(differ("CHUNK_VERTICES: u32 = 1089u", "CHUNK_VERTICES: u32 = 1088u").starts_with("CHUNK_VERTICES"));
+    assert!(differ("PART_WORDS_LOG2: u32 = 25u", "PART_WORDS_LOG2: u32 = 24u").starts_with("PART_WORDS_LOG2"));
+    let threes = source.replacen("array<vec4<f32>>", "array<vec3<f32>>", 1);
+    let module = naga::front::wgsl::parse_str(&threes).expect("WGSL");
+    assert_eq!(globals_with_vec3(&module), ["places"]);
+    assert!(reflect("tessellate", &source.replacen("fn vertex_place", "fn vertex_placed", 1)).is_err());
+    assert!(reflect("tesselate", source).is_err(), "no entry point of this name");
+}
+
+#[test]
+fn every_binding_fits_at_every_level() {
+    // 500 x 500 samples on the largest page.
+    let heights = vec![0.0; 500 * 500];
+    let dem = hachure::dem::Dem::from_heights(500, glam::DVec2::splat(30.0), glam::DVec2::ZERO, heights);
+    for n in [1, 2, 4, 8, 16, 32, 64] {
+        let lattice = Lattice::uniform(&dem, level(n)).expect("IDs suffice");
+        let chunks = lattice.chunks().len() as u64;
+        let mut sizes = written(chunks, [16_384, 1024]).expect("a page of this size");
+        sizes.extend([
+            ("chunks", size_of_val(lattice.chunks()) as u64),
+            ("slots", size_of_val(lattice.slots()) as u64),
+            ("spheres", chunks * 16),
+            ("heights", 500 * 500 * 4),
+            ("gradients", 500 * 500 * 8),
+        ]);
+        for (name, size) in &sizes {
+            assert!(fits(name, *size).is_ok(), "level {n}: {name} takes {size} bytes");
+        }
+        // Facing bits of all chunks, vertices and queue of a batch.
+        let of = |wanted: &str| sizes.iter().filter(|s| s.0.starts_with(wanted)).map(|s| s.1).sum::<u64>();
+        assert_eq!(of("facing"), chunks * u64::from(lattice::CHUNK_FACETS) / 8);
+        assert_eq!(of("screens"), chunks.min(u64::from(BATCH_CHUNKS)) * u64::from(lattice::CHUNK_VERTICES) * 16);
+        assert!(of("queue") >= 4 + chunks.min(u64::from(BATCH_CHUNKS)) * u64::from(lattice::CHUNK_FACETS) * 4);
+    }
+    assert!(fits("heights", LARGEST_BINDING).is_ok());
+    assert!(fits("heights", LARGEST_BINDING + 1).is_err());
+    assert!(written(1, [16_384, 1025]).is_err());
+}

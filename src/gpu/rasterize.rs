@@ -23,7 +23,7 @@ pub fn pass(gpu: &Gpu, visibility: Visibility, constants: &[(&str, f64)]) -> Res
 }
 
 /// Facets of a column of eight quads.
-const STRIP_FACETS: u32 = 16;
+pub const STRIP_FACETS: u32 = 16;
 
 /// One invocation a column of eight quads, one row a chunk.
 pub fn invocations(batch: &Batch) -> [u32; 2] {
