@@ -144,7 +144,7 @@ fn rasterize_facet(id: u32, share: vec2<u32>, lane: u32) {
     let slot = id / CHUNK_FACETS - batch.first_slot;
     let quad = local_quad(id % CHUNK_FACETS);
     let facet = facet_of(id);
-    let away = away_of(id);
+    let away = (emitted_bits(id) & 1u) == 1u;
     let base = slot * CHUNK_VERTICES + quad.y * CHUNK_SIDE + quad.x;
     var flags = 0;
     for (var k = 0u; k < 3u; k++) {

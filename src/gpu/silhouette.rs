@@ -38,14 +38,14 @@ pub fn passes(gpu: &Gpu, method: Method, constants: &[(&str, f64)]) -> Result<Ve
     }
 }
 
-/// Pixels of a column that one invocation works off.
-const STRIP: u32 = 8;
+/// Pixels across and down that one invocation works off.
+const BLOCK: [u32; 2] = [4, 8];
 
-/// One invocation a pixel, a column of pixels, or a candidate.
+/// One invocation a pixel, a block of pixels, or a candidate.
 pub fn extent(pass: &Pass, camera: &Camera) -> Extent {
     match pass.name {
         "walk" => Extent::List("candidates"),
         "adjacency" => Extent::Invocations([camera.width, camera.height]),
-        _ => Extent::Invocations([camera.width, camera.height.div_ceil(STRIP)]),
+        _ => Extent::Invocations([camera.width.div_ceil(BLOCK[0]), camera.height.div_ceil(BLOCK[1])]),
     }
 }
