@@ -174,7 +174,7 @@ fn segments(field: &Field, count: usize, random: &mut Random) -> Vec<[i32; 4]> {
     let mut kinds = Random::new(99);
     let mut segment = || {
         let grain = [1, 1, side / 2, side, side / 4][kinds.below(5) as usize];
-        let (origin, mut end) = (place(grain), place(grain));
+        let (mut origin, mut end) = (place(grain), place(grain));
         let reach = [1, 4, 16, 64][kinds.below(4) as usize];
         end = origin + (end - origin) / reach;
         match kinds.below(8) {
@@ -182,6 +182,13 @@ fn segments(field: &Field, count: usize, random: &mut Random) -> Vec<[i32; 4]> {
             1 => end.y = origin.y,
             2 => end = origin + IVec2::splat(end.x - origin.x),
             3 => end = origin + IVec2::new(end.x - origin.x, origin.x - end.x),
+            // From vertex to vertex through others: quads entered by a corner.
+            4 | 5 => {
+                let mut small = || kinds.below(7) as i32 - 3;
+                let d = IVec2::new(small(), small()) * side;
+                origin = origin / side * side;
+                end = origin + d * (2 + kinds.below(9) as i32);
+            }
             _ => {}
         }
         let end = end.clamp(IVec2::ZERO, limit);
