@@ -28,6 +28,7 @@ fn shaders() -> Vec<(&'static str, &'static str)> {
         ("adjacency", silhouette::ADJACENCY),
         ("toward_away", silhouette::TOWARD_AWAY),
         ("candidates", silhouette::CANDIDATES),
+        ("pairs", silhouette::PAIRS),
         ("walk", silhouette::WALK),
     ];
     for visibility in [Visibility::Key64, Visibility::Key32, Visibility::TwoDepths] {
@@ -192,7 +193,7 @@ fn differences_between_rust_and_wgsl_are_noticed() {
     let threes = source.replacen("array<vec4<f32>>", "array<vec3<f32>>", 1);
     let module = naga::front::wgsl::parse_str(&threes).expect("WGSL");
     assert_eq!(globals_with_vec3(&module), ["places"]);
-    assert!(reflect("tessellate", &source.replacen("fn vertex_place", "fn vertex_placed", 1)).is_err());
+    assert!(reflect("tessellate", &source.replacen("fn patch_point", "fn patch_pointed", 1)).is_err());
     assert!(reflect("tesselate", source).is_err(), "no entry point of this name");
 }
 
