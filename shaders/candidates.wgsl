@@ -1,15 +1,21 @@
-// One invocation a column of eight pixels: lists the pixels, and of each the pairs with its eastern and southern
+// One invocation a block of 4 x 8 pixels: lists the pixels, and of each the pairs with its eastern and southern
 // neighbours, between which a walk could meet an away facet. Most pairs lie in one chunk and are dismissed by its
 // summary; what remains is looked at by the walk itself.
 
+// Pixels for another pass, and the workgroups of 64 that it takes along x, as far as they go.
 struct Candidates {
+    groups_x: atomic<u32>,
+    groups_y: u32,
+    groups_z: u32,
     count: atomic<u32>,
     pixels: array<u32>,
 }
 
 @group(0) @binding(21) var<storage, read_write> out_candidates: Candidates;
 
-const STRIP: i32 = 8;
+// Pixels across and down that one invocation works off: each pixel is read one and a half times instead of five.
+const COLUMNS: i32 = 4;
+const ROWS: i32 = 8;
 
 // ID + 1 of the facet in a pixel; 0 is sky. Off the page the nearest pixel counts.
 fn shown(at: vec2<i32>) -> u32 {
@@ -27,33 +33,50 @@ fn is_open(p: u32, q: u32, slot: u32, summary: u32) -> bool {
     return (summary & blocks_between((p - 1u) % CHUNK_FACETS, (q - 1u) % CHUNK_FACETS)) != 0u;
 }
 
+// Lists a pixel if one of its pairs is open; the four neighbours are those of `neighbour` from 4 on.
+fn list(at: vec2<i32>, here: u32, neighbours: vec4<u32>) {
+    var slot = NO_SLOT;
+    var summary = 0u;
+    if here != 0u {
+        slot = (here - 1u) / CHUNK_FACETS;
+        summary = summaries[slot];
+    }
+    let pairs = select(0u, 16u, is_open(here, neighbours.x, slot, summary))
+        | select(0u, 32u, is_open(here, neighbours.y, slot, summary))
+        | select(0u, 64u, is_open(here, neighbours.z, slot, summary))
+        | select(0u, 128u, is_open(here, neighbours.w, slot, summary));
+    if pairs != 0u && at.x < i32(camera.size.x) {
+        let n = atomicAdd(&out_candidates.count, 1u);
+        out_candidates.pixels[n] = pixel_index(at) | (pairs << 24u);
+        if n % 64u == 0u {
+            atomicMax(&out_candidates.groups_x, min(n / 64u + 1u, MOST_GROUPS));
+        }
+    }
+}
+
 @compute @workgroup_size(64)
 fn candidates(@builtin(global_invocation_id) invocation: vec3<u32>) {
-    var at = vec2<i32>(i32(invocation.x), i32(invocation.y) * STRIP);
+    var at = vec2<i32>(invocation.xy) * vec2<i32>(COLUMNS, ROWS);
     if !on_page(at) {
         return;
     }
-    let end = min(at.y + STRIP, i32(camera.size.y));
-    var here = shown(at);
-    var east = shown(at + vec2<i32>(1, 0));
+    let end = min(at.y + ROWS, i32(camera.size.y));
+    var here = vec4<u32>(shown(at), shown(at + vec2<i32>(1, 0)), shown(at + vec2<i32>(2, 0)), shown(at + vec2<i32>(3, 0)));
+    var east = shown(at + vec2<i32>(4, 0));
     for (; at.y < end; at.y++) {
-        let south_west = shown(at + vec2<i32>(-1, 1));
-        let south = shown(at + vec2<i32>(0, 1));
-        let south_east = shown(at + vec2<i32>(1, 1));
-        var slot = NO_SLOT;
-        var summary = 0u;
-        if here != 0u {
-            slot = (here - 1u) / CHUNK_FACETS;
-            summary = summaries[slot];
-        }
-        // In the order of `neighbour`, from 4.
-        let pairs = select(0u, 16u, is_open(here, east, slot, summary))
-            | select(0u, 32u, is_open(here, south_west, slot, summary))
-            | select(0u, 64u, is_open(here, south, slot, summary))
-            | select(0u, 128u, is_open(here, south_east, slot, summary));
-        if pairs != 0u {
-            out_candidates.pixels[atomicAdd(&out_candidates.count, 1u)] = pixel_index(at) | (pairs << 24u);
-        }
+        let below = at + vec2<i32>(0, 1);
+        let south_west = shown(below - vec2<i32>(1, 0));
+        let south = vec4<u32>(
+            shown(below),
+            shown(below + vec2<i32>(1, 0)),
+            shown(below + vec2<i32>(2, 0)),
+            shown(below + vec2<i32>(3, 0)),
+        );
+        let south_east = shown(below + vec2<i32>(4, 0));
+        list(at, here.x, vec4<u32>(here.y, south_west, south.x, south.y));
+        list(at + vec2<i32>(1, 0), here.y, vec4<u32>(here.z, south.x, south.y, south.z));
+        list(at + vec2<i32>(2, 0), here.z, vec4<u32>(here.w, south.y, south.z, south.w));
+        list(at + vec2<i32>(3, 0), here.w, vec4<u32>(east, south.z, south.w, south_east));
         here = south;
         east = south_east;
     }

@@ -6,6 +6,7 @@ fn emit(pixel: u32, depth: f32, id: u32, away: bool) {
     atomicMax(&out_pixels[2u * pixel + select(1u, 0u, away)], bitcast<u32>(depth));
 }
 
-fn away_of(id: u32) -> bool {
-    return is_away(id);
+// Facing bits from a facet on, as far as `emit` asks for them.
+fn emitted_bits(id: u32) -> u32 {
+    return away_bits(id);
 }

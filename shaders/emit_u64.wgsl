@@ -6,6 +6,7 @@ fn emit(pixel: u32, depth: f32, id: u32, away: bool) {
     atomicMax(&out_pixels[pixel], (u64(bitcast<u32>(depth)) << 32u) | u64(id + 1u));
 }
 
-fn away_of(id: u32) -> bool {
-    return false;
+// Facing bits from a facet on, as far as `emit` asks for them.
+fn emitted_bits(id: u32) -> u32 {
+    return 0u;
 }

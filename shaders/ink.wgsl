@@ -6,6 +6,7 @@ const BORDER: u32 = 2u;
 struct Counts {
     longest_walk: atomic<u32>,  // nodes a walk visited
     orphans: atomic<u32>,       // pixels with a depth and no ID: must be 0
+    cut_short: atomic<u32>,     // walks that a driver ended before they were done: must be 0
 }
 
 // A silhouette whose sub-pixel place lies `offset` px from the pixel's centre, right and down, in 1/64 px. Of two such

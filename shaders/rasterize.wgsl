@@ -1,7 +1,11 @@
 // One invocation a column of eight quads, facet by facet, both sides: each vertex is read once. Small facets are drawn
 // here, large and clipped ones queued.
 
+// Facets for another pass, and the workgroups it takes: one a facet along x, as far as they go.
 struct Queue {
+    groups_x: atomic<u32>,
+    groups_y: u32,
+    groups_z: u32,
     count: atomic<u32>,
     ids: array<u32>,
 }
@@ -15,7 +19,9 @@ const LARGEST_BOX: i32 = 60 * 256;
 const STRIP_FACETS: u32 = 16u;
 
 fn enqueue(id: u32) {
-    out_queue.ids[atomicAdd(&out_queue.count, 1u)] = id;
+    let n = atomicAdd(&out_queue.count, 1u);
+    out_queue.ids[n] = id;
+    atomicMax(&out_queue.groups_x, min(n + 1u, MOST_GROUPS));
 }
 
 // `wide`: the corner of the pixel that lies deepest inside counts.
@@ -80,7 +86,7 @@ fn rasterize_small(t_in: Triangle, id: u32, away: bool) {
 }
 
 // One half of the quad whose north-west vertex is `v`.
-fn rasterize_facet(id: u32, a: vec3<i32>, b: vec3<i32>, c: vec3<i32>, v: u32) {
+fn rasterize_facet(id: u32, a: vec3<i32>, b: vec3<i32>, c: vec3<i32>, v: u32, away: bool) {
     if any(vec3<i32>(a.x, b.x, c.x) == vec3<i32>(NO_PLACE)) {
         let third = v + select(CHUNK_SIDE, 1u, (id & 1u) == 1u);
         let flags = vec3<i32>(screens[v].w, screens[v + CHUNK_SIDE + 1u].w, screens[third].w);
@@ -93,7 +99,7 @@ fn rasterize_facet(id: u32, a: vec3<i32>, b: vec3<i32>, c: vec3<i32>, v: u32) {
     let extent = max(a.xy, max(b.xy, c.xy)) - min(a.xy, min(b.xy, c.xy));
     let t = Triangle(a.xy, b.xy, c.xy, bitcast<vec3<f32>>(vec3<i32>(a.z, b.z, c.z)));
     if max(extent.x, extent.y) <= LARGEST_BOX {
-        rasterize_small(t, id, away_of(id));
+        rasterize_small(t, id, away);
     } else {
         let box = pixel_box(t, true);
         if all(box.low <= box.high) {
@@ -112,13 +118,14 @@ fn rasterize(@builtin(global_invocation_id) invocation: vec3<u32>, @builtin(work
     let quad = local_quad(local);
     var id = slot * CHUNK_FACETS + local;
     var v = group.y * CHUNK_VERTICES + quad.y * CHUNK_SIDE + quad.x;
+    let bits = emitted_bits(id);
     var nw = screens[v].xyz;
     var ne = screens[v + 1u].xyz;
     for (var k = 0u; k < STRIP_FACETS; k += 2u) {
         let sw = screens[v + CHUNK_SIDE].xyz;
         let se = screens[v + CHUNK_SIDE + 1u].xyz;
-        rasterize_facet(id, nw, sw, se, v);
-        rasterize_facet(id + 1u, nw, se, ne, v);
+        rasterize_facet(id, nw, sw, se, v, ((bits >> k) & 1u) == 1u);
+        rasterize_facet(id + 1u, nw, se, ne, v, ((bits >> k) & 2u) == 2u);
         nw = sw;
         ne = se;
         v += CHUNK_SIDE;

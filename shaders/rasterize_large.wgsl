@@ -2,14 +2,16 @@
 // parts with 64-bit edge functions.
 
 struct Queue {
+    groups_x: u32,
+    groups_y: u32,
+    groups_z: u32,
     count: u32,
     ids: array<u32>,
 }
 
 @group(0) @binding(21) var<storage, read> queue: Queue;
 
-// Shares of a facet; tiles are 32 x 32 px, an invocation draws half a column.
-const SHARES: u32 = 8u;
+// Tiles are 32 x 32 px, an invocation draws half a column.
 const TILE: i32 = 32;
 // Limits the tile-local part of an edge function to i32: see `tile_edge`.
 const EDGE_LIMIT: i32 = 1 << 30;
@@ -25,36 +27,32 @@ fn plane_distance(q: vec3<f32>, k: u32) -> f32 {
     }
 }
 
-struct Polygon {
-    points: array<vec3<f32>, 8>,
-    // Lattice corner (0 to 2) a point still is, 3 for cut ones: corners keep their snapped places.
-    corners: array<u32, 8>,
-    size: u32,
-}
+// Each invocation's polygon before and after a cut: points in camera space, and in w the corner of the facet (0 to 2)
+// that a point still is, or CUT. In workgroup memory, each in its own rows: compilers handle indexed registers badly.
+var<workgroup> polygons: array<array<array<vec4<f32>, 8>, 2>, 64>;
 
-// Sutherland, Hodgman 1974. A cut is computed from the inside end of its edge: both facets of an edge get the same.
-fn cut(polygon: Polygon, k: u32) -> Polygon {
-    var kept: Polygon;
-    kept.size = 0u;
-    for (var i = 0u; i < polygon.size; i++) {
-        let j = select(i + 1u, 0u, i + 1u == polygon.size);
-        let p = polygon.points[i];
-        let q = polygon.points[j];
-        let dp = plane_distance(p, k);
-        let dq = plane_distance(q, k);
+const CUT: f32 = 3.0;
+
+// Sutherland, Hodgman 1974: cuts polygon `side` of `size` points by plane k into the other side; returns the new size.
+// A cut is computed from the inside end of its edge: both facets of an edge get the same.
+fn cut(lane: u32, side: u32, size: u32, k: u32) -> u32 {
+    var kept = 0u;
+    for (var i = 0u; i < size; i++) {
+        let p = polygons[lane][side][i];
+        let q = polygons[lane][side][select(i + 1u, 0u, i + 1u == size)];
+        let dp = plane_distance(p.xyz, k);
+        let dq = plane_distance(q.xyz, k);
         if dp >= 0.0 {
-            kept.points[kept.size] = p;
-            kept.corners[kept.size] = polygon.corners[i];
-            kept.size += 1u;
+            polygons[lane][1u - side][kept] = p;
+            kept += 1u;
         }
         if (dp >= 0.0) != (dq >= 0.0) {
-            let inside = select(q, p, dp >= 0.0);
-            let outside = select(p, q, dp >= 0.0);
+            let inside = select(q.xyz, p.xyz, dp >= 0.0);
+            let outside = select(p.xyz, q.xyz, dp >= 0.0);
             let d_inside = max(dp, dq);
             let t = d_inside / (d_inside - min(dp, dq));
-            kept.points[kept.size] = inside + (outside - inside) * t;
-            kept.corners[kept.size] = 3u;
-            kept.size += 1u;
+            polygons[lane][1u - side][kept] = vec4<f32>(inside + (outside - inside) * t, CUT);
+            kept += 1u;
         }
     }
     return kept;
@@ -114,7 +112,7 @@ fn rasterize_tile(t: Triangle, box: Box, tile: vec2<i32>, lane: u32, area: f32, 
     }
 }
 
-fn rasterize_triangle(t_in: Triangle, share: u32, lane: u32, id: u32, away: bool) {
+fn rasterize_triangle(t_in: Triangle, share: vec2<u32>, lane: u32, id: u32, away: bool) {
     var t = t_in;
     let wide = conservative && away;
     let ab = t.b - t.a;
@@ -135,45 +133,44 @@ fn rasterize_triangle(t_in: Triangle, share: u32, lane: u32, id: u32, away: bool
         return;
     }
     let tiles = vec2<u32>((box.high - box.low) / TILE + 1);
-    for (var k = share; k < tiles.x * tiles.y; k += SHARES) {
+    for (var k = share.x; k < tiles.x * tiles.y; k += share.y) {
         let tile = vec2<i32>(i32(k % tiles.x), i32(k / tiles.x));
         rasterize_tile(t, box, tile, lane, abs(wide_f32(area)), id, away, wide);
     }
 }
 
-// Draws a share of one facet of the batch.
-fn rasterize_facet(id: u32, share: u32, lane: u32) {
+// Draws a share of one facet of the batch: which, of how many.
+fn rasterize_facet(id: u32, share: vec2<u32>, lane: u32) {
     let slot = id / CHUNK_FACETS - batch.first_slot;
     let quad = local_quad(id % CHUNK_FACETS);
     let facet = facet_of(id);
-    let away = away_of(id);
-    var corners: array<vec4<i32>, 3>;
-    var polygon: Polygon;
-    polygon.size = 3u;
+    let away = (emitted_bits(id) & 1u) == 1u;
+    let base = slot * CHUNK_VERTICES + quad.y * CHUNK_SIDE + quad.x;
     var flags = 0;
     for (var k = 0u; k < 3u; k++) {
         let d = corner(facet.half, k);
-        let v = slot * CHUNK_VERTICES + (quad.y + d.y) * CHUNK_SIDE + quad.x + d.x;
+        let v = base + d.y * CHUNK_SIDE + d.x;
         let at = facet.origin + d * facet.step;
-        corners[k] = screens[v];
-        polygon.points[k] = camera_space(eye_relative(at / CELL_STEPS, places[v]));
-        polygon.corners[k] = k;
-        flags |= corners[k].w;
+        polygons[lane][0][k] = vec4<f32>(camera_space(eye_relative(at / CELL_STEPS, places[v])), f32(k));
+        flags |= screens[v].w;
     }
-    if (flags & CLIPPED) != 0 {
-        for (var k = 0u; k < 5u; k++) {
-            polygon = cut(polygon, k);
-        }
+    let planes = select(0u, 5u, (flags & CLIPPED) != 0);
+    var size = 3u;
+    for (var k = 0u; k < planes; k++) {
+        size = cut(lane, k & 1u, size, k);
     }
     var first = vec4<i32>(0);
     var last = vec4<i32>(0);
-    for (var k = 0u; k < polygon.size; k++) {
-        var screen: vec4<i32>;
-        if polygon.corners[k] < 3u && (corners[polygon.corners[k]].w & CLIPPED) == 0 {
-            screen = corners[polygon.corners[k]];
-        } else {
-            let q = polygon.points[k];
-            screen = vec4<i32>(snapped(q), bitcast<i32>(depth_of(q)), 0);
+    for (var k = 0u; k < size; k++) {
+        let point = polygons[lane][planes & 1u][k];
+        var screen = vec4<i32>(NO_PLACE);
+        if point.w != CUT {
+            // Corners keep the place that the facets beside this one know.
+            let d = corner(facet.half, u32(point.w));
+            screen = screens[base + d.y * CHUNK_SIDE + d.x];
+        }
+        if screen.x == NO_PLACE {
+            screen = vec4<i32>(snapped(point.xyz), bitcast<i32>(depth_of(point.xyz)), 0);
         }
         if k == 0u {
             first = screen;
@@ -191,7 +188,7 @@ fn rasterize_large(
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
 ) {
-    for (var k = group.x; k < queue.count * SHARES; k += groups.x) {
-        rasterize_facet(queue.ids[k / SHARES], k % SHARES, lane);
+    for (var k = group.x; k < queue.count; k += groups.x) {
+        rasterize_facet(queue.ids[k], vec2<u32>(group.y, groups.y), lane);
     }
 }

@@ -64,6 +64,8 @@ const CHUNK_FACETS: u32 = 2048u;
 const CHUNK_SIDE: u32 = 33u;
 const CHUNK_VERTICES: u32 = 1089u;
 const CHUNK_WORDS: u32 = 64u;
+// Workgroups along one dimension.
+const MOST_GROUPS: u32 = 65535u;
 const NO_SLOT: u32 = 0xffffffffu;
 // Facing words of one part: 128 MiB.
 const PART_WORDS_LOG2: u32 = 25u;
@@ -93,8 +95,8 @@ fn is_valid(c: u32, r: u32) -> bool {
     return ((valid[i >> 5u] >> (i & 31u)) & 1u) == 1u;
 }
 
-// Whether a facet faces away. Decided once, in the facing pass.
-fn is_away(id: u32) -> bool {
+// Facing bits from facet `id` on to the end of its word, a set bit is away. Decided once, in the facing pass.
+fn away_bits(id: u32) -> u32 {
     let word = id >> 5u;
     var bits = 0u;
     if facing_parts == 1u {
@@ -108,7 +110,12 @@ fn is_away(id: u32) -> bool {
             default: { bits = facing_3[i]; }
         }
     }
-    return ((bits >> (id & 31u)) & 1u) == 1u;
+    return bits >> (id & 31u);
+}
+
+// Whether a facet faces away.
+fn is_away(id: u32) -> bool {
+    return (away_bits(id) & 1u) == 1u;
 }
 
 // Index of a page place.

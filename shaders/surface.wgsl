@@ -1,18 +1,27 @@
 // The PN surface (Vlachos et al. 2001) and its projection. The twin in f64 is `surface::patch`.
 
-// Three corners of a patch: NW, SE and the third (SW below the diagonal, NE above), as edges from NW, and their
-// normals up to length.
+// A cubic patch over the corners NW (the origin), SE and the third (SW below the diagonal, NE above it), with its
+// control points: `ab` lies a third of the way from NW to SE, `ba` two thirds, and so on with c for the third corner.
 struct Patch {
     height: f32,
-    to_se: vec3<f32>,
-    to_third: vec3<f32>,
-    normal_nw: vec3<f32>,
-    normal_se: vec3<f32>,
-    normal_third: vec3<f32>,
+    b: vec3<f32>,
+    c: vec3<f32>,
+    ab: vec3<f32>,
+    ba: vec3<f32>,
+    ac: vec3<f32>,
+    ca: vec3<f32>,
+    bc: vec3<f32>,
+    cb: vec3<f32>,
+    centre: vec3<f32>,
 }
 
 fn normal_at(i: u32) -> vec3<f32> {
     return vec3<f32>(-gradients[i], 1.0);
+}
+
+// A third of what of an edge lies in the tangent plane with that normal; `scale` is 1 / its squared length.
+fn tangent(edge: vec3<f32>, normal: vec3<f32>, scale: f32) -> vec3<f32> {
+    return (edge - normal * (dot(edge, normal) * scale)) * (1.0 / 3.0);
 }
 
 // The patch of cell `at` above or below the diagonal. Corners outside the grid are clamped: they have weight 0.
@@ -26,19 +35,22 @@ fn patch_of(at: vec2<u32>, above: bool) -> Patch {
     let south = vec2<f32>(0.0, -scene.cell.y);
     let east = vec2<f32>(scene.cell.x, 0.0);
     let height = heights[nw];
-    return Patch(
-        height,
-        vec3<f32>(east + south, heights[se] - height),
-        vec3<f32>(select(south, east, above), heights[third] - height),
-        normal_at(nw),
-        normal_at(se),
-        normal_at(third),
-    );
-}
-
-// A third of what of an edge lies in the tangent plane with that normal; `scale` is 1 / its squared length.
-fn tangent(edge: vec3<f32>, normal: vec3<f32>, scale: f32) -> vec3<f32> {
-    return (edge - normal * (dot(edge, normal) * scale)) * (1.0 / 3.0);
+    let b = vec3<f32>(east + south, heights[se] - height);
+    let c = vec3<f32>(select(south, east, above), heights[third] - height);
+    let normal_a = normal_at(nw);
+    let normal_b = normal_at(se);
+    let normal_c = normal_at(third);
+    let scale_a = 1.0 / dot(normal_a, normal_a);
+    let scale_b = 1.0 / dot(normal_b, normal_b);
+    let scale_c = 1.0 / dot(normal_c, normal_c);
+    let ab = tangent(b, normal_a, scale_a);
+    let ba = b - tangent(b, normal_b, scale_b);
+    let ac = tangent(c, normal_a, scale_a);
+    let ca = c - tangent(c, normal_c, scale_c);
+    let bc = b + tangent(c - b, normal_b, scale_b);
+    let cb = c - tangent(c - b, normal_c, scale_c);
+    let centre = (ab + ba + ac + ca + bc + cb) * 0.25 - (b + c) * (1.0 / 6.0);
+    return Patch(height, b, c, ab, ba, ac, ca, bc, cb, centre);
 }
 
 // Offset in metres from the NW sample to the point at (u, v) of the cell, u east, v south, 0 to 1.
@@ -46,27 +58,15 @@ fn patch_point(p: Patch, at: vec2<f32>) -> vec3<f32> {
     let a = 1.0 - max(at.x, at.y);
     let b = min(at.x, at.y);
     let c = abs(at.x - at.y);
-    let across = p.to_third - p.to_se;
-    let nw = 1.0 / dot(p.normal_nw, p.normal_nw);
-    let se = 1.0 / dot(p.normal_se, p.normal_se);
-    let third = 1.0 / dot(p.normal_third, p.normal_third);
-    let ab = tangent(p.to_se, p.normal_nw, nw);
-    let ba = p.to_se - tangent(p.to_se, p.normal_se, se);
-    let ac = tangent(p.to_third, p.normal_nw, nw);
-    let ca = p.to_third - tangent(p.to_third, p.normal_third, third);
-    let bc = p.to_se + tangent(across, p.normal_se, se);
-    let cb = p.to_third - tangent(across, p.normal_third, third);
-    let centre = (ab + ba + ac + ca + bc + cb) * 0.25 - (p.to_se + p.to_third) * (1.0 / 6.0);
     let a3 = 3.0 * a;
     let b3 = 3.0 * b;
     let c3 = 3.0 * c;
-    return p.to_se * (b * b * b) + p.to_third * (c * c * c)
-        + ab * (a3 * a * b) + ba * (b3 * b * a) + ac * (a3 * a * c) + ca * (c3 * c * a)
-        + bc * (b3 * b * c) + cb * (c3 * c * b) + centre * (2.0 * a3 * b * c);
+    return p.b * (b * b * b) + p.c * (c * c * c)
+        + p.ab * (a3 * a * b) + p.ba * (b3 * b * a) + p.ac * (a3 * a * c) + p.ca * (c3 * c * a)
+        + p.bc * (b3 * b * c) + p.cb * (c3 * c * b) + p.centre * (2.0 * a3 * b * c);
 }
 
 // A lattice vertex: offset from its own sample (NW of its cell) in xyz, that sample's height in w, metres.
-// The one function that evaluates shared vertices, so that neighbours agree to the bit.
 fn vertex_place(at: vec2<u32>) -> vec4<f32> {
     let sub = at % CELL_STEPS;
     let p = patch_of(at / CELL_STEPS, sub.x > sub.y);

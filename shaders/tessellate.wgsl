@@ -1,4 +1,5 @@
-// One invocation a lattice vertex: its offset from its sample, its place on the page, its depth.
+// One invocation a third of a column of vertices: of each the offset from its sample, the place on the page, the depth.
+// Chunks that share a vertex evaluate it from the same cell in the same way: they agree to the bit.
 
 @group(0) @binding(20) var<storage, read_write> out_places: array<vec4<f32>>;
 @group(0) @binding(21) var<storage, read_write> out_screens: array<vec4<i32>>;
@@ -32,23 +33,54 @@ fn is_missing(at: vec2<u32>) -> bool {
         || (sub.y > sub.x && !is_valid(west, south));
 }
 
-@compute @workgroup_size(64)
-fn tessellate(@builtin(global_invocation_id) invocation: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {
-    let v = invocation.x;
-    let slot = batch.first_slot + group.y;
-    if v >= CHUNK_VERTICES || !in_wedge(sphere_of(slot)) {
-        return;
-    }
-    let chunk = chunks[slot];
-    let at = chunk.origin + vec2<u32>(v % CHUNK_SIDE, v / CHUNK_SIDE) * chunk.step;
-    let place = vertex_place(at);
+// Rows of vertices that one invocation works off, down a column.
+const STRIP: u32 = 11u;
+
+fn store(i: u32, at: vec2<u32>, place: vec4<f32>) {
     let q = camera_space(eye_relative(at / CELL_STEPS, place));
     let flags = view_flags(q) | select(0, MISSING, is_missing(at));
     var screen = vec4<i32>(NO_PLACE, 0, 0, flags);
     if (flags & (CLIPPED | MISSING)) == 0 {
         screen = vec4<i32>(snapped(q), bitcast<i32>(depth_of(q)), flags);
     }
-    let i = group.y * CHUNK_VERTICES + v;
     out_places[i] = place;
     out_screens[i] = screen;
+}
+
+@compute @workgroup_size(64)
+fn tessellate(@builtin(global_invocation_id) invocation: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {
+    let column = invocation.x % CHUNK_SIDE;
+    let row = invocation.x / CHUNK_SIDE * STRIP;
+    let slot = batch.first_slot + group.y;
+    if row >= CHUNK_SIDE || !in_wedge(sphere_of(slot)) {
+        return;
+    }
+    let chunk = chunks[slot];
+    var at = chunk.origin + vec2<u32>(column, row) * chunk.step;
+    var i = group.y * CHUNK_VERTICES + row * CHUNK_SIDE + column;
+    let end = i + STRIP * CHUNK_SIDE;
+    if chunk.step == CELL_STEPS {
+        // Every vertex is a sample.
+        for (; i < end; i += CHUNK_SIDE) {
+            let sample = min(at / CELL_STEPS, scene.samples - 1u);
+            store(i, at, vec4<f32>(0.0, 0.0, 0.0, heights[sample.y * scene.samples.x + sample.x]));
+            at.y += chunk.step;
+        }
+        return;
+    }
+    while i < end {
+        // One cell after the other: its two patches serve all its vertices of this column.
+        let cell = at / CELL_STEPS;
+        let below = patch_of(cell, false);
+        let above = patch_of(cell, true);
+        for (; i < end && at.y / CELL_STEPS == cell.y; i += CHUNK_SIDE) {
+            let sub = at % CELL_STEPS;
+            var p = below;
+            if sub.x > sub.y {
+                p = above;
+            }
+            store(i, at, vec4<f32>(patch_point(p, vec2<f32>(sub) / f32(CELL_STEPS)), p.height));
+            at.y += chunk.step;
+        }
+    }
 }

@@ -3,6 +3,9 @@
 // void or the outside ends the walk.
 
 struct Candidates {
+    groups_x: u32,
+    groups_y: u32,
+    groups_z: u32,
     count: u32,
     pixels: array<u32>,
 }
@@ -33,18 +36,21 @@ fn corners_of(f: Facet) -> Corners {
     return Corners(eye_relative(cell, vec4<f32>(a, patch_here.height)), b - a, c - a);
 }
 
-// Where the ray through a page place meets a facet, clamped to the facet, in walk units.
-fn facet_hit(id: u32, px: vec2<f32>) -> vec2<i32> {
-    let f = facet_of(id);
-    let t = corners_of(f);
-    let ray = ray_through(px);
-    // Volumes spanned with the ray: perspective-correct barycentrics, whatever lies behind the eye.
-    var w = vec3<f32>(
+// Volumes that a ray spans with the edges of a facet: up to scale the perspective-correct barycentrics of where it
+// meets the facet's plane, whatever lies behind the eye.
+fn volumes(t: Corners, ray: vec3<f32>) -> vec3<f32> {
+    let w = vec3<f32>(
         dot(ray, cross(t.p + t.edge_1, t.edge_2 - t.edge_1)),
         dot(ray, cross(t.edge_2, t.p)),
         dot(ray, cross(t.p, t.edge_1)),
     );
-    w = max(select(w, -w, w.x + w.y + w.z < 0.0), vec3<f32>(0.0));
+    return select(w, -w, w.x + w.y + w.z < 0.0);
+}
+
+// Where the ray through a page place meets a facet, clamped to the facet, in walk units.
+fn facet_hit(id: u32, px: vec2<f32>) -> vec2<i32> {
+    let f = facet_of(id);
+    var w = max(volumes(corners_of(f), ray_through(px)), vec3<f32>(0.0));
     let sum = w.x + w.y + w.z;
     w = select(w / sum, vec3<f32>(1.0, 0.0, 0.0), sum == 0.0);
     let along = vec2<f32>(corner(f.half, 1u)) * w.y + vec2<f32>(corner(f.half, 2u)) * w.z;
@@ -69,9 +75,47 @@ fn map_exit(px: vec2<f32>, origin: vec2<i32>) -> vec2<i32> {
     return vec2<i32>(round(end * f32(CELL_STEPS * UNITS)));
 }
 
+// Snapping moves a rim by up to 1/256 px: a pixel without surface may have its centre on the land by that much. The way
+// to it is aimed beyond its centre by this share.
+const OVERSHOOT: f32 = 1.0 / 64.0;
+
+// Where a walk ends, and whether it then follows the ray of the pixel it leads to.
+struct Goal {
+    at: vec2<i32>,
+    goes_on: bool,
+}
+
+// The way to a pixel without surface. It leads to where that pixel's ray meets the plane of the facet at `origin`: if the
+// land ends on the way there, the pixels are parted by a rim, no silhouette. If that place is farther than the facet, the
+// ray has the land below it so far, and the way goes on under the ray to the edge of the map. If it is nearer, the ray
+// passes under the land behind.
+fn open_goal(id: u32, centre: vec2<f32>, to_centre: vec2<f32>, origin: vec2<i32>) -> Goal {
+    let f = facet_of(id);
+    let t = corners_of(f);
+    let normal = cross(t.edge_1, t.edge_2);
+    let ray = ray_through(to_centre + (to_centre - centre) * OVERSHOOT);
+    if dot(normal, ray) >= 0.0 {
+        return Goal(map_exit(to_centre, origin), false);
+    }
+    let w = volumes(t, ray);
+    let sum = w.x + w.y + w.z;
+    let along = vec2<f32>(corner(f.half, 1u)) * w.y + vec2<f32>(corner(f.half, 2u)) * w.z;
+    // In walk units, times `sum`, which may be next to nothing.
+    let d = vec2<f32>(vec2<i32>(f.origin * UNITS) - origin) * sum + along * f32(f.step * UNITS);
+    // No farther than one cell beyond the edge of the map.
+    let cell = i32(CELL_STEPS * UNITS);
+    let room = vec2<f32>(select(vec2<i32>(scene.samples) * cell - origin, origin + cell, d < vec2<f32>(0.0)));
+    let reach = select(vec2<f32>(1e30), room / abs(d), abs(d) * 1e30 > room);
+    let at = origin + vec2<i32>(round(d * min(1.0 / sum, min(reach.x, reach.y))));
+    let px = (to_centre - centre) / camera.focal;
+    return Goal(at, dot(normal, camera.right.xyz * px.x - camera.up.xyz * px.y) >= 0.0);
+}
+
 // The away facet a walk met and where it entered it, in quads from the facet's north-west vertex.
 struct Meeting {
     met: bool,
+    left_land: bool,
+    done: bool,
     facet: Facet,
     entered: vec2<f32>,
     steps: u32,
@@ -109,6 +153,8 @@ fn is_missing(f: Facet) -> bool {
 fn walk_between(origin: vec2<i32>, end: vec2<i32>) -> Meeting {
     var meeting: Meeting;
     meeting.met = false;
+    meeting.left_land = false;
+    meeting.done = true;
     meeting.steps = 0u;
     let d = end - origin;
     let a = vec2<u32>(abs(d));
@@ -130,12 +176,16 @@ fn walk_between(origin: vec2<i32>, end: vec2<i32>) -> Meeting {
     var lead = wide_sub(wide_mul_u32(u32(to_line.x), a.y), wide_mul_u32(u32(to_line.y), a.x));
     let per_column = wide_mul_u32(u32(side), a.y);
     let per_row = wide_mul_u32(u32(side), a.x);
+    // Some drivers end a loop that takes too long: then this stays false.
+    meeting.done = false;
     var entry = half_at(start.x - start.y, d.x - d.y);
     var crossed = vec2<bool>(false);
     loop {
         meeting.steps += 1u;
         let slot = slot_of(quad);
         if slot == NO_SLOT {
+            meeting.left_land = true;
+            meeting.done = true;
             break;
         }
         let inner = vec2<u32>(quad) & vec2<u32>(CHUNK_QUADS - 1u);
@@ -161,10 +211,13 @@ fn walk_between(origin: vec2<i32>, end: vec2<i32>) -> Meeting {
             loop {
                 let f = Facet(vec2<u32>(quad) * scene.step, scene.step, half);
                 if is_missing(f) {
+                    meeting.left_land = true;
+                    meeting.done = true;
                     return meeting;
                 }
                 if is_away(word + half) {
                     meeting.met = true;
+                    meeting.done = true;
                     meeting.facet = f;
                     meeting.entered = entry_point(origin - (quad << shift), d, through, half != entry);
                     return meeting;
@@ -176,6 +229,7 @@ fn walk_between(origin: vec2<i32>, end: vec2<i32>) -> Meeting {
             }
         }
         if ends {
+            meeting.done = true;
             break;
         }
         // Lines of the other direction met on the way to the node's side.
@@ -248,18 +302,32 @@ fn walk_pair(one: vec2<i32>, other: vec2<i32>) -> u32 {
     let centre = vec2<f32>(at) + 0.5;
     let to_centre = vec2<f32>(select(other, one, swapped)) + 0.5;
     let origin = facet_hit(p.x - 1u, centre);
-    var end: vec2<i32>;
+    var goal: Goal;
     if q.y == 0u || is_away(q.x - 1u) {
-        end = map_exit(to_centre, origin);
+        goal = open_goal(p.x - 1u, centre, to_centre, origin);
     } else {
-        end = facet_hit(q.x - 1u, to_centre);
+        goal = Goal(facet_hit(q.x - 1u, to_centre), false);
     }
-    let meeting = walk_between(origin, end);
+    var meeting: Meeting;
+    var start = origin;
+    var longest = 0u;
+    for (var legs = select(1u, 2u, goal.goes_on); legs > 0u; legs--) {
+        meeting = walk_between(start, goal.at);
+        longest = max(longest, meeting.steps);
+        if !meeting.done {
+            atomicAdd(&out_counts.cut_short, 1u);
+        }
+        if meeting.met || meeting.left_land {
+            break;
+        }
+        start = goal.at;
+        goal.at = map_exit(to_centre, start);
+    }
     if meeting.met {
         // Of the walks that ink a pixel, the one whose line runs nearest to its centre gives the place.
         atomicMax(&out_ink[pixel_index(at)], silhouette_at(place_of(meeting.facet, meeting.entered) - centre));
     }
-    return meeting.steps;
+    return longest;
 }
 
 @compute @workgroup_size(64)

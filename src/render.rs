@@ -4,7 +4,8 @@ use std::time::Instant;
 
 use crate::error::{Error, Result};
 use crate::gpu::buffers::{Counts, near_plane};
-use crate::gpu::{Buffers, CameraUniform, Gpu, Pass};
+use crate::gpu::sizes::LIST_HEADER;
+use crate::gpu::{Buffers, CameraUniform, Extent, Gpu, Pass};
 use crate::gpu::{border, compose, facing, rasterize, rasterize_large, silhouette, tessellate};
 use crate::ink::InkRaster;
 use crate::plan::{Batch, Border, Method, batches};
@@ -181,7 +182,7 @@ impl<'a> Renderer<'a> {
     /// Composes the last frame and copies it to the CPU.
     ///
     /// # Errors
-    /// Whatever the driver reports; [`Error::Gpu`] when a pixel has a depth and no ID.
+    /// Whatever the driver reports; [`Error::Gpu`] when a pixel has a depth and no ID or a walk was cut short.
     pub fn read(&self) -> Result<Frame> {
         let [width, height] = self.size;
         let mut clock = Clock::Whole;
@@ -194,6 +195,9 @@ impl<'a> Renderer<'a> {
         if counts.orphans > 0 {
             return Err(Error::Gpu { what: format!("{} pixels have a depth and no facet", counts.orphans) });
         }
+        if counts.cut_short > 0 {
+            return Err(Error::Gpu { what: format!("the driver cut {} walks short", counts.cut_short) });
+        }
         let raster = InkRaster { width, height, pixels: bytemuck::pod_collect_to_vec(&bytes) };
         Ok(Frame { raster, longest_walk: counts.longest_walk })
     }
@@ -201,14 +205,15 @@ impl<'a> Renderer<'a> {
     fn run(&self, camera: &Camera, clock: &mut Clock) -> Result<()> {
         self.buffers.write_camera(self.gpu, &CameraUniform::new(self.surface.dem(), camera)?)?;
         let mut work = Work::new(self.gpu, &self.buffers, clock);
-        work.clear(&["pixels", "ink", "summaries", "counts", "candidates"])?;
+        work.clear(&["pixels", "ink", "summaries", "counts"])?;
+        work.empty("candidates", "empty_candidates")?;
         for round in 0..self.rounds {
             for (i, batch) in self.batches.iter().enumerate() {
                 self.rasterize(&mut work, round, i, batch)?;
             }
         }
         for stage in &self.silhouettes {
-            work.record(stage, 0, silhouette::invocations(&stage.pass, camera))?;
+            work.record(stage, 0, silhouette::extent(&stage.pass, camera))?;
         }
         if let Some(stage) = &self.border {
             work.record(stage, 0, border::invocations(&stage.pass, self.rim_edges, self.lattice.level()))?;
@@ -221,7 +226,7 @@ impl<'a> Renderer<'a> {
     fn rasterize(&self, work: &mut Work<'_>, round: u32, i: usize, batch: &Batch) -> Result<()> {
         let group = i * self.rounds as usize + round as usize;
         let [tessellate_stage, facing_stage, small, large] = &self.per_batch;
-        work.clear(&["queue"])?;
+        work.empty("queue", "empty_queue")?;
         if round == 0 || self.batches.len() > 1 {
             work.record(tessellate_stage, group, tessellate::invocations(batch))?;
         }
@@ -229,7 +234,7 @@ impl<'a> Renderer<'a> {
             work.record(facing_stage, group, facing::invocations(batch))?;
         }
         work.record(small, group, rasterize::invocations(batch))?;
-        work.record(large, group, rasterize_large::invocations(&large.pass))?;
+        work.record(large, group, Extent::List("queue"))?;
         if self.batches.len() > 1 {
             work.submit()?;
         }
@@ -256,21 +261,30 @@ impl<'a> Work<'a> {
         Self { encoder: gpu.device.create_command_encoder(&Default::default()), gpu, buffers, clock }
     }
 
-    /// Zeroes buffers. Of lists only the count is cleared.
+    /// Zeroes buffers.
     fn clear(&mut self, names: &[&str]) -> Result<()> {
         for name in names {
-            let count_only = matches!(*name, "queue" | "candidates");
-            self.encoder.clear_buffer(self.buffers.get(name)?, 0, count_only.then_some(4));
+            self.encoder.clear_buffer(self.buffers.get(name)?, 0, None);
         }
         self.timed("clear")
     }
 
-    fn record(&mut self, stage: &Stage, group: usize, invocations: [u32; 2]) -> Result<()> {
+    /// Empties a list by the header of an empty one.
+    fn empty(&mut self, list: &str, header: &str) -> Result<()> {
+        let (list, header) = (self.buffers.get(list)?, self.buffers.get(header)?);
+        self.encoder.copy_buffer_to_buffer(header, 0, list, 0, LIST_HEADER);
+        self.timed("clear")
+    }
+
+    fn record(&mut self, stage: &Stage, group: usize, extent: impl Into<Extent>) -> Result<()> {
         let mut pass = self
             .encoder
             .begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(stage.pass.name), timestamp_writes: None });
         if let Some(group) = stage.groups.get(group) {
-            stage.pass.record(&mut pass, group, invocations);
+            match extent.into() {
+                Extent::Invocations(wanted) => stage.pass.record(&mut pass, group, wanted),
+                Extent::List(name) => stage.pass.record_over(&mut pass, group, self.buffers.get(name)?),
+            }
         }
         drop(pass);
         self.timed(stage.pass.name)

@@ -1,14 +1,24 @@
 //! Every integration test in one binary: linked once, one module a subject.
 
+mod borders;
+mod cli;
+mod closed_forms;
 mod common;
+mod cover;
 mod coverage;
 mod dem;
 mod drawn;
+mod forms;
 mod gpu_errors;
 mod hardware;
 mod ink;
+mod kernels;
 mod mesh;
+mod metrics;
 mod reflection;
+mod same_bytes;
+mod scenes;
+mod silhouettes;
 mod tolerances;
 mod vertices;
 mod watertight;

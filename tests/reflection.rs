@@ -71,7 +71,7 @@ fn shared_structs() -> Vec<(&'static str, Layout)> {
             layout!(CameraUniform: right, up, forward, eye_cell, eye_offset, eye_height, centre, focal, pad, size, wedge),
         ),
         ("Batch", layout!(BatchUniform: first_slot, part_slot, round, pad)),
-        ("Counts", layout!(Counts: longest_walk, orphans)),
+        ("Counts", layout!(Counts: longest_walk, orphans, cut_short)),
         ("Chunk", layout!(Chunk: origin, step, pad)),
         ("RimEdge", layout!(RimEdge: sample, direction, half)),
     ]

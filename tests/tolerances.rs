@@ -1,5 +1,89 @@
 //! Every tolerance of the integration tests, each with its unit and a worked example.
 
+/// How far an inked pixel's centre may lie from the true line, px: k + 0.5 with k = 1.
+///
+/// Example: a true line runs along a row's upper edge, y = 10.0. Pixels of rows 9 and 10 (centres 9.5 and 10.5) are the
+/// line itself, rows 8 and 11 (centres 8.5 and 11.5) lie at 1.5 and still count as within one pixel of it.
+pub const REACH_PX: f64 = 1.5;
+
+/// Share of the true line's length that must lie within [`REACH_PX`] of ink.
+///
+/// Example: of a line of 500 px at most 5 px may be missed.
+pub const RECALL: f64 = 0.99;
+
+/// The same for plain toward-away, which leaves gaps where the away slope is thinner than a pixel.
+///
+/// Example: of a line of 500 px at most 50 px may be missed.
+pub const RECALL_TOWARD_AWAY: f64 = 0.90;
+
+/// How far facets may lie from the mathematical surface, px on the page.
+///
+/// Example: seen with 330 px per unit of tangent from 1 000 m, 0.25 px are 0.76 m.
+pub const GRID_ERROR_PX: f64 = 0.25;
+
+/// Longest piece of a true line, px: visibility is decided once a piece.
+///
+/// Example: where a hill cuts a line off, the true line ends at most 0.125 px wrong.
+pub const TRUTH_PIECE_PX: f64 = 0.25;
+
+/// How far a true line may lie from its closed form (sphere, cone, saddle), as a share of the scene's size.
+///
+/// Example: on a sphere of 400 m radius 1e-6 are 0.4 mm.
+pub const CLOSED_FORM: f64 = 1e-6;
+
+/// The same distance for wide toward-away, which looks at the nearest away depth of the 3 x 3 block and so lengthens a
+/// line's ends by a pixel, 1.5 + sqrt 2 px.
+///
+/// Example: a line ends in the middle of a pixel. The next but one along the diagonal (2.83 px) may be ink, no other.
+pub const WIDE_REACH_PX: f64 = 2.915;
+
+/// Least share of ink within [`REACH_PX`] for wide toward-away; the other methods have no ink beyond.
+///
+/// Example: of 460 inked pixels two at either end of a line may be its lengthening.
+pub const WIDE_PRECISION: f64 = 0.99;
+
+/// Least precision and recall of adjacency by corners on coarse facets.
+///
+/// Example: of 925 inked pixels 185 may lie beside the line, where facets are seen edge-on.
+pub const ADJACENCY_CORNER: [f64; 2] = [0.8, 0.95];
+
+/// Mean distance of the walk's sub-pixel places from the true line, px.
+///
+/// Example: places are kept in 1/64 px; rounding alone is 0.004 px off on average.
+pub const PLACE_MEAN_PX: f64 = 0.02;
+
+/// Least ratio of the mean distance of pixel centres to that of sub-pixel places.
+///
+/// Example: centres 0.66 px off (lines are two pixels wide), places at most 0.033 px off.
+pub const PLACE_GAIN: f64 = 20.0;
+
+/// How far inked pixels may be from the published or measured number, as a share of it.
+///
+/// Example: 4 215 pixels: 4 089 to 4 341 pass.
+pub const COUNT_SHARE: f64 = 0.03;
+
+/// How far from the mathematical place a hidden part of a polyline may begin or end, px.
+///
+/// Example: samples every 0.5 px, hidden only if four neighbours hide it too (1 px), a cover up to 0.4 % nearer still
+/// shows: with a steep ridge the line comes out 1.5 px from where it should.
+pub const COVER_PX: f64 = 2.0;
+
+/// Share of ink of one level that may lie farther than [`REACH_PX`] from any ink of the next finer level.
+///
+/// Example: of 400 px at most 4 px between level 16 and level 32.
+pub const LEVEL_STRAYS: f64 = 0.01;
+
+/// Least number of facets that a walk over a plain passes for each node it visits.
+///
+/// Example: two neighbouring pixels 200 cells apart at level 4 have 1 600 facets between them: at most 80 nodes.
+pub const FACETS_A_LEAP: f64 = 20.0;
+
+/// Share of border pixels that may lie on the rim where something hides it: a rim is drawn where its pixel or one of the
+/// four beside it shows something farther, so that it runs on for a pixel square to the silhouette, more at a slant.
+///
+/// Example: of 816 border pixels at most 24, six at each of four places where a hill hides the rim.
+pub const HIDDEN_SHARE: f64 = 0.03;
+
 /// What the rasterizer may differ by.
 pub mod raster {
     /// Distance on the page between a vertex of the GPU and its f64 evaluation, px.

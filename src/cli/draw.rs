@@ -45,7 +45,7 @@ pub struct DrawArguments {
     #[arg(long, value_name = "DEG", value_parser = values::altitude, allow_hyphen_values = true, help_heading = "View")]
     altitude: Option<f64>,
     /// Horizontal field of view, degrees
-    #[arg(long, value_name = "DEG", value_parser = values::fov, default_value = "60", help_heading = "View")]
+    #[arg(long, value_name = "DEG", value_parser = values::fov, allow_hyphen_values = true, default_value = "60", help_heading = "View")]
     fov: f64,
     /// Pixels across and down
     #[arg(long, value_name = "WxH", value_parser = values::size, default_value = "1920x1080", help_heading = "View")]
@@ -55,7 +55,7 @@ pub struct DrawArguments {
     #[arg(long, value_name = "E0,N0,E1,N1", value_parser = values::crop, allow_hyphen_values = true, help_heading = "Surface")]
     crop: Option<[f64; 4]>,
     /// Factor on every elevation
-    #[arg(long, value_name = "X", value_parser = values::exaggeration, default_value = "1", help_heading = "Surface")]
+    #[arg(long, value_name = "X", value_parser = values::exaggeration, allow_hyphen_values = true, default_value = "1", help_heading = "Surface")]
     exaggeration: f64,
     /// Subdivisions of a cell's edge: 1, 2, 4, 8, 16, 32 or 64
     #[arg(long, value_name = "N", value_parser = values::level, default_value = "4", help_heading = "Surface")]

@@ -9,6 +9,8 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 
 use super::device::Gpu;
+use super::rasterize_large::empty_queue;
+use super::silhouette::NO_CANDIDATES;
 use super::sizes::{self, fits};
 use crate::dem::Dem;
 use crate::error::{Error, Result};
@@ -90,6 +92,8 @@ pub struct Counts {
     pub longest_walk: u32,
     /// Pixels with a depth and no ID: must be 0.
     pub orphans: u32,
+    /// Walks that a driver ended before they were done: must be 0.
+    pub cut_short: u32,
 }
 
 impl SceneUniform {
@@ -188,6 +192,8 @@ impl Buffers {
         buffers.upload(gpu, "valid", bytemuck::cast_slice(&if voids { valid_bits(dem) } else { vec![0] }))?;
         buffers.upload(gpu, "rim", bytemuck::cast_slice(rim))?;
 
+        buffers.upload(gpu, "empty_queue", bytemuck::bytes_of(&empty_queue([width, height])))?;
+        buffers.upload(gpu, "empty_candidates", bytemuck::bytes_of(&NO_CANDIDATES))?;
         for (name, size) in sizes::written(lattice.chunks().len() as u64, [width, height])? {
             buffers.create(gpu, name, size)?;
         }
@@ -240,7 +246,8 @@ impl Buffers {
 
     fn create(&mut self, gpu: &Gpu, name: &'static str, size: u64) -> Result<()> {
         fits(name, size)?;
-        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
+        let copied = wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
+        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::INDIRECT | copied;
         let size = size.max(16).next_multiple_of(4);
         let descriptor = wgpu::BufferDescriptor { label: Some(name), size, usage, mapped_at_creation: false };
         self.named.insert(name, gpu.device.create_buffer(&descriptor));
@@ -252,7 +259,7 @@ fn upload(gpu: &Gpu, name: &'static str, bytes: &[u8], usage: wgpu::BufferUsages
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(name),
         size: (bytes.len() as u64).max(16).next_multiple_of(4),
-        usage: usage | wgpu::BufferUsages::COPY_DST,
+        usage: usage | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
         mapped_at_creation: false,
     });
     gpu.queue.write_buffer(&buffer, 0, bytes);

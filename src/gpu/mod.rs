@@ -14,4 +14,4 @@ pub mod tessellate;
 
 pub use buffers::{Buffers, CameraUniform};
 pub use device::{AdapterChoice, Gpu, Int64};
-pub use pass::Pass;
+pub use pass::{Extent, Pass};

@@ -18,6 +18,21 @@ macro_rules! shader {
     };
 }
 
+/// How far a pass reaches.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Extent {
+    /// At least so many invocations along x and y.
+    Invocations([u32; 2]),
+    /// As many workgroups as the first three words of the list of this name say.
+    List(&'static str),
+}
+
+impl From<[u32; 2]> for Extent {
+    fn from(invocations: [u32; 2]) -> Self {
+        Self::Invocations(invocations)
+    }
+}
+
 /// A compiled pass.
 pub struct Pass {
     /// Name of the shader file, the entry point, the label and the timer.
@@ -80,7 +95,11 @@ impl Pass {
             layout: None,
             module: &module,
             entry_point: Some(name),
-            compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
+            compilation_options: wgpu::PipelineCompilationOptions {
+                constants: &constants,
+                // Passes read of it only what they wrote.
+                zero_initialize_workgroup_memory: false,
+            },
             cache: None,
         });
         gpu.check()?;
@@ -116,5 +135,12 @@ impl Pass {
         pass.set_bind_group(0, group, &[]);
         let [x, y] = [0, 1].map(|axis| invocations[axis].div_ceil(self.workgroup[axis]));
         pass.dispatch_workgroups(x, y, 1);
+    }
+
+    /// Records the pass over as many workgroups as the first three words of `list` say.
+    pub fn record_over(&self, pass: &mut wgpu::ComputePass<'_>, group: &wgpu::BindGroup, list: &wgpu::Buffer) {
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, group, &[]);
+        pass.dispatch_workgroups_indirect(list, 0);
     }
 }

@@ -4,8 +4,9 @@ use super::{Gpu, Pass};
 use crate::error::Result;
 use crate::plan::Visibility;
 
-/// Workgroups that share the queue, however long it is.
-const WORKGROUPS: u32 = 256;
+/// Tiles of 32 x 32 px that one workgroup draws of a facet at most: the software driver ends an invocation's loops, all
+/// together, after 65 535 turns.
+const TILES: u32 = 64;
 
 /// The composed shader that keeps what `visibility` says.
 pub fn source(visibility: Visibility) -> &'static str {
@@ -30,7 +31,8 @@ pub fn pass(gpu: &Gpu, visibility: Visibility, constants: &[(&str, f64)]) -> Res
     Pass::new(gpu, "rasterize_large", source(visibility), constants)
 }
 
-/// A fixed number of workgroups.
-pub fn invocations(pass: &Pass) -> [u32; 2] {
-    [WORKGROUPS * pass.workgroup[0], 1]
+/// An empty queue on a page of this size: workgroups along x, y and z, one row of them a share, and the count.
+pub fn empty_queue([width, height]: [u32; 2]) -> [u32; 4] {
+    let tiles = width.div_ceil(32) * height.div_ceil(32);
+    [0, tiles.div_ceil(TILES), 1, 0]
 }

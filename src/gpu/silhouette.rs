@@ -1,6 +1,6 @@
 //! Pass 3, the silhouettes: `adjacency`, `toward_away`, or `candidates` and `walk`.
 
-use super::{Gpu, Pass};
+use super::{Extent, Gpu, Pass};
 use crate::error::Result;
 use crate::plan::{Method, Share};
 use crate::view::Camera;
@@ -14,8 +14,8 @@ pub const CANDIDATES: &str = crate::shader!("scene", "lattice", "quiet", "candid
 /// The composed shader of the walk.
 pub const WALK: &str = crate::shader!("scene", "lattice", "surface", "quiet", "wide", "ink", "walk");
 
-/// Workgroups that share the list of candidates, however long it is.
-const WALK_WORKGROUPS: u32 = 512;
+/// An empty list of candidates: workgroups of the walk along x, y and z, and the count.
+pub const NO_CANDIDATES: [u32; 4] = [0, 1, 1, 0];
 
 /// Compiles the passes of a method, in their order.
 ///
@@ -38,14 +38,14 @@ pub fn passes(gpu: &Gpu, method: Method, constants: &[(&str, f64)]) -> Result<Ve
     }
 }
 
-/// Pixels of a column that one invocation works off.
-const STRIP: u32 = 8;
+/// Pixels across and down that one invocation works off.
+const BLOCK: [u32; 2] = [4, 8];
 
-/// One invocation a pixel or a column of pixels; for the walk a fixed number of workgroups.
-pub fn invocations(pass: &Pass, camera: &Camera) -> [u32; 2] {
+/// One invocation a pixel, a block of pixels, or a candidate.
+pub fn extent(pass: &Pass, camera: &Camera) -> Extent {
     match pass.name {
-        "walk" => [WALK_WORKGROUPS * pass.workgroup[0], 1],
-        "adjacency" => [camera.width, camera.height],
-        _ => [camera.width, camera.height.div_ceil(STRIP)],
+        "walk" => Extent::List("candidates"),
+        "adjacency" => Extent::Invocations([camera.width, camera.height]),
+        _ => Extent::Invocations([camera.width.div_ceil(BLOCK[0]), camera.height.div_ceil(BLOCK[1])]),
     }
 }

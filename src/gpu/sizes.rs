@@ -9,6 +9,8 @@ use crate::surface::lattice::{CHUNK_FACETS, CHUNK_VERTICES, CHUNK_WORDS};
 pub const LARGEST_BINDING: u64 = 128 << 20;
 /// Pixels along the longest page side: beyond it, places within the guard band would leave +-2^15 px.
 pub const LARGEST_SIDE: u32 = 16_384;
+/// Bytes of a list before its items: workgroups along x, y and z, and the count.
+pub const LIST_HEADER: u64 = 16;
 /// The parts of the facing bits.
 const FACING: [&str; 4] = ["facing_0", "facing_1", "facing_2", "facing_3"];
 
@@ -33,10 +35,10 @@ pub fn written(chunks: u64, [width, height]: [u32; 2]) -> Result<Vec<(&'static s
         ("summaries", chunks * 4),
         ("places", batch * u64::from(CHUNK_VERTICES) * 16),
         ("screens", batch * u64::from(CHUNK_VERTICES) * 16),
-        ("queue", 4 + batch * u64::from(CHUNK_FACETS) * 4),
+        ("queue", LIST_HEADER + batch * u64::from(CHUNK_FACETS) * 4),
         ("pixels", pixels * 8),
         ("ink", pixels * 4),
-        ("candidates", 4 + pixels * 4),
+        ("candidates", LIST_HEADER + pixels * 4),
         ("page", pixels * 8),
         ("counts", size_of::<Counts>() as u64),
     ]);

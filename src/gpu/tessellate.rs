@@ -16,7 +16,10 @@ pub fn pass(gpu: &Gpu, constants: &[(&str, f64)]) -> Result<Pass> {
     Pass::new(gpu, "tessellate", SOURCE, constants)
 }
 
-/// One invocation a vertex, one row a chunk.
+/// Vertices of a column that one invocation works off.
+const STRIP: u32 = 11;
+
+/// One invocation a third of a column, one row a chunk.
 pub fn invocations(batch: &Batch) -> [u32; 2] {
-    [CHUNK_VERTICES, batch.chunks]
+    [CHUNK_VERTICES / STRIP, batch.chunks]
 }

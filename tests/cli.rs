@@ -1,0 +1,224 @@
+//! The command line as scripts see it: exit codes, one clear line, nothing written on failure, promised JSON keys.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// A folder with `hill.asc`: 40 x 40 samples, 10 m, a hill of 60 m and a hole.
+struct Place {
+    folder: TempDir,
+}
+
+impl Place {
+    fn new() -> Self {
+        let folder = TempDir::new().expect("a temporary folder");
+        let mut text =
+            String::from("ncols 40\nnrows 40\nxllcorner 500000\nyllcorner 4000000\ncellsize 10\nNODATA_value -9999\n");
+        for r in 0..40 {
+            for c in 0..40 {
+                let (x, y) = (f64::from(c) - 19.5, f64::from(r) - 19.5);
+                let hole = (4..7).contains(&c) && (30..33).contains(&r);
+                let height = if hole { -9999.0 } else { 60.0 * (-(x * x + y * y) / 80.0).exp() };
+                text += &format!("{height:.3} ");
+            }
+            text += "\n";
+        }
+        fs::write(folder.path().join("hill.asc"), text).expect("hill.asc");
+        Self { folder }
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn run(&self, arguments: &[&str]) -> Output {
+        self.command(arguments).output().expect("hachure runs")
+    }
+
+    fn command(&self, arguments: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_hachure"));
+        command.current_dir(self.folder.path()).args(arguments);
+        command
+    }
+
+    /// What stands in the folder beside the DEM.
+    fn written(&self) -> Vec<String> {
+        let entries = fs::read_dir(self.folder.path()).expect("the folder");
+        let names = entries.map(|e| e.expect("an entry").file_name().to_string_lossy().into_owned());
+        let mut names: Vec<_> = names.filter(|n| n != "hill.asc").collect();
+        names.sort();
+        names
+    }
+}
+
+const DRAW: [&str; 6] = ["draw", "hill.asc", "-o", "out.png", "--size", "64x48"];
+
+fn stderr(output: &Output) -> String {
+    // The Vulkan loader has its own words on machines without a desktop.
+    let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    text.lines().filter(|l| !l.contains("XDG_RUNTIME_DIR")).collect::<Vec<_>>().join("\n")
+}
+
+/// Fails with `code`, says `words` in one line, and leaves nothing behind.
+fn refuses(place: &Place, arguments: &[&str], code: i32, words: &str) {
+    let output = place.run(arguments);
+    let said = stderr(&output);
+    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {said}");
+    assert!(said.contains(words), "{arguments:?} should say `{words}`: {said}");
+    if code == 1 {
+        assert_eq!(said.lines().count(), 1, "one line: {said}");
+    }
+    assert_eq!(place.written(), Vec::<String>::new(), "{arguments:?} left files behind");
+}
+
+#[test]
+fn draw_writes_picture_mask_and_report() {
+    let place = Place::new();
+    let output = place.run(&[&DRAW[..], &["--mask", "mask.png", "--json", "report.json"]].concat());
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert_eq!(place.written(), ["mask.png", "out.png", "report.json"]);
+    let report: Value =
+        serde_json::from_str(&fs::read_to_string(place.path("report.json")).expect("report")).expect("JSON");
+    for key in ["facets", "inked", "frame_ms", "passes", "adapter", "view", "left_out"] {
+        assert!(!report[key].is_null(), "{key} is missing: {report}");
+    }
+    for key in ["eye", "azimuth", "altitude", "fov", "projection", "crs"] {
+        assert!(!report["view"][key].is_null(), "view.{key} is missing: {report}");
+    }
+    assert!(report["passes"][0]["name"].is_string() && report["passes"][0]["ms"].is_number());
+    // Patches of 39 x 39 cells less those around 3 x 3 voids, times 4 x 4.
+    assert_eq!(report["facets"], (2 * 39 * 39 - (2 * 16 - 2)) * 16);
+    let (size, ink) = mask(&place.path("mask.png"));
+    assert_eq!(size, (64, 48));
+    assert_eq!(report["inked"], ink, "the mask and the report agree");
+    assert!(ink > 20);
+}
+
+/// Size of a mask and its ink; asserts that it has 1 bit a pixel.
+fn mask(path: &Path) -> ((u32, u32), u64) {
+    let decoder = png::Decoder::new(std::io::BufReader::new(fs::File::open(path).expect("mask")));
+    let mut reader = decoder.read_info().expect("a PNG");
+    assert_eq!((reader.info().bit_depth, reader.info().color_type), (png::BitDepth::One, png::ColorType::Grayscale));
+    let (width, height) = (reader.info().width, reader.info().height);
+    let mut ink = 0;
+    while let Some(row) = reader.next_row().expect("a row") {
+        ink += (0..width).filter(|x| row.data()[*x as usize / 8] >> (7 - x % 8) & 1 == 0).count() as u64;
+    }
+    ((width, height), ink)
+}
+
+#[test]
+fn printed_flags_repeat_the_chosen_view() {
+    let place = Place::new();
+    let chosen = place.run(&DRAW);
+    assert!(chosen.status.success(), "{}", stderr(&chosen));
+    let stdout = String::from_utf8_lossy(&chosen.stdout);
+    let flags = stdout.lines().find_map(|l| l.strip_prefix("view: ")).expect("a view line").to_owned();
+    let first = fs::read(place.path("out.png")).expect("out.png");
+    let repeat = [&["draw", "hill.asc", "-o", "out.png"][..], &flags.split(' ').collect::<Vec<_>>()].concat();
+    assert!(place.run(&repeat).status.success());
+    assert_eq!(fs::read(place.path("out.png")).expect("out.png"), first);
+    // Another eye gives another picture.
+    assert!(place.run(&[&DRAW[..], &["--eye", "500100,4000050,+80", "--azimuth", "20"]].concat()).status.success());
+    assert_ne!(fs::read(place.path("out.png")).expect("out.png"), first);
+}
+
+#[test]
+fn every_method_and_switch_draws() {
+    let place = Place::new();
+    let cases: [&[&str]; 8] = [
+        &["--method", "walk", "--level", "2"],
+        &["--method", "toward-away"],
+        &["--method", "toward-away", "--wide"],
+        &["--method", "adjacency", "--share", "corner", "--level", "1"],
+        &["--border", "off", "--exaggeration", "2.5"],
+        &["--crop", "500050,4000050,500350,4000350"],
+        &["--adapter", "cpu", "--no-int64"],
+        &["--altitude", "-90", "--eye", "500200,4000200,900"],
+    ];
+    for case in cases {
+        let output = place.run(&[&DRAW[..], case].concat());
+        assert!(output.status.success(), "{case:?}: {}", stderr(&output));
+    }
+}
+
+#[test]
+fn an_eye_below_ground_draws_with_a_warning() {
+    let place = Place::new();
+    let output = place.run(&[&DRAW[..], &["--eye", "500200,4000200,20", "--azimuth", "0"]].concat());
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert!(stderr(&output).contains("warning: the eye is") && stderr(&output).contains("below the ground"));
+    assert_eq!(place.written(), ["out.png"]);
+}
+
+#[test]
+fn wrong_usage_exits_with_2() {
+    let place = Place::new();
+    let cases: [(&[&str], &str); 20] = [
+        (&["--lonlat", "1,2,3"], "--lonlat"),
+        (&["--style", "x"], "--style"),
+        (&["--level", "3"], "want 1, 2, 4"),
+        (&["--level", "auto"], "want 1, 2, 4"),
+        (&["--size", "0x48"], "want WxH"),
+        (&["--size", "99999x1"], "want WxH"),
+        (&["--fov", "nan"], "out of range"),
+        (&["--fov", "180"], "want 0.1 to 170"),
+        (&["--altitude", "91"], "want -90 to 90"),
+        (&["--azimuth", "inf"], "out of range"),
+        (&["--eye", "1,2"], "want E,N,Z"),
+        (&["--eye", "NaN,2,3"], "out of range"),
+        (&["--eye", "1e300,2,3"], "out of range"),
+        (&["--exaggeration", "0"], "above 0"),
+        (&["--exaggeration", "-1"], "above 0"),
+        (&["--crop", "10,10,5,20"], "west,south,east,north"),
+        (&["--wide"], "--method toward-away"),
+        (&["--share", "edge"], "--method adjacency"),
+        (&["--eye", "0,0,+10"], "no ground"),
+        (&["--eye", "99999999,0,10"], "cells from the DEM"),
+    ];
+    for (flags, words) in cases {
+        refuses(&place, &[&DRAW[..4], flags].concat(), 2, words);
+    }
+    refuses(&place, &["draw", "hill.asc", "-o", "out.svg"], 2, ".png");
+    refuses(&place, &["draw", "hill.asc"], 2, "--output");
+    refuses(&place, &["paint"], 2, "paint");
+}
+
+#[test]
+fn failures_exit_with_1_and_say_why() {
+    let place = Place::new();
+    refuses(&place, &["draw", "none.tif", "-o", "out.png"], 1, "none.tif");
+    refuses(&place, &["draw", ".", "-o", "out.png"], 1, "directory");
+    refuses(&place, &["info", "none.tif"], 1, "none.tif");
+    refuses(&place, &["draw", "hill.asc", "-o", "no/where.png"], 1, "no/where.png");
+    refuses(&place, &[&DRAW[..], &["--mask", "no/where.png"]].concat(), 1, "no/where.png");
+    refuses(&place, &[&DRAW[..], &["--crop", "0,0,10,10"]].concat(), 1, "hill.asc");
+    refuses(&place, &[&DRAW[..4], &["--size", "16384x16384"]].concat(), 1, "--size");
+    refuses(&place, &[&DRAW[..], &["--adapter", "no such adapter"]].concat(), 1, "no such adapter");
+}
+
+#[test]
+fn no_adapter_says_how_to_get_one() {
+    let place = Place::new();
+    let mut command = place.command(&DRAW);
+    // A loader that finds no driver is a machine without one.
+    let output = command.env("VK_DRIVER_FILES", "/nonexistent").env("VK_ICD_FILENAMES", "/nonexistent").output();
+    let output = output.expect("hachure runs");
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    assert!(stderr(&output).contains("mesa-vulkan-drivers"), "{}", stderr(&output));
+    assert_eq!(place.written(), Vec::<String>::new());
+}
+
+#[test]
+fn info_prints_what_the_dem_holds() {
+    let place = Place::new();
+    let output = place.run(&["info", "hill.asc"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let stdout = String::from_utf8_lossy(&output.stdout);
+    for words in ["40 columns x 40 rows", "10 m x 10 m", "voids      9"] {
+        assert!(stdout.contains(words), "{words}: {stdout}");
+    }
+}
