@@ -148,7 +148,7 @@ impl Lattice {
             x: chunk.origin[0] + (column + dx) * chunk.step,
             y: chunk.origin[1] + (row + dy) * chunk.step,
         };
-        if id % 2 == 0 { [at(0, 0), at(0, 1), at(1, 1)] } else { [at(0, 0), at(1, 1), at(1, 0)] }
+        if id.is_multiple_of(2) { [at(0, 0), at(0, 1), at(1, 1)] } else { [at(0, 0), at(1, 1), at(1, 0)] }
     }
 }
 
