@@ -1,7 +1,8 @@
 //! Our rasterizer against the device's own over the same snapped triangles: the same pixels covered, and the same
 //! facets but for ties; and our three kinds of raster against each other, to the bit.
 
-use hachure::dem::read;
+use glam::{DVec2, DVec3};
+use hachure::dem::{Dem, read};
 use hachure::gpu::{AdapterChoice, Gpu, Int64};
 use hachure::plan::Method;
 use hachure::render::Renderer;
@@ -85,7 +86,7 @@ fn from_outside(surface: &Surface, azimuth: f64, altitude: f64, away: f64, size:
     let dem = surface.dem();
     let [west, south, east, north] = dem.extent();
     let [low, high] = dem.range().expect("heights").map(f64::from);
-    let middle = glam::DVec3::new(west + east, south + north, low + high) / 2.0;
+    let middle = DVec3::new(west + east, south + north, low + high) / 2.0;
     let camera = look(middle, azimuth, altitude, size);
     Camera { eye: middle - camera.axes()[2] * away * (east - west), ..camera }
 }
@@ -132,6 +133,24 @@ fn coverage_is_the_hardwares_where_thousands_of_facets_are_large() {
     let drawn = check("spikes", &scene, 1, &from_outside(&scene, 30.0, 0.0, 1.8, [1024, 1024]));
     let large = drawn.iter().filter(is_large).count();
     assert!(large > 10_000, "{large} large facets");
+}
+
+#[test]
+fn coverage_is_the_hardwares_where_edges_meet_pixel_centres() {
+    // A plain from straight above: 512 px per unit of tangent from 512 m make a metre a pixel, and half a metre aside
+    // puts every sample on a pixel's centre: the top-left rule decides along every edge.
+    for cell in [8.0, 50.0, 150.0] {
+        let samples = 1 + (900.0 / cell) as usize;
+        let dem = Dem::from_heights(samples, DVec2::splat(cell), DVec2::ZERO, vec![0.0; samples * samples]);
+        let [_, south, east, _] = dem.extent();
+        let eye = DVec3::new((east / 2.0 / cell).floor() * cell - 0.5, (south / 2.0 / cell).ceil() * cell + 0.5, 512.0);
+        let camera = Camera { eye, azimuth: 0.0, altitude: -90.0, fov: 90.0, width: 1024, height: 1024 };
+        let scene = Surface::new(dem);
+        for n in [1, 2] {
+            let drawn = check("plain", &scene, n, &camera);
+            assert!(drawn.iter().flatten().all(|v| v[0] % 128 == 0 && v[1] % 128 == 0), "a place between centres");
+        }
+    }
 }
 
 #[test]
