@@ -29,21 +29,15 @@ fn small_bias(gradient: vec2<i32>, wide: bool) -> i32 {
     return select(edge_bias(gradient), 128 * (abs(gradient.x) + abs(gradient.y)), wide);
 }
 
-fn rasterize_small(t_in: Triangle, id: u32, away: bool) {
-    var t = t_in;
+fn rasterize_small(either: Triangle, id: u32, away: bool) {
     let wide = conservative && away;
-    let ab = t.b - t.a;
-    let ac = t.c - t.a;
+    let ab = either.b - either.a;
+    let ac = either.c - either.a;
     let area = ab.x * ac.y - ab.y * ac.x;
     if area == 0 {
         return;
     }
-    if area < 0 {
-        let b = t.b;
-        t.b = t.c;
-        t.c = b;
-        t.depth = t.depth.xzy;
-    }
+    let t = oriented(either, area);
     let box = pixel_box(t, wide);
     if any(box.low > box.high) {
         return;

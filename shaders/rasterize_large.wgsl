@@ -112,21 +112,15 @@ fn rasterize_tile(t: Triangle, box: Box, tile: vec2<i32>, lane: u32, area: f32, 
     }
 }
 
-fn rasterize_triangle(t_in: Triangle, share: vec2<u32>, lane: u32, id: u32, away: bool, wide: bool) {
-    var t = t_in;
-    let ab = t.b - t.a;
-    let ac = t.c - t.a;
+fn rasterize_triangle(either: Triangle, share: vec2<u32>, lane: u32, id: u32, away: bool, wide: bool) {
+    let ab = either.b - either.a;
+    let ac = either.c - either.a;
     let area = wide_sub(wide_mul(ab.x, ac.y), wide_mul(ab.y, ac.x));
     let sign = wide_sign(area);
     if sign == 0 {
         return;
     }
-    if sign < 0 {
-        let b = t.b;
-        t.b = t.c;
-        t.c = b;
-        t.depth = t.depth.xzy;
-    }
+    let t = oriented(either, sign);
     let box = pixel_box(t, wide);
     if any(box.low > box.high) {
         return;

@@ -8,6 +8,14 @@ struct Triangle {
     depth: vec3<f32>,
 }
 
+// The same triangle with positive area, `area` having the sign of its own: both sides are drawn.
+fn oriented(t: Triangle, area: i32) -> Triangle {
+    if area < 0 {
+        return Triangle(t.a, t.c, t.b, t.depth.xzy);
+    }
+    return t;
+}
+
 struct Box {
     low: vec2<i32>,
     high: vec2<i32>,

@@ -3,8 +3,8 @@
 use std::time::Instant;
 
 use crate::error::{Error, Result};
-use crate::gpu::buffers::{Counts, near_plane};
 use crate::gpu::sizes::LIST_HEADER;
+use crate::gpu::uniforms::{Counts, near_plane};
 use crate::gpu::{Buffers, CameraUniform, Extent, Gpu, Pass};
 use crate::gpu::{border, compose, facing, rasterize, rasterize_large, silhouette, tessellate};
 use crate::ink::InkRaster;

@@ -7,7 +7,7 @@ use std::collections::HashMap;
 
 use glam::{DVec2, IVec2};
 use hachure::dem::Dem;
-use hachure::gpu::buffers::SceneUniform;
+use hachure::gpu::uniforms::SceneUniform;
 use hachure::gpu::{Gpu, Pass};
 use hachure::surface::lattice::{CELL_STEPS, CHUNK_FACETS, NO_SLOT};
 use hachure::surface::{Lattice, LatticePoint};

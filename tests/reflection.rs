@@ -4,9 +4,9 @@
 use std::collections::BTreeMap;
 use std::mem::offset_of;
 
-use hachure::gpu::buffers::{BatchUniform, Counts, SceneUniform};
 use hachure::gpu::pass::reflect;
 use hachure::gpu::sizes::{LARGEST_BINDING, fits, written};
+use hachure::gpu::uniforms::{BatchUniform, Counts, SceneUniform};
 use hachure::gpu::{CameraUniform, border, compose, facing, rasterize, rasterize_large, silhouette, tessellate};
 use hachure::plan::Visibility;
 use hachure::plan::batches::{BATCH_CHUNKS, PART_CHUNKS};

@@ -11,7 +11,9 @@ pub mod rasterize_large;
 pub mod silhouette;
 pub mod sizes;
 pub mod tessellate;
+pub mod uniforms;
 
-pub use buffers::{Buffers, CameraUniform};
+pub use buffers::Buffers;
 pub use device::{AdapterChoice, Gpu, Int64};
 pub use pass::{Extent, Pass};
+pub use uniforms::CameraUniform;

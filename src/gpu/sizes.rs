@@ -1,6 +1,6 @@
 //! How large each buffer is: numbers alone, so that limits are known before anything is allocated.
 
-use super::buffers::Counts;
+use super::uniforms::Counts;
 use crate::error::{Error, Result};
 use crate::plan::batches::{BATCH_CHUNKS, PART_CHUNKS};
 use crate::surface::lattice::{CHUNK_FACETS, CHUNK_VERTICES, CHUNK_WORDS};

@@ -3,7 +3,7 @@
 
 use glam::DVec2;
 use hachure::dem::Dem;
-use hachure::gpu::buffers::SceneUniform;
+use hachure::gpu::uniforms::SceneUniform;
 use hachure::gpu::{Gpu, Pass};
 use hachure::surface::lattice::{CHUNK_FACETS, NO_SLOT};
 use hachure::surface::{Lattice, LatticePoint};

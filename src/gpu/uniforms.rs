@@ -1,0 +1,135 @@
+//! The structs that shaders and CPU share, laid out as `shaders/scene.wgsl` and `shaders/ink.wgsl` declare them.
+
+use bytemuck::{Pod, Zeroable};
+use glam::DVec3;
+
+use crate::dem::Dem;
+use crate::error::{Error, Result};
+use crate::surface::Lattice;
+use crate::view::Camera;
+
+/// The near plane in cells: a power of two, so that depths scale without rounding.
+pub const NEAR_CELLS: f64 = 1.0 / 1024.0;
+
+/// `Scene` of scene.wgsl.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct SceneUniform {
+    /// Metres between columns and rows.
+    pub cell: [f32; 2],
+    /// Columns, rows.
+    pub samples: [u32; 2],
+    /// Chunks across, down.
+    pub chunk_grid: [u32; 2],
+    /// Lattice units between vertices.
+    pub step: u32,
+    /// Metres along the view axis.
+    pub near: f32,
+}
+
+/// `Camera` of scene.wgsl.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct CameraUniform {
+    /// Unit vector to the right.
+    pub right: [f32; 4],
+    /// Unit vector upwards on the page.
+    pub up: [f32; 4],
+    /// Unit vector along the view axis.
+    pub forward: [f32; 4],
+    /// The sample north-west of the eye.
+    pub eye_cell: [i32; 2],
+    /// Metres east and north from that sample to the eye.
+    pub eye_offset: [f32; 2],
+    /// Metres, high part and remainder.
+    pub eye_height: [f32; 2],
+    /// Half the page in pixels.
+    pub centre: [f32; 2],
+    /// Pixels per unit of tangent.
+    pub focal: f32,
+    /// Fills to 8 bytes.
+    pub pad: u32,
+    /// Pixels across, down.
+    pub size: [u32; 2],
+    /// Inward normals of the two sides of the page's map projection; 0 where it is no wedge.
+    pub wedge: [f32; 4],
+}
+
+/// `Batch` of scene.wgsl.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct BatchUniform {
+    /// Of the batch.
+    pub first_slot: u32,
+    /// The same, within its part of the facing bits.
+    pub part_slot: u32,
+    /// Which round over the facets this is.
+    pub round: u32,
+    /// Fills to 16 bytes.
+    pub pad: u32,
+}
+
+/// `Counts` of ink.wgsl.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct Counts {
+    /// Nodes the longest walk visited.
+    pub longest_walk: u32,
+    /// Pixels with a depth and no ID: must be 0.
+    pub orphans: u32,
+    /// Walks that a driver ended before they were done: must be 0.
+    pub cut_short: u32,
+}
+
+impl SceneUniform {
+    /// What the shaders need to know of a DEM and its lattice.
+    pub fn new(dem: &Dem, lattice: &Lattice) -> Self {
+        Self {
+            cell: dem.cell().as_vec2().to_array(),
+            samples: [dem.columns() as u32, dem.rows() as u32],
+            chunk_grid: lattice.grid(),
+            step: lattice.level().step(),
+            near: near_plane(dem) as f32,
+        }
+    }
+}
+
+/// Metres along the view axis to the near plane.
+pub fn near_plane(dem: &Dem) -> f64 {
+    dem.cell().min_element() * NEAR_CELLS
+}
+
+impl CameraUniform {
+    /// The camera relative to the grid, so that the GPU never sees a northing.
+    ///
+    /// # Errors
+    /// [`Error::Flag`] when the eye is farther from the DEM than f32 can count cells.
+    pub fn new(dem: &Dem, camera: &Camera) -> Result<Self> {
+        let place = dem.grid_place(camera.eye.truncate());
+        let eye_cell = place.floor();
+        if !camera.eye.is_finite() || eye_cell.abs().max_element() >= f64::from(1 << 22) {
+            return Err(Error::flag(
+                "--eye",
+                format!("{:.0},{:.0} is more than 4 million cells from the DEM", camera.eye.x, camera.eye.y),
+                "give an eye in the CRS of the DEM, near it",
+            ));
+        }
+        let offset = (place - eye_cell) * dem.cell() * glam::DVec2::new(1.0, -1.0);
+        let high = camera.eye.z as f32;
+        let axis = |v: DVec3| v.as_vec3().extend(0.0).to_array();
+        let [right, up, forward] = camera.axes();
+        Ok(Self {
+            right: axis(right),
+            up: axis(up),
+            forward: axis(forward),
+            eye_cell: eye_cell.as_ivec2().to_array(),
+            eye_offset: offset.as_vec2().to_array(),
+            eye_height: [high, (camera.eye.z - f64::from(high)) as f32],
+            centre: [camera.width as f32 / 2.0, camera.height as f32 / 2.0],
+            focal: camera.focal() as f32,
+            pad: 0,
+            size: [camera.width, camera.height],
+            wedge: camera.wedge().map_or([0.0; 4], |[a, b]| [a.x as f32, a.y as f32, b.x as f32, b.y as f32]),
+        })
+    }
+}
