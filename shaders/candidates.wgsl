@@ -1,6 +1,6 @@
 // One invocation a block of 4 x 8 pixels: lists the pixels, and of each the pairs with its eastern and southern
 // neighbours, between which a walk could meet an away facet. Most pairs lie in one chunk and are dismissed by its
-// summary; what remains is looked at by the walk itself.
+// summary; what remains is looked into by `pairs`.
 
 // Pixels for another pass, and the workgroups of 64 that it takes along x, as far as they go.
 struct Candidates {
@@ -22,12 +22,25 @@ fn shown(at: vec2<i32>) -> u32 {
     return pixels[pixel_index(clamp(at, vec2<i32>(0), vec2<i32>(camera.size) - 1))].x;
 }
 
+// Blocks of a chunk between two of its facets, as bits of its summary.
+fn blocks_between(local_p: u32, local_q: u32) -> u32 {
+    let p = local_p >> 7u;
+    let q = local_q >> 7u;
+    let low_x = min(p & 3u, q & 3u);
+    let high_x = max(p & 3u, q & 3u);
+    let low_y = min(p, q) >> 2u;
+    let high_y = max(p, q) >> 2u;
+    let row = ((2u << high_x) - 1u) & ~((1u << low_x) - 1u);
+    let rows = ((16u << (4u * high_y)) - 1u) & ~((1u << (4u * low_y)) - 1u);
+    return (row * 0x1111u) & rows;
+}
+
 // Whether a walk between two pixels must be looked at; `slot` and `summary` belong to `p`.
 fn is_open(p: u32, q: u32, slot: u32, summary: u32) -> bool {
     if p == q {
         return false;
     }
-    if p == 0u || q == 0u || (q - 1u) / CHUNK_FACETS != slot {
+    if !thrifty || p == 0u || q == 0u || (q - 1u) / CHUNK_FACETS != slot {
         return true;
     }
     return (summary & blocks_between((p - 1u) % CHUNK_FACETS, (q - 1u) % CHUNK_FACETS)) != 0u;

@@ -11,12 +11,12 @@ fn sphere_of(slot: u32) -> vec4<f32> {
 // Whether some ray of the page passes over or under the chunk: only such chunks can be seen or be crossed by a walk,
 // since a segment between two points of a wedge stays in it.
 fn in_wedge(sphere: vec4<f32>) -> bool {
-    return !culled || (dot(camera.wedge.xy, sphere.xy) >= -sphere.w && dot(camera.wedge.zw, sphere.xy) >= -sphere.w);
+    return !thrifty || (dot(camera.wedge.xy, sphere.xy) >= -sphere.w && dot(camera.wedge.zw, sphere.xy) >= -sphere.w);
 }
 
 // Whether the chunk can be seen.
 fn in_view(sphere: vec4<f32>) -> bool {
-    if !culled {
+    if !thrifty {
         return true;
     }
     let right = dot(sphere.xyz, camera.right.xyz);

@@ -3,7 +3,7 @@
 
 @group(0) @binding(20) var<storage, read_write> out_pixels: array<atomic<u32>>;
 
-fn emit(pixel: u32, depth: f32, id: u32, away: bool) {
+fn emit(pixel: u32, depth: f32, id: u32, away: bool, centre: bool) {
     if batch.round == 0u {
         atomicMax(&out_pixels[2u * pixel + 1u], bitcast<u32>(depth));
     } else if atomicLoad(&out_pixels[2u * pixel + 1u]) == bitcast<u32>(depth) {

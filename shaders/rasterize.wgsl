@@ -70,7 +70,9 @@ fn rasterize_small(t_in: Triangle, id: u32, away: bool) {
         if (e.x | e.y | e.z) >= 0 {
             let inside = e - bias;
             let depth = depth_at(t, f32(inside.y) * scale, f32(inside.z) * scale);
-            emit(u32(at.y) * camera.size.x + u32(at.x), depth, id, away);
+            let exact = inside + vec3<i32>(edge_bias(g_a), edge_bias(g_b), edge_bias(g_c));
+            let centre = !wide || (exact.x | exact.y | exact.z) >= 0;
+            emit(u32(at.y) * camera.size.x + u32(at.x), depth, id, away, centre);
         }
         at.x += 1;
         e += step_x;

@@ -107,14 +107,13 @@ fn rasterize_tile(t: Triangle, box: Box, tile: vec2<i32>, lane: u32, area: f32, 
         let e_c = c.whole + c.gradient.x * x + c.gradient.y * y;
         if (e_a | e_b | e_c) >= 0 && all(corner_px + at <= box.high) {
             let depth = depth_at(t, edge_value(b, e_b, at) / area, edge_value(c, e_c, at) / area);
-            emit(pixel_index(corner_px + at), depth, id, away);
+            emit(pixel_index(corner_px + at), depth, id, away, !wide);
         }
     }
 }
 
-fn rasterize_triangle(t_in: Triangle, share: vec2<u32>, lane: u32, id: u32, away: bool) {
+fn rasterize_triangle(t_in: Triangle, share: vec2<u32>, lane: u32, id: u32, away: bool, wide: bool) {
     var t = t_in;
-    let wide = conservative && away;
     let ab = t.b - t.a;
     let ac = t.c - t.a;
     let area = wide_sub(wide_mul(ab.x, ac.y), wide_mul(ab.y, ac.x));
@@ -176,7 +175,11 @@ fn rasterize_facet(id: u32, share: vec2<u32>, lane: u32) {
             first = screen;
         }
         if k >= 2u {
-            rasterize_triangle(screen_triangle(first, last, screen), share, lane, id, away);
+            let t = screen_triangle(first, last, screen);
+            rasterize_triangle(t, share, lane, id, away, false);
+            if conservative && away {
+                rasterize_triangle(t, share, lane, id, away, true);
+            }
         }
         last = screen;
     }

@@ -38,7 +38,10 @@ struct Chunk {
 override has_voids: bool = false;
 override facing_parts: u32 = 1u;
 override two_depths: bool = false;
-override culled: bool = true;
+// Away facets are noted in every pixel they touch, not only where they cover the centre.
+override conservative: bool = false;
+// Whether what cannot change the picture is left out.
+override thrifty: bool = true;
 
 @group(0) @binding(0) var<uniform> scene: Scene;
 @group(0) @binding(1) var<uniform> camera: Camera;

@@ -3,18 +3,19 @@
 // block takes the place of the pixel's own.
 override wide_block: bool = false;
 
+@group(0) @binding(20) var<storage, read> touched: array<u32>;
 @group(0) @binding(22) var<storage, read_write> out_ink: array<u32>;
 
 // Pixels across and down that one invocation works off: each pixel is read one and a half times instead of nine.
 const COLUMNS: i32 = 4;
 const ROWS: i32 = 8;
 
-// Four pixels side by side, and of each and its two neighbours the farthest toward and the nearest away depth.
+// Four pixels side by side, and of each and its two neighbours the farthest toward and the nearest touched away depth.
 struct Row {
     own_toward: vec4<u32>,
     own_away: vec4<u32>,
     toward: vec4<u32>,
-    away: vec4<u32>,
+    touched: vec4<u32>,
 }
 
 // The pixel at a page place; off the page the nearest one.
@@ -35,8 +36,20 @@ fn row_at(at: vec2<i32>) -> Row {
     let toward = select(vec4<u32>(0u), nearer, nearer > away);
     let west = vec4<u32>(select(0u, a.y, a.y > a.x), toward.xyz);
     let east = vec4<u32>(toward.yzw, select(0u, f.y, f.y > f.x));
-    let away_around = max(vec4<u32>(a.x, away.xyz), vec4<u32>(away.yzw, f.x));
-    return Row(nearer, away, min(toward, min(west, east)), max(away, away_around));
+    return Row(nearer, away, min(toward, min(west, east)), nearest_touched(at));
+}
+
+// Of four pixels side by side and their neighbours, the nearest depth of away facets that touch them.
+fn nearest_touched(at: vec2<i32>) -> vec4<u32> {
+    if !wide_block {
+        return vec4<u32>(0u);
+    }
+    var depths: array<u32, 6>;
+    for (var k = 0; k < 6; k++) {
+        depths[k] = touched[pixel_index(clamp(at + vec2<i32>(k - 1, 0), vec2<i32>(0), vec2<i32>(camera.size) - 1))];
+    }
+    let own = vec4<u32>(depths[1], depths[2], depths[3], depths[4]);
+    return max(own, max(vec4<u32>(depths[0], own.xyz), vec4<u32>(own.yzw, depths[5])));
 }
 
 @compute @workgroup_size(64)
@@ -50,7 +63,7 @@ fn toward_away(@builtin(global_invocation_id) invocation: vec3<u32>) {
     var here = row_at(at);
     for (; at.y < end.y; at.y++) {
         let south = row_at(at + vec2<i32>(0, 1));
-        let away = select(here.own_away, max(here.away, max(north.away, south.away)), wide_block);
+        let away = select(here.own_away, max(here.touched, max(north.touched, south.touched)), wide_block);
         // The pixel itself is among the nine: its toward depth is nearer than its away depth, so it inks nothing.
         let toward = min(here.toward, min(north.toward, south.toward));
         let inked = (here.own_toward > away) & (away > toward);

@@ -1,8 +1,5 @@
 // A snapped triangle and its edge functions, as every rasterizer here sees it.
 
-// Away facets cover every pixel they touch instead of the centres they cover.
-override conservative: bool = false;
-
 // Vertices in 1/256 px, counter-clockwise or not, with their depths.
 struct Triangle {
     a: vec2<i32>,

@@ -1,8 +1,8 @@
-// One invocation a candidate pixel: of each pair with a neighbour, walks the lattice from the nearer pixel's point on
+// One invocation a pixel with open pairs: of each pair with a neighbour, walks the lattice from the nearer pixel's point on
 // the surface to the farther one's, facet by facet, in integers. An away facet on the way makes the nearer one ink; a
 // void or the outside ends the walk.
 
-struct Candidates {
+struct Pairs {
     groups_x: u32,
     groups_y: u32,
     groups_z: u32,
@@ -10,7 +10,7 @@ struct Candidates {
     pixels: array<u32>,
 }
 
-@group(0) @binding(21) var<storage, read> candidates: Candidates;
+@group(0) @binding(21) var<storage, read> pairs: Pairs;
 @group(0) @binding(22) var<storage, read_write> out_ink: array<atomic<u32>>;
 @group(0) @binding(23) var<storage, read_write> out_counts: Counts;
 
@@ -193,7 +193,7 @@ fn walk_between(origin: vec2<i32>, end: vec2<i32>) -> Meeting {
         let summary = summaries[slot];
         let eventful = ((summary >> block) & 0x10001u) != 0u;
         // Leap over a chunk or a block where nothing can happen.
-        let node = select(select(8u, 1u, eventful), CHUNK_QUADS, summary == 0u);
+        let node = select(select(8u, 1u, eventful || !thrifty), CHUNK_QUADS, summary == 0u && thrifty);
         let in_node = vec2<u32>(quad) & vec2<u32>(node - 1u);
         let to_side = select(in_node + 1u, node - in_node, d > vec2<i32>(0));
         let column_end = wide_add(lead, wide_scale(per_column, to_side.x - 1u));
@@ -295,7 +295,7 @@ fn walk_pair(one: vec2<i32>, other: vec2<i32>) -> u32 {
     let swapped = second.y > first.y || (second.y == first.y && second.x < first.x);
     let p = select(first, second, swapped);
     let q = select(second, first, swapped);
-    if p.x == q.x || (q.y != 0u && is_quiet(p.x - 1u, q.x - 1u)) || is_away(p.x - 1u) {
+    if p.x == 0u || is_away(p.x - 1u) {
         return 0u;
     }
     let at = select(one, other, swapped);
@@ -333,14 +333,11 @@ fn walk_pair(one: vec2<i32>, other: vec2<i32>) -> u32 {
 @compute @workgroup_size(64)
 fn walk(@builtin(global_invocation_id) invocation: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     var longest = 0u;
-    for (var k = invocation.x; k < candidates.count; k += groups.x * 64u) {
-        let i = candidates.pixels[k] & 0xffffffu;
+    for (var k = invocation.x; k < pairs.count; k += groups.x * 64u) {
+        let i = pairs.pixels[k] & 0xffffffu;
         let at = vec2<i32>(vec2<u32>(i % camera.size.x, i / camera.size.x));
-        for (var pairs = candidates.pixels[k] >> 24u; pairs != 0u; pairs &= pairs - 1u) {
-            let to = at + neighbour(firstTrailingBit(pairs));
-            if on_page(to) {
-                longest = max(longest, walk_pair(at, to));
-            }
+        for (var left = pairs.pixels[k] >> 24u; left != 0u; left &= left - 1u) {
+            longest = max(longest, walk_pair(at, at + neighbour(firstTrailingBit(left))));
         }
     }
     atomicMax(&out_counts.longest_walk, longest);

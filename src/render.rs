@@ -8,7 +8,7 @@ use crate::gpu::sizes::LIST_HEADER;
 use crate::gpu::{Buffers, CameraUniform, Extent, Gpu, Pass};
 use crate::gpu::{border, compose, facing, rasterize, rasterize_large, silhouette, tessellate};
 use crate::ink::InkRaster;
-use crate::plan::{Batch, Border, Method, batches};
+use crate::plan::{Batch, Border, Method, Thrift, batches};
 use crate::surface::rim::rim;
 use crate::surface::{Lattice, Level, Surface};
 use crate::view::Camera;
@@ -48,6 +48,7 @@ struct Stage {
 pub struct Renderer<'a> {
     gpu: &'a Gpu,
     surface: &'a Surface,
+    method: Method,
     lattice: Lattice,
     batches: Vec<Batch>,
     rounds: u32,
@@ -73,6 +74,22 @@ impl<'a> Renderer<'a> {
         border_lines: Border,
         size: [u32; 2],
     ) -> Result<Self> {
+        Self::with_thrift(gpu, surface, level, method, border_lines, size, Thrift::LeaveOut)
+    }
+
+    /// The same, leaving out what `thrift` says.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn with_thrift(
+        gpu: &'a Gpu,
+        surface: &'a Surface,
+        level: Level,
+        method: Method,
+        border_lines: Border,
+        size: [u32; 2],
+        thrift: Thrift,
+    ) -> Result<Self> {
         let dem = surface.dem();
         let lattice = Lattice::uniform(dem, level)?;
         let rim = if border_lines == Border::On { rim(dem) } else { Vec::new() };
@@ -84,6 +101,7 @@ impl<'a> Renderer<'a> {
             ("has_voids", flag(dem.voids() > 0)),
             ("facing_parts", f64::from(batches.last().map_or(1, |b| b.part() + 1))),
             ("two_depths", flag(matches!(method, Method::TowardAway { .. }))),
+            ("thrifty", flag(thrift == Thrift::LeaveOut)),
             ("conservative", flag(method == Method::TowardAway { wide: true })),
         ];
         let bind = |pass: Pass| {
@@ -106,6 +124,7 @@ impl<'a> Renderer<'a> {
         Ok(Self {
             gpu,
             surface,
+            method,
             lattice,
             rounds: visibility.rounds(),
             size,
@@ -206,7 +225,11 @@ impl<'a> Renderer<'a> {
         self.buffers.write_camera(self.gpu, &CameraUniform::new(self.surface.dem(), camera)?)?;
         let mut work = Work::new(self.gpu, &self.buffers, clock);
         work.clear(&["pixels", "ink", "summaries", "counts"])?;
-        work.empty("candidates", "empty_candidates")?;
+        if self.method == (Method::TowardAway { wide: true }) {
+            work.clear(&["touched"])?;
+        }
+        work.empty("candidates", "no_pixels")?;
+        work.empty("pairs", "no_pixels")?;
         for round in 0..self.rounds {
             for (i, batch) in self.batches.iter().enumerate() {
                 self.rasterize(&mut work, round, i, batch)?;

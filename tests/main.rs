@@ -13,6 +13,7 @@ mod gpu_errors;
 mod hardware;
 mod ink;
 mod kernels;
+mod left_out;
 mod mesh;
 mod metrics;
 mod reflection;

@@ -28,6 +28,7 @@ fn shaders() -> Vec<(&'static str, &'static str)> {
         ("adjacency", silhouette::ADJACENCY),
         ("toward_away", silhouette::TOWARD_AWAY),
         ("candidates", silhouette::CANDIDATES),
+        ("pairs", silhouette::PAIRS),
         ("walk", silhouette::WALK),
     ];
     for visibility in [Visibility::Key64, Visibility::Key32, Visibility::TwoDepths] {

@@ -10,7 +10,7 @@ use glam::{DVec3, Vec3};
 
 use super::device::Gpu;
 use super::rasterize_large::empty_queue;
-use super::silhouette::NO_CANDIDATES;
+use super::silhouette::NO_PIXELS;
 use super::sizes::{self, fits};
 use crate::dem::Dem;
 use crate::error::{Error, Result};
@@ -193,7 +193,7 @@ impl Buffers {
         buffers.upload(gpu, "rim", bytemuck::cast_slice(rim))?;
 
         buffers.upload(gpu, "empty_queue", bytemuck::bytes_of(&empty_queue([width, height])))?;
-        buffers.upload(gpu, "empty_candidates", bytemuck::bytes_of(&NO_CANDIDATES))?;
+        buffers.upload(gpu, "no_pixels", bytemuck::bytes_of(&NO_PIXELS))?;
         for (name, size) in sizes::written(lattice.chunks().len() as u64, [width, height])? {
             buffers.create(gpu, name, size)?;
         }

@@ -37,8 +37,10 @@ pub fn written(chunks: u64, [width, height]: [u32; 2]) -> Result<Vec<(&'static s
         ("screens", batch * u64::from(CHUNK_VERTICES) * 16),
         ("queue", LIST_HEADER + batch * u64::from(CHUNK_FACETS) * 4),
         ("pixels", pixels * 8),
+        ("touched", pixels * 4),
         ("ink", pixels * 4),
         ("candidates", LIST_HEADER + pixels * 4),
+        ("pairs", LIST_HEADER + pixels * 4),
         ("page", pixels * 8),
         ("counts", size_of::<Counts>() as u64),
     ]);

@@ -37,6 +37,16 @@ pub enum Border {
     Off,
 }
 
+/// Whether a frame leaves out what cannot change the picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Thrift {
+    /// Chunks beside the page, walks where nothing is away.
+    #[default]
+    LeaveOut,
+    /// Everything is computed: the measure of the other.
+    Nothing,
+}
+
 /// What the raster keeps of each pixel, and how.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Visibility {

@@ -4,4 +4,4 @@ pub mod batches;
 pub mod method;
 
 pub use batches::{Batch, batches};
-pub use method::{Border, Method, Share, Visibility};
+pub use method::{Border, Method, Share, Thrift, Visibility};

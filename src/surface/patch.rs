@@ -93,7 +93,8 @@ fn height_in(place: DVec2, p: DVec3, q: DVec3, r: DVec3) -> Option<f64> {
     let (u, v, w) = (q.truncate() - p.truncate(), r.truncate() - p.truncate(), place - p.truncate());
     let area = u.perp_dot(v);
     let (b, c) = (w.perp_dot(v) / area, u.perp_dot(w) / area);
-    (b >= 0.0 && c >= 0.0 && b + c <= 1.0).then_some(p.z + (q.z - p.z) * b + (r.z - p.z) * c)
+    let inside = b >= 0.0 && c >= 0.0 && b + c <= 1.0;
+    inside.then_some(p.z + (q.z - p.z) * b + (r.z - p.z) * c)
 }
 
 /// The point of the PN triangle with barycentric `weights`. A corner of weight 0 has no influence.

@@ -1,0 +1,99 @@
+//! Leaving out changes time, never the picture: every frame is drawn with all shortcuts and with none, bit for bit.
+
+use glam::DVec3;
+use hachure::plan::{Border, Method, Thrift};
+use hachure::render::Renderer;
+use hachure::surface::Surface;
+use hachure::view::Camera;
+
+use crate::common::shared_dems;
+use crate::scenes::{METHODS, gpu, level, rough};
+
+const PAGE: [u32; 2] = [123, 77];
+/// Frames of each scene and method.
+const FRAMES: usize = 24;
+
+/// The page of a frame as packed for reading.
+fn page(renderer: &Renderer<'_>, camera: &Camera) -> Vec<u8> {
+    renderer.frame(camera).expect("a frame");
+    bytemuck::cast_slice(&renderer.read().expect("its pixels").raster.pixels).to_vec()
+}
+
+/// Numbers in 0 to 1, the same in every run (Marsaglia 2003, xorshift).
+fn random(state: &mut u64) -> f64 {
+    *state ^= *state << 13;
+    *state ^= *state >> 7;
+    *state ^= *state << 17;
+    (*state >> 11) as f64 / (1_u64 << 53) as f64
+}
+
+/// Eyes in, over, under and beside the DEM, looking anywhere, with narrow and wide fields of view.
+fn anywhere(surface: &Surface, state: &mut u64) -> Camera {
+    let [west, south, east, north] = surface.dem().extent();
+    let [low, high] = surface.dem().range().expect("land").map(f64::from);
+    let between = |state: &mut u64, a: f64, b: f64| a + (b - a) * random(state);
+    let (wide, tall) = (east - west, north - south);
+    let relief = (high - low).max(wide / 20.0);
+    Camera {
+        eye: DVec3::new(
+            between(state, west - 0.3 * wide, east + 0.3 * wide),
+            between(state, south - 0.3 * tall, north + 0.3 * tall),
+            between(state, low - 0.2 * relief, high + 1.5 * relief),
+        ),
+        azimuth: between(state, 0.0, 360.0),
+        altitude: between(state, -90.0, 40.0),
+        fov: between(state, 2.0, 120.0),
+        width: PAGE[0],
+        height: PAGE[1],
+    }
+}
+
+/// Compares frames of one scene; returns how many pixels were inked in all.
+fn compare(surface: &Surface, n: u32, method: Method, frames: usize, seed: u64) -> usize {
+    let make =
+        |thrift| Renderer::with_thrift(gpu(), surface, level(n), method, Border::On, PAGE, thrift).expect("a renderer");
+    let (thrifty, whole) = (make(Thrift::LeaveOut), make(Thrift::Nothing));
+    let mut state = seed;
+    let mut inked = 0;
+    for _ in 0..frames {
+        let camera = anywhere(surface, &mut state);
+        let expected = page(&whole, &camera);
+        assert!(page(&thrifty, &camera) == expected, "{method:?}, level {n}: {camera:?} differs");
+        inked += expected.chunks_exact(8).filter(|p| p[0] & 2 != 0).count();
+    }
+    inked
+}
+
+#[test]
+fn what_is_left_out_changes_no_bit() {
+    let scenes = [rough(60, 50, 3.0, 5.0, false), rough(60, 50, 2.0, 2.0, true)].map(Surface::new);
+    for (surface, seed) in scenes.iter().zip([1, 2]) {
+        for (_, method) in METHODS {
+            for n in [1, 4] {
+                let inked = compare(surface, n, method, FRAMES, seed * 1000 + u64::from(n));
+                assert!(inked > 500, "{method:?}, level {n}: {inked} px, too little ink to compare");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_is_left_out_of_real_terrain_changes_no_bit() {
+    let Some(dems) = shared_dems() else { return };
+    let read = |name: &str| hachure::dem::read(&dems.join(name), &Default::default()).expect(name);
+    let surface = Surface::new(read("west_temple_50m.tif"));
+    assert!(compare(&surface, 4, Method::Walk, FRAMES, 77) > 1000);
+}
+
+#[test]
+fn another_frame_is_noticed() {
+    let surface = Surface::new(rough(60, 50, 3.0, 5.0, false));
+    let renderer = |thrift| {
+        Renderer::with_thrift(gpu(), &surface, level(1), Method::Walk, Border::On, PAGE, thrift).expect("a renderer")
+    };
+    let [west, south, _, _] = surface.dem().extent();
+    let camera =
+        Camera { eye: DVec3::new(west, south, 400.0), azimuth: 45.0, altitude: -10.0, ..anywhere(&surface, &mut 5) };
+    let moved = Camera { azimuth: camera.azimuth + 0.1, ..camera };
+    assert!(page(&renderer(Thrift::LeaveOut), &moved) != page(&renderer(Thrift::Nothing), &camera));
+}
