@@ -8,9 +8,9 @@ use crate::gpu::uniforms::{Counts, near_plane};
 use crate::gpu::{Buffers, CameraUniform, Extent, Gpu, Pass};
 use crate::gpu::{border, compose, facing, rasterize, rasterize_large, silhouette, tessellate};
 use crate::ink::InkRaster;
-use crate::plan::{Batch, Border, Method, Thrift, batches};
+use crate::plan::{Batch, Border, Method, Plan, Thrift, batches};
 use crate::surface::rim::rim;
-use crate::surface::{Lattice, Level, Surface};
+use crate::surface::{Lattice, Surface};
 use crate::view::Camera;
 
 /// What a frame leaves to read, and what was counted on the way.
@@ -48,7 +48,7 @@ struct Stage {
 pub struct Renderer<'a> {
     gpu: &'a Gpu,
     surface: &'a Surface,
-    method: Method,
+    plan: Plan,
     lattice: Lattice,
     batches: Vec<Batch>,
     rounds: u32,
@@ -66,43 +66,20 @@ impl<'a> Renderer<'a> {
     ///
     /// # Errors
     /// [`Error::Limit`] when the scene or the page is too large, [`Error::Gpu`] when the driver refuses.
-    pub fn new(
-        gpu: &'a Gpu,
-        surface: &'a Surface,
-        level: Level,
-        method: Method,
-        border_lines: Border,
-        size: [u32; 2],
-    ) -> Result<Self> {
-        Self::with_thrift(gpu, surface, level, method, border_lines, size, Thrift::LeaveOut)
-    }
-
-    /// The same, leaving out what `thrift` says.
-    ///
-    /// # Errors
-    /// As [`Self::new`].
-    pub fn with_thrift(
-        gpu: &'a Gpu,
-        surface: &'a Surface,
-        level: Level,
-        method: Method,
-        border_lines: Border,
-        size: [u32; 2],
-        thrift: Thrift,
-    ) -> Result<Self> {
+    pub fn new(gpu: &'a Gpu, surface: &'a Surface, plan: Plan, size: [u32; 2]) -> Result<Self> {
         let dem = surface.dem();
-        let lattice = Lattice::uniform(dem, level)?;
-        let rim = if border_lines == Border::On { rim(dem) } else { Vec::new() };
-        let visibility = method.visibility(gpu.int64);
+        let lattice = Lattice::uniform(dem, plan.level)?;
+        let rim = if plan.border == Border::On { rim(dem) } else { Vec::new() };
+        let visibility = plan.method.visibility(gpu.int64);
         let batches = batches(lattice.chunks().len() as u32);
         let buffers = Buffers::new(gpu, surface, &lattice, &rim, &batches, visibility, size)?;
         let flag = |on: bool| f64::from(u8::from(on));
         let constants = [
             ("has_voids", flag(dem.voids() > 0)),
             ("facing_parts", f64::from(batches.last().map_or(1, |b| b.part() + 1))),
-            ("two_depths", flag(matches!(method, Method::TowardAway { .. }))),
-            ("thrifty", flag(thrift == Thrift::LeaveOut)),
-            ("conservative", flag(method == Method::TowardAway { wide: true })),
+            ("two_depths", flag(matches!(plan.method, Method::TowardAway { .. }))),
+            ("thrifty", flag(plan.thrift == Thrift::LeaveOut)),
+            ("conservative", flag(plan.method == Method::TowardAway { wide: true })),
         ];
         let bind = |pass: Pass| {
             let of =
@@ -118,13 +95,14 @@ impl<'a> Renderer<'a> {
             bind(rasterize::pass(gpu, visibility, &constants)?)?,
             bind(rasterize_large::pass(gpu, visibility, &constants)?)?,
         ];
-        let silhouettes = silhouette::passes(gpu, method, &constants)?.into_iter().map(bind).collect::<Result<_>>()?;
+        let silhouettes =
+            silhouette::passes(gpu, plan.method, &constants)?.into_iter().map(bind).collect::<Result<_>>()?;
         let border = if rim.is_empty() { None } else { Some(bind(border::pass(gpu, &constants)?)?) };
         let compose = bind(compose::pass(gpu, &constants)?)?;
         Ok(Self {
             gpu,
             surface,
-            method,
+            plan,
             lattice,
             rounds: visibility.rounds(),
             size,
@@ -225,7 +203,7 @@ impl<'a> Renderer<'a> {
         self.buffers.write_camera(self.gpu, &CameraUniform::new(self.surface.dem(), camera)?)?;
         let mut work = Work::new(self.gpu, &self.buffers, clock);
         work.clear(&["pixels", "ink", "summaries", "counts"])?;
-        if self.method == (Method::TowardAway { wide: true }) {
+        if self.plan.method == (Method::TowardAway { wide: true }) {
             work.clear(&["touched"])?;
         }
         work.empty("candidates", "no_pixels")?;

@@ -18,7 +18,7 @@ use glam::DVec3;
 use hachure::dem::read;
 use hachure::error::Result;
 use hachure::gpu::{AdapterChoice, Gpu, Int64};
-use hachure::plan::{Border, Method, Share};
+use hachure::plan::{Border, Method, Plan, Share};
 use hachure::render::Renderer;
 use hachure::surface::{Level, Surface};
 use hachure::view::Camera;
@@ -92,7 +92,7 @@ fn run(filters: &[String]) -> Result<usize> {
         if wanted.is_empty() {
             continue;
         }
-        let vertices = Renderer::new(&gpu, &surface, level, Method::Walk, Border::Off, PAGE)?;
+        let vertices = Renderer::new(&gpu, &surface, Plan::new(level, Method::Walk, Border::Off), PAGE)?;
         let baseline = Baseline::new(&gpu, &vertices, PAGE)?;
         vertices.frame(&camera)?;
         let pixels = gpu.read(vertices.buffers().get("pixels")?, u64::from(PAGE[0]) * u64::from(PAGE[1]) * 8)?;
@@ -101,7 +101,7 @@ fn run(filters: &[String]) -> Result<usize> {
         println!("level {n}: {:.3} % of the baseline's pixels show another facet than ours", differ * 100.0);
         for row in wanted {
             let gpu = if row.int64 == Int64::Never { &without_int64 } else { &gpu };
-            let ours = Renderer::new(gpu, &surface, level, row.method, Border::On, PAGE)?;
+            let ours = Renderer::new(gpu, &surface, Plan::new(level, row.method, Border::On), PAGE)?;
             let target = row.targets[column].filter(|_| std::env::var_os(TERRAIN).is_some());
             measure(&format!("level{n} {}", row.name), target, &ours, &baseline, &camera)?;
             rows += 1;

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
 use hachure::gpu::Gpu;
-use hachure::plan::{Border, Method, Share};
+use hachure::plan::{Border, Method, Plan, Share};
 use hachure::render::Renderer;
 use hachure::surface::lattice::CHUNK_VERTICES;
 use hachure::surface::{LatticePoint, Level, Surface};
@@ -92,5 +92,5 @@ pub fn shoot(gpu: &Gpu, renderer: &Renderer<'_>, camera: &Camera) -> Shot {
 
 /// Renderer for [`shoot`].
 pub fn renderer<'a>(gpu: &'a Gpu, surface: &'a Surface, n: u32, method: Method, size: [u32; 2]) -> Renderer<'a> {
-    Renderer::new(gpu, surface, level(n), method, Border::Off, size).expect("a renderer")
+    Renderer::new(gpu, surface, Plan::new(level(n), method, Border::Off), size).expect("a renderer")
 }

@@ -4,7 +4,7 @@ use glam::DVec2;
 use hachure::dem::Dem;
 use hachure::error::{Error, Result};
 use hachure::gpu::{AdapterChoice, CameraUniform, Gpu, Int64};
-use hachure::plan::{Border, Method};
+use hachure::plan::{Border, Method, Plan};
 use hachure::render::Renderer;
 use hachure::surface::{Lattice, Surface};
 
@@ -48,7 +48,7 @@ fn facets_beyond_their_ids_are_refused_with_numbers() {
 #[test]
 fn pages_too_large_are_refused_with_numbers() {
     let scene = Surface::new(flat(4, 4));
-    let draw = |size| Renderer::new(gpu(), &scene, level(1), Method::Walk, Border::On, size);
+    let draw = |size| Renderer::new(gpu(), &scene, Plan::new(level(1), Method::Walk, Border::On), size);
     for (size, words) in [
         ([5000, 4000], ["5000x4000", "20000000", "16777216", "--size"]),
         ([16_385, 16], ["16385x16", "16384", "page side", "--size"]),

@@ -1,7 +1,7 @@
 //! Leaving out changes time, never the picture: every frame is drawn with all shortcuts and with none, bit for bit.
 
 use glam::DVec3;
-use hachure::plan::{Border, Method, Thrift};
+use hachure::plan::{Border, Method, Plan, Thrift};
 use hachure::render::Renderer;
 use hachure::surface::Surface;
 use hachure::view::Camera;
@@ -50,8 +50,10 @@ fn anywhere(surface: &Surface, state: &mut u64) -> Camera {
 
 /// Compares frames of one scene; returns how many pixels were inked in all.
 fn compare(surface: &Surface, n: u32, method: Method, frames: usize, seed: u64) -> usize {
-    let make =
-        |thrift| Renderer::with_thrift(gpu(), surface, level(n), method, Border::On, PAGE, thrift).expect("a renderer");
+    let make = |thrift| {
+        Renderer::new(gpu(), surface, Plan { thrift, ..Plan::new(level(n), method, Border::On) }, PAGE)
+            .expect("a renderer")
+    };
     let (thrifty, whole) = (make(Thrift::LeaveOut), make(Thrift::Nothing));
     let mut state = seed;
     let mut inked = 0;
@@ -89,7 +91,8 @@ fn what_is_left_out_of_real_terrain_changes_no_bit() {
 fn another_frame_is_noticed() {
     let surface = Surface::new(rough(60, 50, 3.0, 5.0, false));
     let renderer = |thrift| {
-        Renderer::with_thrift(gpu(), &surface, level(1), Method::Walk, Border::On, PAGE, thrift).expect("a renderer")
+        Renderer::new(gpu(), &surface, Plan { thrift, ..Plan::new(level(1), Method::Walk, Border::On) }, PAGE)
+            .expect("a renderer")
     };
     let [west, south, _, _] = surface.dem().extent();
     let camera =

@@ -6,7 +6,7 @@ use glam::DVec3;
 use hachure::dem::Dem;
 use hachure::gpu::{AdapterChoice, Gpu, Int64};
 use hachure::ink::InkRaster;
-use hachure::plan::{Border, Method, Share};
+use hachure::plan::{Border, Method, Plan, Share};
 use hachure::render::{Frame, Renderer};
 use hachure::surface::{Level, Surface};
 use hachure::view::Camera;
@@ -67,7 +67,7 @@ pub fn renderer<'a>(
     method: Method,
     border: Border,
 ) -> Renderer<'a> {
-    Renderer::new(gpu, surface, level, method, border, [camera.width, camera.height]).expect("a renderer")
+    Renderer::new(gpu, surface, Plan::new(level, method, border), [camera.width, camera.height]).expect("a renderer")
 }
 
 /// How many pixels are ink.

@@ -12,7 +12,7 @@ use crate::dem::{self, ReadOptions};
 use crate::error::{Error, Result};
 use crate::gpu::{AdapterChoice, Gpu, Int64};
 use crate::ink::{self, Output, Style};
-use crate::plan::{Border, Method, Share};
+use crate::plan::{Border, Method, Plan, Share};
 use crate::render::{Frame, PassTime, Renderer};
 use crate::surface::{Level, Surface};
 use crate::view::{Camera, Fixed, choose};
@@ -146,7 +146,7 @@ pub fn run(arguments: &DrawArguments) -> Result<()> {
     let gpu = Gpu::open(&arguments.adapter.clone().unwrap_or_default(), int64)?;
     println!("adapter: {}", gpu.info.name);
     let size = [camera.width, camera.height];
-    let renderer = Renderer::new(&gpu, &surface, arguments.level, method, arguments.border, size)?;
+    let renderer = Renderer::new(&gpu, &surface, Plan::new(arguments.level, method, arguments.border), size)?;
     renderer.frame(&camera)?;
     let frame = renderer.read()?;
     let drawing = ink::draw(&frame.raster, &Style::for_page(camera.width));

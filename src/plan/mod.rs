@@ -1,7 +1,29 @@
-//! What a frame needs: which method, over which chunks, in which batches.
+//! What a frame needs: which method over which facets, and in which batches.
 
 pub mod batches;
 pub mod method;
 
 pub use batches::{Batch, batches};
 pub use method::{Border, Method, Share, Thrift, Visibility};
+
+use crate::surface::Level;
+
+/// What is drawn, whatever the eye.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Plan {
+    /// The level of every facet.
+    pub level: Level,
+    /// How silhouettes are found.
+    pub method: Method,
+    /// Whether the rim is drawn.
+    pub border: Border,
+    /// Whether what cannot change the picture is left out.
+    pub thrift: Thrift,
+}
+
+impl Plan {
+    /// Silhouettes and border by `method` at `level`, leaving out what cannot change the picture.
+    pub fn new(level: Level, method: Method, border: Border) -> Self {
+        Self { level, method, border, thrift: Thrift::LeaveOut }
+    }
+}
