@@ -38,7 +38,7 @@ pub struct PassTime {
     pub ms: f64,
 }
 
-/// A compiled pass with what it binds for each batch and round, and how far it reaches.
+/// A compiled pass with what it binds: once for the page, or for each round of each batch.
 struct Stage {
     pass: Pass,
     groups: Vec<wgpu::BindGroup>,
@@ -81,24 +81,27 @@ impl<'a> Renderer<'a> {
             ("thrifty", flag(plan.thrift == Thrift::LeaveOut)),
             ("conservative", flag(plan.method == Method::TowardAway { wide: true })),
         ];
-        let bind = |pass: Pass| {
-            let of =
-                |(i, batch): (usize, &Batch), round| pass.bind(gpu, |name| buffers.resource(name, i, round, *batch));
+        let group = |pass: &Pass, i, round, batch| pass.bind(gpu, |name| buffers.resource(name, i, round, batch));
+        let of_batches = |pass: Pass| {
             let rounds = 0..visibility.rounds();
-            let groups = batches.iter().enumerate().flat_map(|b| rounds.clone().map(move |round| (b, round)));
-            let groups = groups.map(|(b, round)| of(b, round)).collect::<Result<Vec<_>>>()?;
+            let each = batches.iter().enumerate().flat_map(|(i, b)| rounds.clone().map(move |round| (i, round, *b)));
+            let groups = each.map(|(i, round, b)| group(&pass, i, round, b)).collect::<Result<_>>()?;
+            Ok::<_, Error>(Stage { groups, pass })
+        };
+        let of_page = |pass: Pass| {
+            let groups = vec![group(&pass, 0, 0, Batch { first_slot: 0, chunks: 0 })?];
             Ok::<_, Error>(Stage { groups, pass })
         };
         let per_batch = [
-            bind(tessellate::pass(gpu, &constants)?)?,
-            bind(facing::pass(gpu, &constants)?)?,
-            bind(rasterize::pass(gpu, visibility, &constants)?)?,
-            bind(rasterize_large::pass(gpu, visibility, &constants)?)?,
+            of_batches(tessellate::pass(gpu, &constants)?)?,
+            of_batches(facing::pass(gpu, &constants)?)?,
+            of_batches(rasterize::pass(gpu, visibility, &constants)?)?,
+            of_batches(rasterize_large::pass(gpu, visibility, &constants)?)?,
         ];
-        let silhouettes =
-            silhouette::passes(gpu, plan.method, &constants)?.into_iter().map(bind).collect::<Result<_>>()?;
-        let border = if rim.is_empty() { None } else { Some(bind(border::pass(gpu, &constants)?)?) };
-        let compose = bind(compose::pass(gpu, &constants)?)?;
+        let silhouettes = silhouette::passes(gpu, plan.method, &constants)?;
+        let silhouettes = silhouettes.into_iter().map(of_page).collect::<Result<_>>()?;
+        let border = if rim.is_empty() { None } else { Some(of_page(border::pass(gpu, &constants)?)?) };
+        let compose = of_page(compose::pass(gpu, &constants)?)?;
         Ok(Self {
             gpu,
             surface,

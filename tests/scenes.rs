@@ -11,6 +11,8 @@ use hachure::render::{Frame, Renderer};
 use hachure::surface::{Level, Surface};
 use hachure::view::Camera;
 
+pub use crate::common::gpu;
+
 /// Every method with the name messages give it.
 pub const METHODS: [(&str, Method); 5] = [
     ("walk", Method::Walk),
@@ -19,15 +21,6 @@ pub const METHODS: [(&str, Method); 5] = [
     ("adjacency edge", Method::Adjacency { share: Share::Edge }),
     ("adjacency corner", Method::Adjacency { share: Share::Corner }),
 ];
-
-/// The device of all tests, with 64-bit atomics where the adapter has them.
-///
-/// # Panics
-/// Without an adapter: nothing drawn is nothing proven.
-pub fn gpu() -> &'static Gpu {
-    static GPU: OnceLock<Gpu> = OnceLock::new();
-    GPU.get_or_init(|| Gpu::open(&AdapterChoice::Best, Int64::IfPresent).expect("an adapter"))
-}
 
 /// The same adapter without 64-bit atomics.
 ///
