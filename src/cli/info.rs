@@ -15,7 +15,7 @@ pub struct InfoArguments {
 /// Prints size, CRS, extent, cell, range and voids.
 ///
 /// # Errors
-/// As [`dem::info`].
+/// As [`dem::info()`].
 pub fn run(arguments: &InfoArguments) -> Result<()> {
     print!("{}", dem::info(&arguments.dem)?);
     Ok(())

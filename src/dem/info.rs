@@ -43,7 +43,7 @@ impl Info {
 /// Reads `path` whole and says what it holds.
 ///
 /// # Errors
-/// Those of [`read`](super::read) without crop.
+/// Those of [`read`](super::read()) without crop.
 pub fn info(path: &Path) -> Result<Info> {
     let grid = Grid::open(path)?;
     let loaded = grid.load(&ReadOptions::default())?;
