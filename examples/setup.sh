@@ -6,7 +6,7 @@ need() {
     { command -v pkg-config >/dev/null 2>&1 && pkg-config --exists gdal; } || missing="$missing libgdal-dev"
     command -v cc >/dev/null 2>&1 || missing="$missing gcc"
     drivers=$(ls /usr/share/vulkan/icd.d/*.json /etc/vulkan/icd.d/*.json 2>/dev/null || true)
-    loader=$(ldconfig -p 2>/dev/null | grep libvulkan.so.1 || true)
+    loader=$(PATH="$PATH:/usr/sbin:/sbin" ldconfig -p 2>/dev/null | grep libvulkan.so.1 || true)
     if [ "$(uname)" = Linux ] && { [ -z "$drivers" ] || [ -z "$loader" ]; }; then
         missing="$missing mesa-vulkan-drivers libvulkan1"
     fi

@@ -18,18 +18,6 @@ fn shares(f: Facet, g: Facet) -> u32 {
     return count;
 }
 
-// Whether patch `half` of cell (c, r) exists.
-fn patch_exists(c: i32, r: i32, half: u32) -> bool {
-    if c < 0 || r < 0 || c + 1 >= i32(scene.samples.x) || r + 1 >= i32(scene.samples.y) {
-        return false;
-    }
-    if !has_voids {
-        return true;
-    }
-    let third = select(vec2<i32>(c, r + 1), vec2<i32>(c + 1, r), half == 1u);
-    return is_valid(u32(c), u32(r)) && is_valid(u32(c + 1), u32(r + 1)) && is_valid(u32(third.x), u32(third.y));
-}
-
 // Whether a lattice vertex lies on the border of the DEM or of a void: whether a patch around it is missing.
 fn on_rim(at: vec2<u32>) -> bool {
     let sub = at % CELL_STEPS;

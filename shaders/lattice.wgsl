@@ -41,3 +41,15 @@ fn slot_of(quad: vec2<i32>) -> u32 {
     }
     return slots[u32(chunk.y) * scene.chunk_grid.x + u32(chunk.x)];
 }
+
+// Whether patch `half` of cell (c, r) exists.
+fn patch_exists(c: i32, r: i32, half: u32) -> bool {
+    if c < 0 || r < 0 || c + 1 >= i32(scene.samples.x) || r + 1 >= i32(scene.samples.y) {
+        return false;
+    }
+    if !has_voids {
+        return true;
+    }
+    let third = select(vec2<i32>(c, r + 1), vec2<i32>(c + 1, r), half == 1u);
+    return is_valid(u32(c), u32(r)) && is_valid(u32(c + 1), u32(r + 1)) && is_valid(u32(third.x), u32(third.y));
+}

@@ -93,7 +93,7 @@ fn rasterize_facet(id: u32, a: vec3<i32>, b: vec3<i32>, c: vec3<i32>, v: u32, aw
         return;
     }
     let extent = max(a.xy, max(b.xy, c.xy)) - min(a.xy, min(b.xy, c.xy));
-    let t = Triangle(a.xy, b.xy, c.xy, bitcast<vec3<f32>>(vec3<i32>(a.z, b.z, c.z)));
+    let t = screen_triangle(a, b, c);
     if max(extent.x, extent.y) <= LARGEST_BOX {
         rasterize_small(t, id, away);
     } else {

@@ -29,6 +29,7 @@ fn plane_distance(q: vec3<f32>, k: u32) -> f32 {
 
 // Each invocation's polygon before and after a cut: points in camera space, and in w the corner of the facet (0 to 2)
 // that a point still is, or CUT. In workgroup memory, each in its own rows: compilers handle indexed registers badly.
+// These are the 16 KiB that every device grants.
 var<workgroup> polygons: array<array<array<vec4<f32>, 8>, 2>, 64>;
 
 const CUT: f32 = 3.0;
@@ -82,7 +83,7 @@ fn tile_edge(p: vec2<i32>, q: vec2<i32>, corner_px: vec2<i32>, wide: bool) -> Ti
     // Floor of e / 256, cut to +-2^30: within a tile it changes by less, so its sign stays right.
     let high = bitcast<i32>(e.y) >> 8u;
     let low = bitcast<i32>((e.x >> 8u) | (e.y << 24u));
-    let fits = high == (low >> 31u) && abs(low) < EDGE_LIMIT;
+    let fits = high == (low >> 31u) && low > -EDGE_LIMIT && low < EDGE_LIMIT;
     let whole = select(select(EDGE_LIMIT, -EDGE_LIMIT, high < 0), low, fits);
     return TileEdge(whole, i32(e.x & 255u) - bias, estimate, g, wide || !fits);
 }
@@ -169,7 +170,7 @@ fn rasterize_facet(id: u32, share: vec2<u32>, lane: u32) {
             first = screen;
         }
         if k >= 2u {
-            let t = screen_triangle(first, last, screen);
+            let t = screen_triangle(first.xyz, last.xyz, screen.xyz);
             rasterize_triangle(t, share, lane, id, away, false);
             if conservative && away {
                 rasterize_triangle(t, share, lane, id, away, true);

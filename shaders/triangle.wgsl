@@ -51,6 +51,7 @@ fn depth_at(t: Triangle, b: f32, c: f32) -> f32 {
     return clamp(d, low, high);
 }
 
-fn screen_triangle(a: vec4<i32>, b: vec4<i32>, c: vec4<i32>) -> Triangle {
+// Page places in xy, depth bits in z.
+fn screen_triangle(a: vec3<i32>, b: vec3<i32>, c: vec3<i32>) -> Triangle {
     return Triangle(a.xy, b.xy, c.xy, bitcast<vec3<f32>>(vec3<i32>(a.z, b.z, c.z)));
 }

@@ -27,8 +27,7 @@ struct Corners {
 fn corners_of(f: Facet) -> Corners {
     let cell = f.origin / CELL_STEPS;
     let sub = f.origin % CELL_STEPS;
-    let above = sub.x > sub.y || (sub.x == sub.y && f.half == 1u);
-    let patch_here = patch_of(cell, above);
+    let patch_here = patch_of(cell, patch_half(f) == 1u);
     let scale = 1.0 / f32(CELL_STEPS);
     let a = patch_point(patch_here, vec2<f32>(sub) * scale);
     let b = patch_point(patch_here, vec2<f32>(sub + corner(f.half, 1u) * f.step) * scale);
@@ -135,18 +134,15 @@ fn half_behind(crossed: vec2<bool>, d: vec2<i32>) -> u32 {
     return select(select(0u, 1u, d.y > 0), select(0u, 1u, d.x < 0), crossed.x);
 }
 
-fn is_missing(f: Facet) -> bool {
-    let cell = f.origin / CELL_STEPS;
-    if any(cell + 1u >= scene.samples) {
-        return true;
-    }
-    if !has_voids {
-        return false;
-    }
+// Which patch of its cell a facet lies in.
+fn patch_half(f: Facet) -> u32 {
     let sub = f.origin % CELL_STEPS;
-    let above = sub.x > sub.y || (sub.x == sub.y && f.half == 1u);
-    let third = cell + select(vec2<u32>(0u, 1u), vec2<u32>(1u, 0u), above);
-    return !is_valid(cell.x, cell.y) || !is_valid(cell.x + 1u, cell.y + 1u) || !is_valid(third.x, third.y);
+    return select(0u, 1u, sub.x > sub.y || (sub.x == sub.y && f.half == 1u));
+}
+
+fn is_missing(f: Facet) -> bool {
+    let cell = vec2<i32>(f.origin / CELL_STEPS);
+    return !patch_exists(cell.x, cell.y, patch_half(f));
 }
 
 // Walks from one point to another in walk units.

@@ -56,7 +56,7 @@ pub struct Renderer<'a> {
     rim_edges: usize,
     buffers: Buffers,
     per_batch: [Stage; 4],
-    silhouettes: Vec<Stage>,
+    silhouettes: Vec<(Stage, Extent)>,
     border: Option<Stage>,
     compose: Stage,
 }
@@ -98,8 +98,8 @@ impl<'a> Renderer<'a> {
             of_batches(rasterize::pass(gpu, visibility, &constants)?)?,
             of_batches(rasterize_large::pass(gpu, visibility, &constants)?)?,
         ];
-        let silhouettes = silhouette::passes(gpu, plan.method, &constants)?;
-        let silhouettes = silhouettes.into_iter().map(of_page).collect::<Result<_>>()?;
+        let silhouettes = silhouette::passes(gpu, plan.method, size, &constants)?.into_iter();
+        let silhouettes = silhouettes.map(|(pass, extent)| Ok((of_page(pass)?, extent))).collect::<Result<_>>()?;
         let border = if rim.is_empty() { None } else { Some(of_page(border::pass(gpu, &constants)?)?) };
         let compose = of_page(compose::pass(gpu, &constants)?)?;
         Ok(Self {
@@ -216,8 +216,8 @@ impl<'a> Renderer<'a> {
                 self.rasterize(&mut work, round, i, batch)?;
             }
         }
-        for stage in &self.silhouettes {
-            work.record(stage, 0, silhouette::extent(&stage.pass, camera))?;
+        for (stage, extent) in &self.silhouettes {
+            work.record(stage, 0, *extent)?;
         }
         if let Some(stage) = &self.border {
             work.record(stage, 0, border::invocations(&stage.pass, self.rim_edges, self.lattice.level()))?;

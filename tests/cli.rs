@@ -183,6 +183,8 @@ fn wrong_usage_exits_with_2() {
         refuses(&place, &[&DRAW[..4], flags].concat(), 2, words);
     }
     refuses(&place, &["draw", "hill.asc", "-o", "out.svg"], 2, ".png");
+    refuses(&place, &[&DRAW[..], &["--mask", "out.png"]].concat(), 2, "name of its own");
+    refuses(&place, &[&DRAW[..], &["--json", "hill.asc"]].concat(), 2, "name of its own");
     refuses(&place, &["draw", "hill.asc"], 2, "--output");
     refuses(&place, &["paint"], 2, "paint");
 }
@@ -221,4 +223,30 @@ fn info_prints_what_the_dem_holds() {
     for words in ["40 columns x 40 rows", "10 m x 10 m", "voids      9"] {
         assert!(stdout.contains(words), "{words}: {stdout}");
     }
+}
+
+#[test]
+#[cfg(unix)]
+fn a_signal_leaves_nothing_behind() {
+    let place = Place::new();
+    let mut child = place.command(&[&DRAW[..4], &["--level", "64", "--size", "2000x2000"]].concat());
+    let mut child = child.stdout(std::process::Stdio::null()).spawn().expect("hachure runs");
+    while place.written().is_empty() {
+        assert!(child.try_wait().expect("a status").is_none(), "it ended before it could be stopped");
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    let stopped = Command::new("kill").args(["-TERM", &child.id().to_string()]).status().expect("kill runs");
+    assert!(stopped.success());
+    assert_eq!(child.wait().expect("a status").code(), Some(75));
+    assert_eq!(place.written(), Vec::<String>::new());
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_full_standard_output_is_an_error_in_words() {
+    let place = Place::new();
+    let full = fs::OpenOptions::new().write(true).open("/dev/full").expect("/dev/full");
+    let output = place.command(&["info", "hill.asc"]).stdout(full).output().expect("hachure runs");
+    assert_eq!(output.status.code(), Some(1));
+    assert!(stderr(&output).contains("standard output"), "{}", stderr(&output));
 }

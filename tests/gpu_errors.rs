@@ -40,6 +40,8 @@ fn facets_beyond_their_ids_are_refused_with_numbers() {
     let error =
         refused(Lattice::uniform(&flat(726, 726), level(64)), &["level 64", "4305920000 facets", "2097152", "--level"]);
     assert!(matches!(error, Error::Limit { .. }));
+    refused(Lattice::uniform(&flat(131_001, 2), level(1)), &["131001 x 2", "131000", "--crop"]);
+    assert!(Lattice::uniform(&flat(131_000, 2), level(1)).is_ok());
     // 1024 x 2048 chunks would need an ID of 2^32 - 1, and a pixel holds ID + 1.
     refused(Lattice::uniform(&flat(513, 1025), level(64)), &["level 64", "2097152 chunks"]);
     assert!(Lattice::uniform(&flat(512, 1025), level(64)).is_ok());

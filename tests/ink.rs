@@ -422,11 +422,12 @@ fn outputs_appear_whole_or_not_at_all() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("out.png");
     let files = || std::fs::read_dir(folder.path()).unwrap().count();
-    let output = Output::create(&path).unwrap();
+    let mut output = Output::create(&path).unwrap();
     assert!(!path.exists());
-    output.commit(|file| file.write_all(b"whole")).unwrap();
+    output.write(|file| file.write_all(b"whole")).unwrap();
+    output.publish().unwrap();
     assert_eq!((std::fs::read(&path).unwrap(), files()), (b"whole".to_vec(), 1));
-    let broken = Output::create(&path).unwrap().commit(|file| {
+    let broken = Output::create(&path).unwrap().write(|file| {
         file.write_all(b"half")?;
         Err(std::io::Error::other("the disk is full"))
     });
@@ -445,7 +446,9 @@ fn outputs_appear_whole_or_not_at_all() {
         assert_eq!(mode(&path), mode(&plain), "permissions of any new file");
         let link = folder.path().join("link");
         std::os::unix::fs::symlink(&plain, &link).unwrap();
-        Output::create(&link).unwrap().commit(|file| file.write_all(b"linked")).unwrap();
+        let mut output = Output::create(&link).unwrap();
+        output.write(|file| file.write_all(b"linked")).unwrap();
+        output.publish().unwrap();
         assert_eq!(std::fs::read(&plain).unwrap(), b"linked", "a link stays a link");
         assert!(Output::create(std::path::Path::new("/dev/null")).is_err(), "a device stays a device");
     }

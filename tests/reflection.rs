@@ -5,9 +5,10 @@ use std::collections::BTreeMap;
 use std::mem::offset_of;
 
 use hachure::gpu::pass::reflect;
-use hachure::gpu::sizes::{LARGEST_BINDING, fits, written};
+use hachure::gpu::sizes::{BLOCK, LARGEST_BINDING, fits, written};
 use hachure::gpu::uniforms::{BatchUniform, Counts, SceneUniform};
-use hachure::gpu::{CameraUniform, border, compose, facing, rasterize, rasterize_large, silhouette, tessellate};
+use hachure::gpu::{CameraUniform, adjacency, border, candidates, compose, facing, pairs};
+use hachure::gpu::{rasterize, rasterize_large, tessellate, toward_away, walk};
 use hachure::plan::Visibility;
 use hachure::plan::batches::{BATCH_CHUNKS, PART_CHUNKS};
 use hachure::surface::rim::RimEdge;
@@ -25,11 +26,11 @@ fn shaders() -> Vec<(&'static str, &'static str)> {
         ("facing", facing::SOURCE),
         ("border", border::SOURCE),
         ("compose", compose::SOURCE),
-        ("adjacency", silhouette::ADJACENCY),
-        ("toward_away", silhouette::TOWARD_AWAY),
-        ("candidates", silhouette::CANDIDATES),
-        ("pairs", silhouette::PAIRS),
-        ("walk", silhouette::WALK),
+        ("adjacency", adjacency::SOURCE),
+        ("toward_away", toward_away::SOURCE),
+        ("candidates", candidates::SOURCE),
+        ("pairs", pairs::SOURCE),
+        ("walk", walk::SOURCE),
     ];
     for visibility in [Visibility::Key64, Visibility::Key32, Visibility::TwoDepths] {
         all.push(("rasterize", rasterize::source(visibility)));
@@ -102,6 +103,10 @@ fn shared_constants() -> Vec<(&'static str, i64)> {
         ("NO_SLOT", i64::from(lattice::NO_SLOT)),
         ("PART_WORDS_LOG2", i64::from(words.ilog2())),
         ("STRIP_FACETS", i64::from(rasterize::STRIP_FACETS)),
+        ("STRIP", i64::from(tessellate::STRIP)),
+        ("TILE", i64::from(rasterize_large::TILE)),
+        ("COLUMNS", i64::from(BLOCK[0])),
+        ("ROWS", i64::from(BLOCK[1])),
         ("BESIDE", i64::from(BESIDE)),
         ("CLIPPED", i64::from(CLIPPED)),
         ("MISSING", i64::from(MISSING)),

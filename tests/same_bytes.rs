@@ -2,17 +2,14 @@
 
 use glam::DVec3;
 use hachure::gpu::Gpu;
-use hachure::plan::{Border, Method, Share};
+use hachure::plan::{Border, Method};
 use hachure::render::Renderer;
 use hachure::surface::Surface;
 use hachure::view::Camera;
 
-use crate::scenes::{gpu, gpu_without_int64, level, look, renderer, rough};
+use crate::scenes::{METHODS, gpu, gpu_without_int64, level, look, renderer, rough};
 
 const PAGE: [u32; 2] = [256, 192];
-const METHODS: [Method; 3] =
-    [Method::Walk, Method::Adjacency { share: Share::Edge }, Method::Adjacency { share: Share::Corner }];
-
 /// The page as packed for readback and, below it, depth and ID of each pixel.
 fn bytes(gpu: &Gpu, renderer: &Renderer<'_>, camera: &Camera) -> Vec<u8> {
     renderer.frame(camera).expect("a frame");
@@ -35,7 +32,7 @@ fn frames_are_the_same_on_every_run_and_without_int64() {
     let surface = Surface::new(rough(70, 60, 1.0, 6.0, true));
     let views = views(&surface);
     assert!(!gpu_without_int64().int64, "the second device must do without");
-    for method in METHODS {
+    for (_, method) in METHODS {
         let make = |gpu| renderer(gpu, &surface, &views[0], level(4), method, Border::On);
         let (first, second, narrow) = (make(gpu()), make(gpu()), make(gpu_without_int64()));
         let before: Vec<Vec<u8>> = views.iter().map(|v| bytes(gpu(), &first, v)).collect();
@@ -73,4 +70,19 @@ fn several_batches_draw_the_same_with_and_without_int64() {
     let differ = fine.iter().zip(&coarse).filter(|(a, b)| a != b).count();
     println!("batches: {} and {} px of ink at levels 32 and 16, {differ} differ", count(&fine), count(&coarse));
     assert!(count(&fine) > 500 && differ * 20 < count(&fine), "levels 32 and 16 differ");
+}
+
+#[test]
+fn a_second_frame_uploads_nothing_but_the_camera() {
+    let surface = Surface::new(rough(70, 60, 1.0, 6.0, false));
+    let [first, second, _] = views(&surface);
+    for name in ["heights", "gradients", "chunks", "spheres", "scene"] {
+        let renderer = renderer(gpu(), &surface, &first, level(2), Method::Walk, Border::On);
+        let expected = bytes(gpu(), &renderer, &first);
+        assert!(bytes(gpu(), &renderer, &second) != expected, "the camera is uploaded");
+        // What is spoilt on the device stays so: a frame that uploaded it again would mend it.
+        let buffer = renderer.buffers().get(name).expect(name);
+        gpu().queue.write_buffer(buffer, 0, &vec![0; buffer.size() as usize]);
+        assert!(bytes(gpu(), &renderer, &first) != expected, "{name} was uploaded again");
+    }
 }

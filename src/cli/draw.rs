@@ -7,9 +7,11 @@ use clap::ValueEnum;
 use glam::DVec3;
 use serde::Serialize;
 
+use super::say;
 use super::values::{self, Eye, EyeHeight, Size};
 use crate::dem::{self, ReadOptions};
 use crate::error::{Error, Result};
+use crate::gpu::sizes::page_fits;
 use crate::gpu::{AdapterChoice, Gpu, Int64};
 use crate::ink::{self, Output, Style};
 use crate::plan::{Border, Method, Plan, Share};
@@ -31,7 +33,7 @@ pub struct DrawArguments {
     /// Also the mask: 1 bit a pixel, 0 ink, 255 paper, exactly --size
     #[arg(long, value_name = "OUT.png")]
     mask: Option<PathBuf>,
-    /// Also what was done, with times
+    /// Also what was done, with times of ten further frames
     #[arg(long, value_name = "OUT.json")]
     json: Option<PathBuf>,
 
@@ -136,31 +138,31 @@ struct LeftOut {
 /// Whatever went wrong; nothing stands under a final name then.
 pub fn run(arguments: &DrawArguments) -> Result<()> {
     let method = arguments.method()?;
+    let size = [arguments.size.width, arguments.size.height];
+    page_fits(size)?;
     let outputs = Outputs::open(arguments)?;
     let started = Instant::now();
     let read = ReadOptions { crop: arguments.crop, exaggeration: arguments.exaggeration };
     let surface = Surface::new(dem::read(&arguments.dem, &read)?);
     let camera = arguments.camera(&surface)?;
-    println!("view: {}", view_flags(&camera));
+    say(&format!("view: {}\n", view_flags(&camera)))?;
     let int64 = if arguments.no_int64 { Int64::Never } else { Int64::IfPresent };
     let gpu = Gpu::open(&arguments.adapter.clone().unwrap_or_default(), int64)?;
-    println!("adapter: {}", gpu.info.name);
-    let size = [camera.width, camera.height];
+    say(&format!("adapter: {}\n", gpu.info.name))?;
     let renderer = Renderer::new(&gpu, &surface, Plan::new(arguments.level, method, arguments.border), size)?;
     renderer.frame(&camera)?;
     let frame = renderer.read()?;
     let drawing = ink::draw(&frame.raster, &Style::for_page(camera.width));
     let report = outputs.json.is_some().then(|| arguments.report(&gpu, &surface, &renderer, &camera, method, &frame));
     outputs.write(&drawing, &frame, report.transpose()?.as_ref())?;
-    println!(
-        "{}: {} facets, {} of {} pixels inked, {:.2} s",
+    say(&format!(
+        "{}: {} facets, {} of {} pixels inked, {:.2} s\n",
         arguments.output.display(),
         renderer.facets(),
         frame.inked(),
         frame.raster.pixels.len(),
         started.elapsed().as_secs_f64()
-    );
-    Ok(())
+    ))
 }
 
 impl DrawArguments {
@@ -241,7 +243,7 @@ impl DrawArguments {
             inked: frame.inked(),
             longest_walk: frame.longest_walk,
             frame_ms: times[WARM_FRAMES / 2],
-            timing: "wall clock around submit and wait; passes one by one on an otherwise idle device",
+            timing: "wall clock around submit and wait, camera to mask, without compose and readback; passes one by one",
             passes: renderer.timed_frame(camera)?,
             adapter: format!("{} ({})", gpu.info.name, gpu.info.driver_info),
             int64: gpu.int64,
@@ -280,24 +282,35 @@ impl Outputs {
         if let Some(mask) = &arguments.mask {
             wants_ending("--mask", mask, "png")?;
         }
-        let open = |path: &Option<PathBuf>| path.as_deref().map(Output::create).transpose();
+        let dem = std::fs::canonicalize(&arguments.dem).ok();
+        let mut taken: Vec<PathBuf> = dem.into_iter().collect();
+        let mut open = |flag, path: &Path| {
+            let output = Output::create(path)?;
+            let target = std::path::absolute(output.target()).unwrap_or_else(|_| output.target().to_owned());
+            if taken.contains(&target) {
+                let what = format!("{} is the DEM or another output", path.display());
+                return Err(Error::flag(flag, what, "give each file a name of its own"));
+            }
+            taken.push(target);
+            Ok(output)
+        };
         Ok(Self {
-            drawing: Output::create(&arguments.output)?,
-            mask: open(&arguments.mask)?,
-            json: open(&arguments.json)?,
+            drawing: open("--output", &arguments.output)?,
+            mask: arguments.mask.as_deref().map(|path| open("--mask", path)).transpose()?,
+            json: arguments.json.as_deref().map(|path| open("--json", path)).transpose()?,
         })
     }
 
-    /// Writes the drawing and, where asked, the mask and the report.
-    fn write(self, drawing: &ink::Drawing, frame: &Frame, report: Option<&Report>) -> Result<()> {
-        self.drawing.commit(|out| ink::write_png(drawing, out))?;
-        if let Some(mask) = self.mask {
-            mask.commit(|out| ink::write_mask(&frame.raster, out))?;
+    /// Writes the drawing and, where asked, the mask and the report; names them when all are whole.
+    fn write(mut self, drawing: &ink::Drawing, frame: &Frame, report: Option<&Report>) -> Result<()> {
+        self.drawing.write(|out| ink::write_png(drawing, out))?;
+        if let Some(mask) = &mut self.mask {
+            mask.write(|out| ink::write_mask(&frame.raster, out))?;
         }
-        if let (Some(json), Some(report)) = (self.json, report) {
-            json.commit(|out| serde_json::to_writer_pretty(out, report).map_err(std::io::Error::from))?;
+        if let (Some(json), Some(report)) = (&mut self.json, report) {
+            json.write(|out| serde_json::to_writer_pretty(out, report).map_err(std::io::Error::from))?;
         }
-        Ok(())
+        [Some(self.drawing), self.mask, self.json].into_iter().flatten().try_for_each(Output::publish)
     }
 }
 

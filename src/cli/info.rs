@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use super::say;
 use crate::dem;
 use crate::error::Result;
 
@@ -17,6 +18,5 @@ pub struct InfoArguments {
 /// # Errors
 /// As [`dem::info()`].
 pub fn run(arguments: &InfoArguments) -> Result<()> {
-    print!("{}", dem::info(&arguments.dem)?);
-    Ok(())
+    say(&format!("{}\n", dem::info(&arguments.dem)?))
 }

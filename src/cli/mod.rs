@@ -4,9 +4,12 @@ pub mod draw;
 pub mod info;
 pub mod values;
 
+use std::io::{ErrorKind, Write, stdout};
+use std::path::Path;
+
 use clap::{Parser, Subcommand};
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 
 /// Pen-and-ink landscapes from digital elevation models.
 #[derive(Debug, Parser)]
@@ -34,5 +37,16 @@ impl Arguments {
             Command::Draw(arguments) => draw::run(&arguments),
             Command::Info(arguments) => info::run(&arguments),
         }
+    }
+}
+
+/// Prints to standard output. A reader that has gone away is no error.
+fn say(text: &str) -> Result<()> {
+    let mut out = stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(e) if e.kind() != ErrorKind::BrokenPipe => {
+            Err(Error::Output { path: Path::new("standard output").to_owned(), what: e.to_string() })
+        }
+        _ => Ok(()),
     }
 }

@@ -3,12 +3,11 @@
 use glam::DVec2;
 
 use crate::gpu::AdapterChoice;
+use crate::gpu::sizes::LARGEST_SIDE;
 use crate::surface::Level;
 
-/// Pages are at most this wide and high, px: beyond, coordinates outgrow the guard band.
-pub const LARGEST_SIDE: u32 = 16_384;
 /// No place on Earth has coordinates beyond this, metres.
-const FARTHEST: f64 = 1e8;
+const FARTHEST: f64 = 1e9;
 
 /// Where the eye is: a place in the CRS of the DEM and a height.
 #[derive(Debug, Clone, Copy, PartialEq)]

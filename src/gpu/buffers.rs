@@ -7,9 +7,10 @@ use std::collections::HashMap;
 
 use bytemuck::Zeroable;
 
+use super::candidates::NO_PIXELS;
 use super::device::Gpu;
 use super::rasterize_large::empty_queue;
-use super::silhouette::NO_PIXELS;
+
 use super::sizes::{self, fits};
 use super::uniforms::{BatchUniform, CameraUniform, SceneUniform};
 use crate::dem::Dem;

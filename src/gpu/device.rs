@@ -81,11 +81,6 @@ impl Gpu {
         Ok(Self { device, queue, info: adapter.get_info(), int64, failure, lost })
     }
 
-    /// Whether the adapter is a software driver.
-    pub fn is_cpu(&self) -> bool {
-        self.info.device_type == wgpu::DeviceType::Cpu
-    }
-
     /// Waits until all submitted work is done.
     ///
     /// # Errors

@@ -1,17 +1,22 @@
 //! The device, its buffers, and one adapter a pass. The mathematics stands in `shaders/`.
 
+pub mod adjacency;
 pub mod border;
 pub mod buffers;
+pub mod candidates;
 pub mod compose;
 pub mod device;
 pub mod facing;
+pub mod pairs;
 pub mod pass;
 pub mod rasterize;
 pub mod rasterize_large;
 pub mod silhouette;
 pub mod sizes;
 pub mod tessellate;
+pub mod toward_away;
 pub mod uniforms;
+pub mod walk;
 
 pub use buffers::Buffers;
 pub use device::{AdapterChoice, Gpu, Int64};

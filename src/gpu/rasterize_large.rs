@@ -7,6 +7,8 @@ use crate::plan::Visibility;
 /// Tiles of 32 x 32 px that one workgroup draws of a facet at most: the software driver ends an invocation's loops, all
 /// together, after 65 535 turns.
 const TILES: u32 = 64;
+/// Pixels along a tile.
+pub const TILE: u32 = 32;
 
 /// The composed shader that keeps what `visibility` says.
 pub fn source(visibility: Visibility) -> &'static str {
@@ -33,6 +35,6 @@ pub fn pass(gpu: &Gpu, visibility: Visibility, constants: &[(&str, f64)]) -> Res
 
 /// An empty queue on a page of this size: workgroups along x, y and z, one row of them a share, and the count.
 pub fn empty_queue([width, height]: [u32; 2]) -> [u32; 4] {
-    let tiles = width.div_ceil(32) * height.div_ceil(32);
+    let tiles = width.div_ceil(TILE) * height.div_ceil(TILE);
     [0, tiles.div_ceil(TILES), 1, 0]
 }

@@ -9,16 +9,18 @@ use crate::surface::lattice::{CHUNK_FACETS, CHUNK_VERTICES, CHUNK_WORDS};
 pub const LARGEST_BINDING: u64 = 128 << 20;
 /// Pixels along the longest page side: beyond it, places within the guard band would leave +-2^15 px.
 pub const LARGEST_SIDE: u32 = 16_384;
+/// Pixels across and down that one invocation of `candidates` or `toward_away` works off.
+pub const BLOCK: [u32; 2] = [4, 8];
 /// Bytes of a list before its items: workgroups along x, y and z, and the count.
 pub const LIST_HEADER: u64 = 16;
 /// The parts of the facing bits.
 const FACING: [&str; 4] = ["facing_0", "facing_1", "facing_2", "facing_3"];
 
-/// Name and bytes of every buffer that passes write, for so many chunks and a page of `width` x `height` pixels.
+/// Whether a page can be drawn in one piece.
 ///
 /// # Errors
-/// [`Error::Limit`] when the page is larger than a binding or the guard band allows.
-pub fn written(chunks: u64, [width, height]: [u32; 2]) -> Result<Vec<(&'static str, u64)>> {
+/// [`Error::Limit`] when it is larger than a binding or the guard band allows.
+pub fn page_fits([width, height]: [u32; 2]) -> Result<()> {
     let pixels = u64::from(width) * u64::from(height);
     let refused = |what: String| Err(Error::Limit { what, remedy: "use a smaller --size".into() });
     if width.max(height) > LARGEST_SIDE {
@@ -27,6 +29,16 @@ pub fn written(chunks: u64, [width, height]: [u32; 2]) -> Result<Vec<(&'static s
     if pixels * 8 > LARGEST_BINDING {
         return refused(format!("--size {width}x{height} has {pixels} pixels, a page holds {}", LARGEST_BINDING / 8));
     }
+    Ok(())
+}
+
+/// Name and bytes of every buffer that passes write, for so many chunks and a page of `width` x `height` pixels.
+///
+/// # Errors
+/// As [`page_fits`].
+pub fn written(chunks: u64, [width, height]: [u32; 2]) -> Result<Vec<(&'static str, u64)>> {
+    page_fits([width, height])?;
+    let pixels = u64::from(width) * u64::from(height);
     let batch = chunks.min(u64::from(BATCH_CHUNKS));
     let part = u64::from(PART_CHUNKS);
     let facing = (0..).map(|i| chunks.saturating_sub(i * part).min(part) * u64::from(CHUNK_WORDS) * 4);

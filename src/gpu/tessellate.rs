@@ -17,7 +17,7 @@ pub fn pass(gpu: &Gpu, constants: &[(&str, f64)]) -> Result<Pass> {
 }
 
 /// Vertices of a column that one invocation works off.
-const STRIP: u32 = 11;
+pub const STRIP: u32 = 11;
 
 /// One invocation a third of a column, one row a chunk.
 pub fn invocations(batch: &Batch) -> [u32; 2] {

@@ -20,7 +20,7 @@ mod thin;
 pub use chain::{Chain, ChainPoint, Line, trace};
 pub use drawing::{Drawing, Layer, Pen, Recession, Stroke, StrokePoint, Style, stroke};
 pub use mask::write_mask;
-pub use output::Output;
+pub use output::{Output, discard_all};
 pub use overlay::{Cover, project_polyline};
 pub use png::write_png;
 pub use raster::{InkRaster, Kind, Pixel};

@@ -1,12 +1,14 @@
 //! Files that get their final name only when they are whole.
 //!
 //! [`Output::create`] opens a temporary file beside the final one before the work starts, so that a folder that cannot
-//! be written fails in the first second; [`Output::commit`] renames it. A dropped output leaves nothing behind. Nothing
+//! be written fails in the first second; [`Output::write`] fills it, [`Output::publish`] renames it. A dropped output leaves nothing behind; one ended by a
+//! signal neither, if its handler calls [`discard_all`]. Nothing
 //! is synced to disk: after a power cut the file may be missing, as with any other writer.
 
 use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Mutex;
 
 use tempfile::NamedTempFile;
 
@@ -46,19 +48,56 @@ impl Output {
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
         let file = builder.tempfile_in(folder).map_err(|e| failed(e.to_string()))?;
+        if let Ok(mut list) = UNDER_WAY.lock() {
+            list.push(file.path().to_owned());
+        }
         Ok(Self { path: path.to_owned(), target, file })
     }
 
-    /// Lets `write` fill the file through a buffer, then gives it its final name, in the place of an older one.
+    /// The file it will be, with links followed.
+    pub fn target(&self) -> &Path {
+        &self.target
+    }
+
+    /// Lets `write` fill the file through a buffer. It still has no name.
     ///
-    /// [`Error::Output`] where writing or renaming fails; then the older file still stands.
-    pub fn commit(mut self, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
+    /// [`Error::Output`] where writing fails.
+    pub fn write(&mut self, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
         let mut buffer = BufWriter::new(self.file.as_file_mut());
         let written = write(&mut buffer).and_then(|()| buffer.flush());
         drop(buffer);
-        written
-            .and_then(|()| self.file.persist(&self.target).map_err(|e| e.error))
-            .map_err(|e| Error::Output { path: self.path, what: e.to_string() })?;
-        Ok(())
+        written.map_err(|e| self.failed(&e))
+    }
+
+    /// Gives the file its final name, in the place of an older one.
+    ///
+    /// [`Error::Output`] where renaming fails; then the older file still stands.
+    pub fn publish(self) -> Result<()> {
+        forget(self.file.path());
+        let Self { path, target, file } = self;
+        match file.persist(target) {
+            Ok(_) => Ok(()),
+            Err(e) => Err(Error::Output { path, what: e.error.to_string() }),
+        }
+    }
+
+    fn failed(&self, e: &io::Error) -> Error {
+        Error::Output { path: self.path.clone(), what: e.to_string() }
+    }
+}
+
+/// Temporary files of outputs under way.
+static UNDER_WAY: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+fn forget(path: &Path) {
+    if let Ok(mut list) = UNDER_WAY.lock() {
+        list.retain(|p| p != path);
+    }
+}
+
+/// Removes the temporary files of all outputs under way: for a process about to be ended by a signal.
+pub fn discard_all() {
+    if let Ok(mut list) = UNDER_WAY.lock() {
+        list.drain(..).for_each(|path| drop(fs::remove_file(path)));
     }
 }

@@ -29,6 +29,8 @@ pub const CHUNK_SIDE: u32 = CHUNK_QUADS + 1;
 pub const CHUNK_VERTICES: u32 = CHUNK_SIDE * CHUNK_SIDE;
 /// Words of facing bits of a chunk.
 pub const CHUNK_WORDS: u32 = CHUNK_FACETS / 32;
+/// Samples along a side: walks count 64 x 256 steps a cell in 32 bits, and may end a cell beyond it.
+pub const LARGEST_SIDE: usize = 131_000;
 /// No chunk has this slot.
 pub const NO_SLOT: u32 = u32::MAX;
 
@@ -87,8 +89,18 @@ impl Lattice {
     /// The chunks of `dem` at one level.
     ///
     /// # Errors
-    /// [`Error::Limit`] when facets outnumber 32-bit IDs.
+    /// [`Error::Limit`] when facets outnumber 32-bit IDs or a side has more than [`LARGEST_SIDE`] samples.
     pub fn uniform(dem: &Dem, level: Level) -> Result<Self> {
+        if dem.columns().max(dem.rows()) > LARGEST_SIDE {
+            return Err(Error::Limit {
+                what: format!(
+                    "{} x {} samples are longer than the {LARGEST_SIDE} a side holds",
+                    dem.columns(),
+                    dem.rows()
+                ),
+                remedy: "use a --crop".into(),
+            });
+        }
         let quads = |samples: usize| (samples as u64 - 1) * u64::from(level.subdivisions());
         let across = |samples: usize| quads(samples).div_ceil(u64::from(CHUNK_QUADS));
         let (columns, rows) = (across(dem.columns()), across(dem.rows()));
