@@ -1,6 +1,6 @@
-// One invocation a block of 4 x 8 pixels: ink where the nearest toward surface is nearer than the nearest away surface, and that is
-// nearer than the toward surface of a neighbour. Mower 2015, algorithm 2. Wide: the nearest away depth of the 3 x 3
-// block takes the place of the pixel's own.
+// One invocation a block of 4 x 8 pixels: ink where the nearest toward surface is nearer than the nearest away surface,
+// and that is nearer than the toward surface of a neighbour. Mower 2015, algorithm 2. Wide: the nearest away depth that
+// touches the 3 x 3 block takes the place of the pixel's own.
 override wide_block: bool = false;
 
 @group(0) @binding(20) var<storage, read> touched: array<u32>;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::ValueEnum;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use serde::Serialize;
 
 use super::say;
@@ -16,6 +16,7 @@ use crate::gpu::{AdapterChoice, Gpu, Int64};
 use crate::ink::{self, Output, Style};
 use crate::plan::{Border, Method, Plan, Share};
 use crate::render::{Frame, PassTime, Renderer};
+use crate::surface::bounds::spheres;
 use crate::surface::{Level, Surface};
 use crate::view::{Camera, Fixed, choose};
 
@@ -129,7 +130,7 @@ struct ViewReport {
 struct LeftOut {
     what: &'static str,
     why: &'static str,
-    saved: Option<f64>,
+    saved: Option<String>,
 }
 
 /// Draws.
@@ -231,9 +232,11 @@ impl DrawArguments {
             .collect::<Result<Vec<_>>>()?;
         times.sort_by(f64::total_cmp);
         let mut left_out = Vec::new();
-        let mut leave = |out: bool, what, why| left_out.extend(out.then_some(LeftOut { what, why, saved: None }));
-        leave(self.border == Border::Off, "border pass", "--border off");
-        leave(surface.dem().voids() == 0, "void tests", "the DEM has no voids");
+        let mut leave = |out: bool, what, why, saved| left_out.extend(out.then_some(LeftOut { what, why, saved }));
+        let (beside, chunks) = chunks_beside(surface, renderer, camera);
+        leave(beside > 0, "chunks", "beside the page", Some(format!("{beside} of {chunks} chunks")));
+        leave(self.border == Border::Off, "border pass", "--border off", None);
+        leave(surface.dem().voids() == 0, "void tests", "the DEM has no voids", None);
         Ok(Report {
             version: env!("CARGO_PKG_VERSION"),
             dem: self.dem.display().to_string(),
@@ -260,6 +263,17 @@ impl DrawArguments {
             left_out,
         })
     }
+}
+
+/// How many chunks lie beside the page's map projection, where nothing of them is computed, and how many there are.
+fn chunks_beside(surface: &Surface, renderer: &Renderer<'_>, camera: &Camera) -> (usize, usize) {
+    let spheres = spheres(surface, renderer.lattice());
+    let eye = camera.eye.truncate() - surface.dem().position(0, 0).truncate();
+    let beside = |[x, y, _, radius]: [f64; 4]| {
+        let sides = camera.wedge().into_iter().flatten();
+        sides.map(|inward| inward.dot(DVec2::new(x, y) - eye)).any(|distance| distance < -radius)
+    };
+    (spheres.iter().filter(|s| beside(s.map(f64::from))).count(), spheres.len())
 }
 
 /// The flags that repeat a view.
