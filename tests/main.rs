@@ -1,12 +1,14 @@
 //! Every integration test in one binary: linked once, one module a subject.
 
 mod borders;
+mod chosen_view;
 mod cli;
 mod closed_forms;
 mod common;
 mod cover;
 mod coverage;
 mod dem;
+mod drawing;
 mod drawn;
 mod forms;
 mod gpu_errors;

@@ -23,6 +23,8 @@ const RAYS: usize = 48;
 const STEPS: usize = 160;
 /// Where the mean skyline lies on the page, from its top.
 const SKYLINE: f64 = 0.3;
+/// A mean skyline this high above the eye makes a view worthless: tangent.
+const STEEPEST_SKYLINE: f64 = 0.15;
 /// Crests count where the angle of sight rises by at least this much after a hidden stretch: tangent.
 const RISE: f64 = 0.002;
 
@@ -84,11 +86,19 @@ fn tenth(degrees: f64) -> f64 {
     (degrees * 10.0).round() / 10.0
 }
 
-/// Height of the sample nearest to a place in metres.
+/// Height at a place in metres, bilinear between four samples: steps between samples would pass for crests.
 fn height_at(dem: &Dem, place: DVec2) -> Option<f64> {
-    let at = dem.grid_place(place).round();
-    let inside = at.x >= 0.0 && at.y >= 0.0 && at.x < dem.columns() as f64 && at.y < dem.rows() as f64;
-    inside.then(|| dem.height(at.x as usize, at.y as usize)).flatten().map(f64::from)
+    let at = dem.grid_place(place);
+    let inside = at.x >= 0.0 && at.y >= 0.0 && at.x < (dem.columns() - 1) as f64 && at.y < (dem.rows() - 1) as f64;
+    if !inside {
+        return None;
+    }
+    let (c, r) = (at.x as usize, at.y as usize);
+    let (u, v) = (at.x.fract(), at.y.fract());
+    let height = |dc, dr| dem.height(c + dc, r + dr).map(f64::from);
+    let north = height(0, 0)? * (1.0 - u) + height(1, 0)? * u;
+    let south = height(0, 1)? * (1.0 - u) + height(1, 1)? * u;
+    Some(north * (1.0 - v) + south * v)
 }
 
 /// How well an eye shows the relief, and the mean tangent of the skyline's altitude; `None` when it sees no land.
@@ -121,5 +131,8 @@ fn look(dem: &Dem, eye: DVec3, azimuth: f64, fov: f64, radius: f64) -> Option<(f
     }
     let spread = f64::from(lively) / RAYS as f64;
     let filled = f64::from(seen) / RAYS as f64;
-    (seen > 0).then(|| (crests * spread * filled, skyline / f64::from(seen)))
+    let skyline = skyline / f64::from(seen);
+    // Looking up from a valley, one slope fills the page.
+    let level = 1.0 - (skyline.max(0.0) / STEEPEST_SKYLINE).min(1.0);
+    (seen > 0).then_some((crests * spread * filled * level, skyline))
 }

@@ -1,0 +1,164 @@
+//! From strokes to pages: what the cover hides, how strokes come out, files that appear whole.
+
+use std::f64::consts::TAU;
+
+use glam::{DVec2, DVec3};
+use hachure::error::Error;
+use hachure::ink::{
+    Chain, Cover, Drawing, InkRaster, Kind, Layer, Line, Output, Pen, Pixel, Recession, Stroke, StrokePoint, Style,
+    project_polyline, stroke, write_png,
+};
+use hachure::view::Camera;
+
+use crate::ink::raster;
+
+/// A camera towards north, and a raster whose rows from `crest` down show a near surface.
+fn ridge(crest: u32) -> (Camera, InkRaster) {
+    let (width, height) = (100, 80);
+    let camera = Camera { eye: DVec3::ZERO, azimuth: 0.0, altitude: 0.0, fov: 60.0, width, height };
+    let near_rows = |row: i64| row >= i64::from(crest);
+    let pixels = raster(width, height, |_, row| near_rows(row).then_some((Kind::Cover, 0.01)));
+    let sky = |(i, p): (usize, &Pixel)| {
+        if near_rows((i / 100) as i64) { *p } else { Pixel::new(Kind::Sky, DVec2::ZERO, 0.0) }
+    };
+    (camera, InkRaster { pixels: pixels.pixels.iter().enumerate().map(sky).collect(), ..pixels })
+}
+
+#[test]
+fn cover_hides_what_lies_behind_it() {
+    let near = 1.0;
+    let (camera, raster) = ridge(40);
+    // From high above the crest to far below it, 1 km behind the eye's ridge of 100 m.
+    let line = [DVec3::new(-100.0, 1000.0, 300.0), DVec3::new(100.0, 1000.0, -300.0)];
+    let shown = project_polyline(&line, &camera, &raster, near, Cover::On);
+    let all = project_polyline(&line, &camera, &raster, near, Cover::Off);
+    assert_eq!((shown.len(), all.len()), (1, 1));
+    assert_eq!(shown[0].points, all[0].points[..shown[0].points.len()], "the visible part is unchanged");
+    let lowest = |chains: &[Chain]| chains[0].points.iter().map(|p| p.place.y).fold(0.0, f64::max);
+    assert!((lowest(&shown) - 41.0).abs() <= 1.0, "{}", lowest(&shown));
+    assert!(lowest(&all) > 60.0);
+    assert!(all[0].points.windows(2).all(|w| w[0].place.distance(w[1].place) <= 0.5 + 1e-9));
+    // On the surface or before it nothing is hidden, a little behind it everything below the crest is.
+    let at = |distance: f64| line.map(|p| DVec3::new(p.x / 10.0, distance, p.z / 10.0));
+    let length = |distance| {
+        let chains = project_polyline(&at(distance), &camera, &raster, near, Cover::On);
+        chains.iter().map(|c| c.points.len()).sum::<usize>()
+    };
+    assert!(length(100.0) == length(99.9) && length(100.3) >= length(100.0) - 2);
+    assert!(length(101.0) < length(100.0) * 6 / 10);
+}
+
+#[test]
+fn polylines_are_clipped_to_the_near_plane_and_the_page() {
+    let (camera, raster) = ridge(80);
+    let through_eye = [DVec3::new(5.0, -1e6, 1.0), DVec3::new(5.0, 1e6, 1.0)];
+    let chains = project_polyline(&through_eye, &camera, &raster, 1.0, Cover::Off);
+    assert_eq!(chains.len(), 1);
+    let inside = |p: DVec2| (-1e-6..=100.0 + 1e-6).contains(&p.x) && (-1e-6..=80.0 + 1e-6).contains(&p.y);
+    assert!(chains[0].points.iter().all(|p| inside(p.place) && p.depth <= 1.0));
+    let behind = [DVec3::new(0.0, -10.0, 0.0), DVec3::new(1.0, -5.0, 0.0)];
+    assert!(project_polyline(&behind, &camera, &raster, 1.0, Cover::Off).is_empty());
+    assert!(project_polyline(&[], &camera, &raster, 1.0, Cover::Off).is_empty());
+    // Off the page and back on it: two chains, not one across the margin.
+    let out_and_in = [(-5.0, 0.0), (-99.0, 0.0), (-99.0, 5.0), (-5.0, 5.0)].map(|(x, z)| DVec3::new(x, 20.0, z));
+    assert_eq!(project_polyline(&out_and_in, &camera, &raster, 1.0, Cover::Off).len(), 2);
+    let layer = stroke(&chains, Line::Crease, &Style::for_page(100), &raster, Recession::of(&raster));
+    assert_eq!((layer.name.as_str(), layer.strokes.len()), ("crease", 1));
+}
+
+/// The page of one layer in black on white, gray values by row and column.
+fn page(width: u32, height: u32, pen: f64, strokes: Vec<Stroke>) -> image::GrayImage {
+    let pen = Pen { width: pen, colour: [0, 0, 0, 255] };
+    let layers = vec![Layer { name: "ink".into(), pen, strokes }];
+    let mut file = Vec::new();
+    write_png(&Drawing { width, height, paper: [255; 4], layers }, &mut file).unwrap();
+    image::load_from_memory(&file).unwrap().to_luma8()
+}
+
+/// A stroke of full width through these places.
+fn through(places: &[(f64, f64)]) -> Stroke {
+    let point = |&(x, y): &(f64, f64)| StrokePoint { place: DVec2::new(x, y), width: 1.0 };
+    Stroke { points: places.iter().map(point).collect(), closed: false }
+}
+
+/// Ink on a page in whole black pixels.
+fn ink_of(page: &image::GrayImage) -> f64 {
+    page.pixels().map(|p| 1.0 - f64::from(p.0[0]) / 255.0).sum()
+}
+
+#[test]
+fn strokes_have_their_width_without_beads_gaps_or_seams() {
+    // Across tile borders, with many joints, thinner than a pixel.
+    for (pen, joints) in [(0.6, 2), (0.6, 300), (3.0, 300)] {
+        let places: Vec<(f64, f64)> = (0..joints)
+            .map(|i| 10.0 + 280.0 * f64::from(i) / f64::from(joints - 1))
+            .map(|x| (x, 100.0 + x / 7.0))
+            .collect();
+        let page = page(300, 200, pen, vec![through(&places)]);
+        let column = |x: u32| (0..200).map(|y| 1.0 - f64::from(page.get_pixel(x, y).0[0]) / 255.0).sum::<f64>();
+        let expected = pen * (1.0_f64 + 1.0 / 49.0).sqrt();
+        for x in 20..280 {
+            assert!((column(x) - expected).abs() < 0.05, "pen {pen}, {joints} joints, column {x}: {}", column(x));
+        }
+    }
+}
+
+#[test]
+fn junctions_are_not_darker_and_dots_are_round() {
+    let cross = page(64, 64, 0.8, vec![through(&[(5.0, 32.5), (59.0, 32.5)]), through(&[(32.5, 5.0), (32.5, 59.0)])]);
+    let (arm, heart) = (cross.get_pixel(20, 32).0[0], cross.get_pixel(32, 32).0[0]);
+    assert!(arm > 40 && heart < arm, "the pixel of the crossing is fuller, {heart} against {arm}");
+    let twice = page(64, 64, 0.8, vec![through(&[(5.0, 32.5), (59.0, 32.5)]), through(&[(5.0, 32.5), (40.0, 32.5)])]);
+    assert_eq!(twice.get_pixel(20, 32), twice.get_pixel(50, 32), "a line drawn twice is not darker");
+    let dot = ink_of(&page(20, 20, 6.0, vec![through(&[(10.3, 9.6)])]));
+    assert!((dot - TAU / 2.0 * 9.0).abs() < 0.5, "{dot}");
+    assert_eq!(ink_of(&page(20, 20, 6.0, vec![])), 0.0);
+}
+
+#[test]
+fn closed_strokes_and_huge_pages_are_drawn_whole() {
+    let corners = (0..40).map(|i| DVec2::from_angle(TAU * f64::from(i) / 40.0) * 20.0 + 32.0);
+    let points = corners.map(|place| StrokePoint { place, width: 1.0 }).collect();
+    let ring = ink_of(&page(64, 64, 2.0, vec![Stroke { points, closed: true }]));
+    assert!((ring - TAU * 20.0 * 2.0).abs() < 3.0, "{ring}");
+    let wide = page(40_000, 4, 1.0, vec![through(&[(-10.0, 2.5), (40_010.0, 2.5)])]);
+    assert!(wide.enumerate_pixels().all(|(_, y, p)| (p.0[0] < 5) == (y == 2)));
+    assert!(write_png(&Drawing { width: 0, height: 5, paper: [255; 4], layers: vec![] }, Vec::new()).is_err());
+}
+
+#[test]
+fn outputs_appear_whole_or_not_at_all() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("out.png");
+    let files = || std::fs::read_dir(folder.path()).unwrap().count();
+    let mut output = Output::create(&path).unwrap();
+    assert!(!path.exists());
+    output.write(|file| file.write_all(b"whole")).unwrap();
+    output.publish().unwrap();
+    assert_eq!((std::fs::read(&path).unwrap(), files()), (b"whole".to_vec(), 1));
+    let broken = Output::create(&path).unwrap().write(|file| {
+        file.write_all(b"half")?;
+        Err(std::io::Error::other("the disk is full"))
+    });
+    assert!(matches!(broken, Err(Error::Output { path: p, what }) if p == path && what == "the disk is full"));
+    drop(Output::create(&path).unwrap());
+    assert_eq!((std::fs::read(&path).unwrap(), files()), (b"whole".to_vec(), 1));
+    for wrong in [folder.path().to_owned(), folder.path().join("missing/out.png"), "".into(), path.join("out.png")] {
+        assert!(matches!(Output::create(&wrong), Err(Error::Output { .. })), "{}", wrong.display());
+    }
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        let plain = folder.path().join("plain");
+        std::fs::write(&plain, "").unwrap();
+        let mode = |path: &std::path::Path| std::fs::metadata(path).unwrap().permissions().mode();
+        assert_eq!(mode(&path), mode(&plain), "permissions of any new file");
+        let link = folder.path().join("link");
+        std::os::unix::fs::symlink(&plain, &link).unwrap();
+        let mut output = Output::create(&link).unwrap();
+        output.write(|file| file.write_all(b"linked")).unwrap();
+        output.publish().unwrap();
+        assert_eq!(std::fs::read(&plain).unwrap(), b"linked", "a link stays a link");
+        assert!(Output::create(std::path::Path::new("/dev/null")).is_err(), "a device stays a device");
+    }
+}
