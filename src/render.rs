@@ -142,7 +142,7 @@ impl<'a> Renderer<'a> {
     /// Draws a frame to its mask and waits for it. Nothing but the camera is uploaded.
     ///
     /// # Errors
-    /// Whatever the driver reports; [`Error::Flag`] for an eye out of reach.
+    /// Whatever the driver reports; [`Error::Flag`] for an eye out of reach or a camera of another page size.
     pub fn frame(&self, camera: &Camera) -> Result<()> {
         self.run(camera, &mut Clock::Whole)
     }
@@ -203,6 +203,12 @@ impl<'a> Renderer<'a> {
     }
 
     fn run(&self, camera: &Camera, clock: &mut Clock) -> Result<()> {
+        if [camera.width, camera.height] != self.size {
+            let [width, height] = self.size;
+            let what =
+                format!("the camera has {}x{} pixels, the renderer {width}x{height}", camera.width, camera.height);
+            return Err(Error::flag("--size", what, "make a renderer for this size"));
+        }
         self.buffers.write_camera(self.gpu, &CameraUniform::new(self.surface.dem(), camera)?)?;
         let mut work = Work::new(self.gpu, &self.buffers, clock);
         work.clear(&["pixels", "ink", "summaries", "counts"])?;

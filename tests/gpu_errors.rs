@@ -7,6 +7,7 @@ use hachure::gpu::{AdapterChoice, CameraUniform, Gpu, Int64};
 use hachure::plan::{Border, Method, Plan};
 use hachure::render::Renderer;
 use hachure::surface::{Lattice, Surface};
+use hachure::view::Camera;
 
 use crate::common::gpu;
 use crate::drawn::{BY_ID, level, look, over, renderer, rough};
@@ -31,6 +32,17 @@ fn an_adapter_of_no_name_is_refused_with_those_there_are() {
     let error = refused(Gpu::open(&choice, Int64::IfPresent), &["no such", "there is: ", there]);
     assert!(matches!(error, Error::NoAdapter { .. }));
     assert_eq!(error.exit_code(), 1);
+}
+
+#[test]
+fn a_camera_of_another_page_is_refused() {
+    let scene = Surface::new(flat(4, 4));
+    let renderer =
+        Renderer::new(gpu(), &scene, Plan::new(level(1), Method::Walk, Border::On), [64, 48]).expect("small");
+    let eye = glam::DVec3::new(50.0, -200.0, 100.0);
+    let camera = |width, height| Camera { eye, azimuth: 0.0, altitude: -20.0, fov: 60.0, width, height };
+    assert!(renderer.frame(&camera(64, 48)).is_ok());
+    refused(renderer.frame(&camera(65, 48)), &["65x48", "64x48"]);
 }
 
 #[test]
