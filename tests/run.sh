@@ -12,4 +12,5 @@ if [ "$skipped" -gt 0 ]; then
     echo "$skipped skipped, set HACHURE_DEMS"
     [ -z "${CI:-}" ] || exit 1
 fi
+awk '/^test result:/ { passed += $4; failed += $6 } END { print passed + 0 " passed, " failed + 0 " failed" }' "$said"
 [ ! -s "$status" ] || exit 1
