@@ -50,7 +50,7 @@ fn draw_crossings(p: vec3<f32>, q: vec3<f32>, axis: u32) {
 @compute @workgroup_size(64)
 fn border(@builtin(global_invocation_id) invocation: vec3<u32>) {
     let parts = CELL_STEPS / scene.step;
-    let i = invocation.y * 65535u * 64u + invocation.x;
+    let i = invocation.y * MOST_GROUPS * 64u + invocation.x;
     if i / parts >= arrayLength(&rim) {
         return;
     }

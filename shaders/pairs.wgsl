@@ -1,5 +1,5 @@
-// One invocation a candidate pixel: keeps the pairs that have an away facet, or no facet at all, in the rectangle of
-// quads that a walk between them cannot leave. Few remain, and the walk finds them side by side.
+// One invocation a candidate pixel: keeps its pairs with sky, and those with an away facet in the rectangle of quads
+// that a walk between the two cannot leave. Few remain, and the walk finds them side by side.
 
 struct Candidates {
     groups_x: u32,

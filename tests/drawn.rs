@@ -6,8 +6,10 @@ use hachure::gpu::Gpu;
 use hachure::plan::{Border, Method, Plan, Share};
 use hachure::render::Renderer;
 use hachure::surface::lattice::CHUNK_VERTICES;
-use hachure::surface::{LatticePoint, Level, Surface};
+use hachure::surface::{LatticePoint, Surface};
 use hachure::view::Camera;
+
+use crate::scenes::level;
 
 /// Flags of a screen vertex, as `shaders/scene.wgsl` has them; `reflection` compares.
 pub const BESIDE: i32 = 31;
@@ -49,11 +51,6 @@ pub fn surface(columns: usize, cell: f64, heights: Vec<f32>) -> Surface {
 /// A surface of [`noise`].
 pub fn rough(seed: u64, samples: [usize; 2], cell: f64, relief: f64) -> Surface {
     surface(samples[0], cell, noise(seed, samples, cell, relief))
-}
-
-/// A level that exists.
-pub fn level(n: u32) -> Level {
-    Level::new(n).expect("a power of two up to 64")
 }
 
 /// The point `above` metres over the surface at a place in columns and rows, to the nearest 1/64 cell.

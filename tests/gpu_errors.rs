@@ -10,7 +10,8 @@ use hachure::surface::{Lattice, Surface};
 use hachure::view::Camera;
 
 use crate::common::gpu;
-use crate::drawn::{BY_ID, level, look, over, renderer, rough};
+use crate::drawn::{BY_ID, look, over, renderer, rough};
+use crate::scenes::level;
 
 /// The error of a call that must fail, with the words it must contain.
 fn refused<T>(outcome: Result<T>, words: &[&str]) -> Error {

@@ -7,6 +7,7 @@ use hachure::surface::Surface;
 use hachure::view::Camera;
 
 use crate::common::shared_dems;
+use crate::drawn::Random;
 use crate::scenes::{METHODS, gpu, level, rough};
 
 const PAGE: [u32; 2] = [123, 77];
@@ -19,30 +20,21 @@ fn page(renderer: &Renderer<'_>, camera: &Camera) -> Vec<u8> {
     bytemuck::cast_slice(&renderer.read().expect("its pixels").raster.pixels).to_vec()
 }
 
-/// Numbers in 0 to 1, the same in every run (Marsaglia 2003, xorshift).
-fn random(state: &mut u64) -> f64 {
-    *state ^= *state << 13;
-    *state ^= *state >> 7;
-    *state ^= *state << 17;
-    (*state >> 11) as f64 / (1_u64 << 53) as f64
-}
-
 /// Eyes in, over, under and beside the DEM, looking anywhere, with narrow and wide fields of view.
-fn anywhere(surface: &Surface, state: &mut u64) -> Camera {
+fn anywhere(surface: &Surface, random: &mut Random) -> Camera {
     let [west, south, east, north] = surface.dem().extent();
     let [low, high] = surface.dem().range().expect("land").map(f64::from);
-    let between = |state: &mut u64, a: f64, b: f64| a + (b - a) * random(state);
     let (wide, tall) = (east - west, north - south);
     let relief = (high - low).max(wide / 20.0);
     Camera {
         eye: DVec3::new(
-            between(state, west - 0.3 * wide, east + 0.3 * wide),
-            between(state, south - 0.3 * tall, north + 0.3 * tall),
-            between(state, low - 0.2 * relief, high + 1.5 * relief),
+            random.between(west - 0.3 * wide, east + 0.3 * wide),
+            random.between(south - 0.3 * tall, north + 0.3 * tall),
+            random.between(low - 0.2 * relief, high + 1.5 * relief),
         ),
-        azimuth: between(state, 0.0, 360.0),
-        altitude: between(state, -90.0, 40.0),
-        fov: between(state, 2.0, 120.0),
+        azimuth: random.between(0.0, 360.0),
+        altitude: random.between(-90.0, 40.0),
+        fov: random.between(2.0, 120.0),
         width: PAGE[0],
         height: PAGE[1],
     }
@@ -55,10 +47,10 @@ fn compare(surface: &Surface, n: u32, method: Method, frames: usize, seed: u64) 
             .expect("a renderer")
     };
     let (thrifty, whole) = (make(Thrift::LeaveOut), make(Thrift::Nothing));
-    let mut state = seed;
+    let mut random = Random(seed);
     let mut inked = 0;
     for _ in 0..frames {
-        let camera = anywhere(surface, &mut state);
+        let camera = anywhere(surface, &mut random);
         let expected = page(&whole, &camera);
         assert!(page(&thrifty, &camera) == expected, "{method:?}, level {n}: {camera:?} differs");
         inked += expected.chunks_exact(8).filter(|p| p[0] & 2 != 0).count();
@@ -95,8 +87,12 @@ fn another_frame_is_noticed() {
             .expect("a renderer")
     };
     let [west, south, _, _] = surface.dem().extent();
-    let camera =
-        Camera { eye: DVec3::new(west, south, 400.0), azimuth: 45.0, altitude: -10.0, ..anywhere(&surface, &mut 5) };
+    let camera = Camera {
+        eye: DVec3::new(west, south, 400.0),
+        azimuth: 45.0,
+        altitude: -10.0,
+        ..anywhere(&surface, &mut Random(5))
+    };
     let moved = Camera { azimuth: camera.azimuth + 0.1, ..camera };
     assert!(page(&renderer(Thrift::LeaveOut), &moved) != page(&renderer(Thrift::Nothing), &camera));
 }

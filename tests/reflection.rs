@@ -15,7 +15,8 @@ use hachure::surface::rim::RimEdge;
 use hachure::surface::{Chunk, Lattice, lattice};
 use wgpu::naga;
 
-use crate::drawn::{BESIDE, CLIPPED, MISSING, level};
+use crate::drawn::{BESIDE, CLIPPED, MISSING};
+use crate::scenes::level;
 
 mod on_device;
 

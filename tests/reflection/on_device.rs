@@ -10,7 +10,7 @@ use hachure::surface::{Lattice, LatticePoint};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
 use crate::common::gpu;
-use crate::drawn::level;
+use crate::scenes::level;
 
 /// Eight words a facet: its three vertices, its ID again by way of its place, its half.
 const DECODE: &str = concat!(
