@@ -1,6 +1,10 @@
 //! Reading of DEMs: values, places, voids, crops, formats.
 
+mod converted;
+mod large;
+mod mosaics;
 mod refused;
+mod shared;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,13 +13,9 @@ use gdal::raster::{Buffer, GdalType};
 use gdal::spatial_ref::SpatialRef;
 use gdal::{Dataset, DatasetOptions, DriverManager, GdalOpenFlags};
 use glam::{DVec2, DVec3};
-use hachure::dem::{Dem, ReadOptions, info, read};
+use hachure::dem::{Dem, Info, ReadOptions, info, read};
 use tempfile::TempDir;
 
-use crate::common::shared_dems;
-
-/// Metres between formats of one terrain: whole-metre formats round by half a metre, text formats by a little more.
-const FORMATS_METRES: f32 = 0.501;
 /// Metres between a decimal elevation and its f32: 3000 m have steps of 0.00025 m.
 const F32_METRES: f32 = 0.0005;
 /// Metres between places that went through a text header with at least 7 decimals.
@@ -64,6 +64,10 @@ fn folder() -> TempDir {
     tempfile::tempdir().unwrap()
 }
 
+fn told(path: &Path) -> Info {
+    info(&[path.to_owned()], &ReadOptions::default(), &|_, _| ()).unwrap()
+}
+
 fn read_all(path: &Path) -> Dem {
     read(path, &ReadOptions::default()).unwrap()
 }
@@ -97,7 +101,8 @@ fn samples_lie_in_the_middle_of_their_pixels() {
     assert_eq!(dem.position(0, 0), DVec3::new(500_015.0, 4_199_990.0, 100.0));
     assert_eq!(dem.position(3, 2), DVec3::new(500_105.0, 4_199_950.0, 111.0));
     assert_eq!(dem.extent(), [500_015.0, 4_199_950.0, 500_105.0, 4_199_990.0]);
-    assert_eq!(dem.crs(), "WGS 84 / UTM zone 10N (EPSG:32610)");
+    assert_eq!(dem.georeference().world().label(), "WGS 84 / UTM zone 10N (EPSG:32610)");
+    assert_eq!(dem.georeference().file(), dem.georeference().world());
     assert_eq!(dem.voids(), 0);
 }
 
@@ -124,8 +129,8 @@ fn voids_declared_and_not() {
     assert!(dem.heights().iter().all(|h| h.is_finite()));
     let undeclared = Raster::new(4, heights.to_vec()).write("GTiff", &dir.path().join("undeclared.tif"));
     assert_eq!(read_all(&undeclared).height(0, 0), Some(-9999.0), "-9999 is a number until it is declared");
-    let told = info(&undeclared).unwrap();
-    assert!(told.assumed.iter().any(|a| a.starts_with("4 samples at or below -32767 m")), "{told}");
+    let told = told(&undeclared);
+    assert!(told.history.assumed().iter().any(|a| a.starts_with("4 samples at or below -32767 ")), "{told}");
 }
 
 #[test]
@@ -187,9 +192,12 @@ fn the_first_of_many_bands_counts() {
     }
     file.close().unwrap();
     assert_eq!(read_all(&path).range(), Some([100.0, 100.0]));
-    let told = info(&path).unwrap();
-    assert!(told.assumed.contains(&"elevations are in band 1 of 3".to_owned()), "{told}");
-    assert!(told.assumed.iter().any(|a| a.contains("no coordinate system")), "{told}");
+    let told = told(&path);
+    assert!(told.history.assumed().iter().any(|a| a.starts_with("elevations are in band 1 of 3 (")), "{told}");
+    assert!(told.history.assumed().iter().any(|a| a.contains("no coordinate system")), "{told}");
+    let third = read(&path, &ReadOptions { band: Some(3), ..Default::default() }).unwrap();
+    assert_eq!(third.range(), Some([300.0, 300.0]));
+    assert!(third.history().assumed().iter().all(|a| !a.contains("band")), "the band was chosen");
 }
 
 #[test]
@@ -238,7 +246,8 @@ fn metres_without_a_coordinate_system_are_taken() {
         .unwrap();
     let dem = read_all(&path);
     assert_eq!(dem.position(1, 1), DVec3::new(1015.0, 2005.0, 8.5));
-    assert_eq!((dem.valid(), dem.crs()), ([true, true, false, true].as_slice(), ""));
+    assert_eq!((dem.valid(), dem.georeference().world().name()), ([true, true, false, true].as_slice(), ""));
+    assert!(dem.history().assumed()[0].starts_with("coordinates are metres (no coordinate system"));
     copy(&path, "AAIGrid", Path::new(&format!("/vsigzip/{}", dir.path().join("bare.asc.gz").display())));
     assert_eq!(read_all(&dir.path().join("bare.asc.gz")).heights(), dem.heights());
     assert!(!dir.path().join("bare.asc.gz.properties").exists());
@@ -246,7 +255,7 @@ fn metres_without_a_coordinate_system_are_taken() {
     let tif = png.write("GTiff", &dir.path().join("png.tif"));
     let path = dir.path().join("sixteen.png");
     copy(&tif, "PNG", &path);
-    refused::refused(&path, &["no geotransform", "gdal_translate -a_srs"]);
+    refused::refused(&path, &["no geotransform", "--cell M"]);
     fs::write(dir.path().join("sixteen.wld"), "10\n0\n0\n-10\n5\n95\n").unwrap();
     assert_eq!(read_all(&path).position(0, 0), DVec3::new(5.0, 95.0, 7.0));
 }
@@ -254,8 +263,8 @@ fn metres_without_a_coordinate_system_are_taken() {
 #[test]
 fn info_says_what_a_file_holds() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("dem/golden-gate.tif");
-    let told = info(&path).unwrap();
-    assert_eq!((told.columns, told.rows, told.epsg, told.voids), (500, 500, Some(32610), 0));
+    let told = told(&path);
+    assert_eq!((told.columns, told.rows, told.crs.epsg(), told.voids), (500, 500, Some(32610), 0));
     assert_eq!(told.extent, [536_715.0, 4_180_515.0, 551_685.0, 4_195_485.0]);
     assert_eq!(told.cell, [30.0, 30.0]);
     assert!(told.range[0] == 0.0 && (told.range[1] - 338.4).abs() < F32_METRES, "{told}");
@@ -267,65 +276,4 @@ fn info_says_what_a_file_holds() {
     {
         assert!(lines.contains(part), "no {part:?}:\n{lines}");
     }
-}
-
-/// The Half Dome crop in every format, and the one that names no place on Earth.
-const HALF_DOME: [&str; 12] = [
-    "halfdome_f64.tif",
-    "halfdome_bigtiff_lzw.tif",
-    "halfdome.asc",
-    "halfdome.asc.gz",
-    "halfdome_f.flt",
-    "halfdome_i.bil",
-    "halfdome_envi.img",
-    "halfdome.nc",
-    "halfdome.dem",
-    "halfdome.vrt",
-    "halfdome_scaled.vrt",
-    "halfdome_u16.png",
-];
-
-#[test]
-fn half_dome_is_the_same_in_every_format() {
-    let Some(shared) = shared_dems() else { return };
-    let dir = folder();
-    // The files are in degrees, which are refused; laid out in metres by a VRT around each, they are compared.
-    let dems = HALF_DOME.map(|name| read_all(&in_metres(&shared.join("formats").join(name), dir.path())));
-    assert!((dems[0].range().unwrap()[1] - 3026.06).abs() < 0.01);
-    for (name, dem) in HALF_DOME.iter().zip(&dems) {
-        assert_eq!((dem.columns(), dem.rows(), dem.voids()), (320, 280, 0), "{name}");
-        // This one declares a scale of 0.1 over the same numbers: the same shape, a tenth as high.
-        let scale = if *name == "halfdome_scaled.vrt" { 0.1 } else { 1.0 };
-        let gaps = dem.heights().iter().zip(dems[0].heights()).map(|(a, b)| (a - scale * b).abs());
-        let gap = gaps.fold(0.0, f32::max);
-        assert!(gap <= FORMATS_METRES, "{name}: {gap} m");
-    }
-    assert_ne!(dems[0].heights(), dems[5].heights(), "whole metres must differ from f64");
-}
-
-/// A VRT of `path` in UTM with 30 m cells.
-fn in_metres(path: &Path, folder: &Path) -> PathBuf {
-    let gz = path.extension().is_some_and(|e| e == "gz");
-    let name = if gz { format!("/vsigzip/{}", path.display()) } else { path.display().to_string() };
-    let vrt = folder.join(format!("{}.vrt", path.file_name().unwrap().display()));
-    let driver = DriverManager::get_driver_by_name("VRT").unwrap();
-    // A VRT dataset points into the one it was made from until it is closed.
-    let source = Dataset::open(name).unwrap();
-    let mut copy = source.create_copy(&driver, &vrt, &Default::default()).unwrap();
-    copy.set_geo_transform(&[270_000.0, 30.0, 0.0, 4_180_000.0, 0.0, -30.0]).unwrap();
-    copy.set_spatial_ref(&SpatialRef::from_epsg(32611).unwrap()).unwrap();
-    copy.close().unwrap();
-    vrt
-}
-
-#[test]
-fn shared_terrain_in_metres_is_read() {
-    let Some(shared) = shared_dems() else { return };
-    let helens = info(&shared.join("SainteHelens.dem")).unwrap();
-    assert_eq!((helens.columns, helens.rows, helens.cell), (327, 468, [30.0, 30.0]));
-    assert_eq!(helens.range, [682.0, 2543.0]);
-    assert_eq!((helens.crs.as_str(), helens.epsg), ("NAD27 / UTM zone 10N", Some(26710)));
-    assert!(helens.voids > 0);
-    let zion = info(&shared.join("west_temple_50m.tif")).unwrap();
-    assert_eq!((zion.columns, zion.rows, zion.epsg, zion.voids), (120, 140, Some(26912), 0));
 }

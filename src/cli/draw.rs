@@ -4,12 +4,14 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::ValueEnum;
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 use serde::Serialize;
 
 use super::say;
-use super::values::{self, Eye, EyeHeight, Size};
-use crate::dem::{self, ReadOptions};
+use super::terrain::TerrainArguments;
+use super::values;
+use super::viewpoint::{View, ViewArguments, ViewReport};
+use crate::dem::{self, Dem};
 use crate::error::{Error, Result};
 use crate::gpu::sizes::page_fits;
 use crate::gpu::{AdapterChoice, Gpu, Int64};
@@ -18,7 +20,7 @@ use crate::plan::{Border, Method, Plan, Share};
 use crate::render::{Frame, PassTime, Renderer};
 use crate::surface::bounds::spheres;
 use crate::surface::{Level, Surface};
-use crate::view::{Camera, Fixed, choose};
+use crate::view::Camera;
 
 /// Warm frames behind the median of `--json`.
 const WARM_FRAMES: usize = 9;
@@ -26,8 +28,8 @@ const WARM_FRAMES: usize = 9;
 /// Flags of `hachure draw`, as typed.
 #[derive(Debug, clap::Args)]
 pub struct DrawArguments {
-    /// The DEM: any raster in projected metres, north up
-    dem: PathBuf,
+    #[command(flatten)]
+    terrain: TerrainArguments,
     /// The drawing, a .png
     #[arg(short, long, value_name = "OUT.png")]
     output: PathBuf,
@@ -38,25 +40,9 @@ pub struct DrawArguments {
     #[arg(long, value_name = "OUT.json")]
     json: Option<PathBuf>,
 
-    /// Eye: easting, northing in metres in the CRS of the DEM; exaggerated height in metres, or +H above the ground
-    #[arg(long, value_name = "E,N,Z|E,N,+H", value_parser = values::eye, allow_hyphen_values = true, help_heading = "View")]
-    eye: Option<Eye>,
-    /// Direction of view, degrees clockwise from grid north [default: towards the middle of the DEM]
-    #[arg(long, value_name = "DEG", value_parser = values::azimuth, allow_hyphen_values = true, help_heading = "View")]
-    azimuth: Option<f64>,
-    /// Direction of view, degrees above the horizon, -90 to 90 [default: 0 from a given eye]
-    #[arg(long, value_name = "DEG", value_parser = values::altitude, allow_hyphen_values = true, help_heading = "View")]
-    altitude: Option<f64>,
-    /// Horizontal field of view, degrees
-    #[arg(long, value_name = "DEG", value_parser = values::fov, allow_hyphen_values = true, default_value = "60", help_heading = "View")]
-    fov: f64,
-    /// Pixels across and down
-    #[arg(long, value_name = "WxH", value_parser = values::size, default_value = "1920x1080", help_heading = "View")]
-    size: Size,
+    #[command(flatten)]
+    view: ViewArguments,
 
-    /// Draw a part only: west, south, east, north in metres in the CRS of the DEM
-    #[arg(long, value_name = "E0,N0,E1,N1", value_parser = values::crop, allow_hyphen_values = true, help_heading = "Surface")]
-    crop: Option<[f64; 4]>,
     /// Factor on every elevation
     #[arg(long, value_name = "X", value_parser = values::exaggeration, allow_hyphen_values = true, default_value = "1", help_heading = "Surface")]
     exaggeration: f64,
@@ -99,7 +85,7 @@ enum MethodName {
 #[derive(Serialize)]
 struct Report {
     version: &'static str,
-    dem: String,
+    dem: DemReport,
     method: &'static str,
     level: u32,
     facets: u64,
@@ -114,16 +100,17 @@ struct Report {
     left_out: Vec<LeftOut>,
 }
 
+/// What was drawn, and what became of the files on the way.
 #[derive(Serialize)]
-struct ViewReport {
-    eye: [f64; 3],
-    azimuth: f64,
-    altitude: f64,
-    fov: f64,
-    size: [u32; 2],
-    projection: &'static str,
-    crs: String,
-    flags: String,
+struct DemReport {
+    files: Vec<String>,
+    columns: usize,
+    rows: usize,
+    cell_m: [f64; 2],
+    extent_m: [f64; 4],
+    voids: usize,
+    converted: Vec<String>,
+    assumed: Vec<String>,
 }
 
 #[derive(Serialize)]
@@ -139,22 +126,33 @@ struct LeftOut {
 /// Whatever went wrong; nothing stands under a final name then.
 pub fn run(arguments: &DrawArguments) -> Result<()> {
     let method = arguments.method()?;
-    let size = [arguments.size.width, arguments.size.height];
+    let size = [arguments.view.size.width, arguments.view.size.height];
     page_fits(size)?;
+    arguments.view.check()?;
     let outputs = Outputs::open(arguments)?;
     let started = Instant::now();
-    let read = ReadOptions { crop: arguments.crop, exaggeration: arguments.exaggeration };
-    let surface = Surface::new(dem::read(&arguments.dem, &read)?);
-    let camera = arguments.camera(&surface)?;
-    say(&format!("view: {}\n", view_flags(&camera)))?;
+    let options = arguments.terrain.options(arguments.exaggeration);
+    let surface = Surface::new(dem::read_all(&arguments.terrain.dems, &options, &|_, _| ())?);
+    for clause in surface.dem().history().assumed() {
+        eprintln!("warning: assumed that {clause}");
+    }
+    for clause in surface.dem().history().converted() {
+        say(&format!("converted: {clause}\n"))?;
+    }
+    let view = arguments.view.view(&surface, arguments.level)?;
+    warn_below_ground(&surface, &view.camera, arguments.level);
+    say(&format!("view: {}\n", view.flags()))?;
+    if let Some(flag) = view.lonlat_flag() {
+        say(&format!("or with: {flag}\n"))?;
+    }
     let int64 = if arguments.no_int64 { Int64::Never } else { Int64::IfPresent };
     let gpu = Gpu::open(&arguments.adapter.clone().unwrap_or_default(), int64)?;
     say(&format!("adapter: {}\n", gpu.info.name))?;
     let renderer = Renderer::new(&gpu, &surface, Plan::new(arguments.level, method, arguments.border), size)?;
-    renderer.frame(&camera)?;
+    renderer.frame(&view.camera)?;
     let frame = renderer.read()?;
-    let drawing = ink::draw(&frame.raster, &Style::for_page(camera.width));
-    let report = outputs.json.is_some().then(|| arguments.report(&gpu, &surface, &renderer, &camera, method, &frame));
+    let drawing = ink::draw(&frame.raster, &Style::for_page(view.camera.width));
+    let report = outputs.json.is_some().then(|| arguments.report(&gpu, &surface, &renderer, &view, method, &frame));
     outputs.write(&drawing, &frame, report.transpose()?.as_ref())?;
     say(&format!(
         "{}: {} facets, {} of {} pixels inked, {:.2} s\n",
@@ -181,48 +179,16 @@ impl DrawArguments {
         })
     }
 
-    /// The camera as asked, or as chosen. Warns of an eye below the ground.
-    fn camera(&self, surface: &Surface) -> Result<Camera> {
-        let eye = self.eye.map(|eye| self.world_eye(surface, eye)).transpose()?;
-        let fixed = Fixed { eye, azimuth: self.azimuth, altitude: self.altitude };
-        let camera = choose(surface.dem(), fixed, self.fov, self.size.width, self.size.height);
-        if let Some(ground) = surface.height_below(camera.eye.truncate(), self.level)
-            && camera.eye.z < ground
-        {
-            let depth = ground - camera.eye.z;
-            eprintln!("warning: the eye is {depth:.1} m below the ground; give --eye E,N,+H to stand above it");
-        }
-        Ok(camera)
-    }
-
-    fn world_eye(&self, surface: &Surface, eye: Eye) -> Result<DVec3> {
-        match eye.height {
-            EyeHeight::Absolute(z) => Ok(eye.place.extend(z)),
-            EyeHeight::AboveGround(h) => {
-                let ground = surface.height_below(eye.place, self.level).ok_or_else(|| {
-                    let [west, south, east, north] = surface.dem().extent();
-                    Error::flag(
-                        "--eye",
-                        format!("there is no ground at {},{}", eye.place.x, eye.place.y),
-                        format!(
-                            "give a height without +, or a place with data between {west},{south} and {east},{north}"
-                        ),
-                    )
-                })?;
-                Ok(eye.place.extend(ground + h))
-            }
-        }
-    }
-
     fn report(
         &self,
         gpu: &Gpu,
         surface: &Surface,
         renderer: &Renderer<'_>,
-        camera: &Camera,
+        view: &View,
         method: Method,
         frame: &Frame,
     ) -> Result<Report> {
+        let camera = &view.camera;
         let mut times = (0..WARM_FRAMES)
             .map(|_| {
                 let start = Instant::now();
@@ -239,7 +205,7 @@ impl DrawArguments {
         leave(surface.dem().voids() == 0, "void tests", "the DEM has no voids", None);
         Ok(Report {
             version: env!("CARGO_PKG_VERSION"),
-            dem: self.dem.display().to_string(),
+            dem: DemReport::of(&self.terrain.dems, surface.dem()),
             method: method.name(),
             level: self.level.subdivisions(),
             facets: renderer.facets(),
@@ -250,16 +216,7 @@ impl DrawArguments {
             passes: renderer.timed_frame(camera)?,
             adapter: format!("{} ({})", gpu.info.name, gpu.info.driver_info),
             int64: gpu.int64,
-            view: ViewReport {
-                eye: camera.eye.to_array(),
-                azimuth: camera.azimuth,
-                altitude: camera.altitude,
-                fov: camera.fov,
-                size: [camera.width, camera.height],
-                projection: "central, square pixels, horizontal fov",
-                crs: surface.dem().crs().to_owned(),
-                flags: view_flags(camera),
-            },
+            view: view.report(surface.dem().georeference(), self.exaggeration),
             left_out,
         })
     }
@@ -276,11 +233,28 @@ fn chunks_beside(surface: &Surface, renderer: &Renderer<'_>, camera: &Camera) ->
     (spheres.iter().filter(|s| beside(s.map(f64::from))).count(), spheres.len())
 }
 
-/// The flags that repeat a view.
-fn view_flags(camera: &Camera) -> String {
-    let DVec3 { x, y, z } = camera.eye;
-    let Camera { azimuth, altitude, fov, width, height, .. } = camera;
-    format!("--eye {x},{y},{z} --azimuth {azimuth} --altitude {altitude} --fov {fov} --size {width}x{height}")
+impl DemReport {
+    fn of(files: &[PathBuf], dem: &Dem) -> Self {
+        Self {
+            files: files.iter().map(|file| file.display().to_string()).collect(),
+            columns: dem.columns(),
+            rows: dem.rows(),
+            cell_m: dem.cell().to_array(),
+            extent_m: dem.extent(),
+            voids: dem.voids(),
+            converted: dem.history().converted().to_vec(),
+            assumed: [dem.history().assumed(), dem.history().usual()].concat(),
+        }
+    }
+}
+
+fn warn_below_ground(surface: &Surface, camera: &Camera, level: Level) {
+    if let Some(ground) = surface.height_below(camera.eye.truncate(), level)
+        && camera.eye.z < ground
+    {
+        let depth = ground - camera.eye.z;
+        eprintln!("warning: the eye is {depth:.1} m below the ground; give --eye E,N,+H to stand above it");
+    }
 }
 
 /// The files to write, opened before the work starts.
@@ -296,8 +270,8 @@ impl Outputs {
         if let Some(mask) = &arguments.mask {
             wants_ending("--mask", mask, "png")?;
         }
-        let dem = std::fs::canonicalize(&arguments.dem).ok();
-        let mut taken: Vec<PathBuf> = dem.into_iter().collect();
+        let dems = arguments.terrain.dems.iter().map(std::fs::canonicalize);
+        let mut taken: Vec<PathBuf> = dems.filter_map(|dem| dem.ok()).collect();
         let mut open = |flag, path: &Path| {
             let output = Output::create(path)?;
             let target = std::path::absolute(output.target()).unwrap_or_else(|_| output.target().to_owned());

@@ -1,22 +1,22 @@
 //! `hachure info`: what a DEM holds.
 
-use std::path::PathBuf;
-
 use super::say;
+use super::terrain::TerrainArguments;
 use crate::dem;
 use crate::error::Result;
 
 /// Flags of `hachure info`.
 #[derive(Debug, clap::Args)]
 pub struct InfoArguments {
-    /// The DEM: any raster in projected metres, north up
-    dem: PathBuf,
+    #[command(flatten)]
+    terrain: TerrainArguments,
 }
 
-/// Prints size, CRS, extent, cell, range and voids.
+/// Prints size, CRS, extent, cell, range, voids, and what was converted and assumed.
 ///
 /// # Errors
 /// As [`dem::info()`].
 pub fn run(arguments: &InfoArguments) -> Result<()> {
-    say(&format!("{}\n", dem::info(&arguments.dem)?))
+    let terrain = &arguments.terrain;
+    say(&format!("{}\n", dem::info(&terrain.dems, &terrain.options(1.0), &|_, _| ())?))
 }

@@ -2,7 +2,9 @@
 
 pub mod draw;
 pub mod info;
+pub mod terrain;
 pub mod values;
+pub mod viewpoint;
 
 use std::io::{ErrorKind, Write, stdout};
 use std::path::Path;

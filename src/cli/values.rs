@@ -2,29 +2,39 @@
 
 use glam::DVec2;
 
+use crate::dem::ElevationUnit;
 use crate::gpu::AdapterChoice;
 use crate::gpu::sizes::LARGEST_SIDE;
 use crate::surface::Level;
 
-/// No place on Earth has coordinates beyond this, metres.
+/// No place on Earth has coordinates beyond this, in any unit.
 const FARTHEST: f64 = 1e9;
 
-/// Where the eye is: a place in the CRS of the DEM and a height.
+/// Where the eye is: a map place and a height.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Eye {
-    /// Easting and northing, metres.
+pub struct Standpoint {
+    /// East and north, in the units of the CRS it is given in.
     pub place: DVec2,
     /// Above what, metres.
-    pub height: EyeHeight,
+    pub height: Height,
 }
 
-/// A height of the eye in exaggerated metres.
+/// A height in exaggerated metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum EyeHeight {
+pub enum Height {
     /// Above the zero of the DEM.
     Absolute(f64),
-    /// Above the drawn surface under the eye.
+    /// Above the drawn surface at that place.
     AboveGround(f64),
+}
+
+/// Where the eye looks: a map place and, maybe, a height.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LookAt {
+    /// East and north, in the units of the CRS it is given in.
+    pub place: DVec2,
+    /// Exaggerated metres above the zero of the DEM; the ground where not given.
+    pub height: Option<f64>,
 }
 
 /// Pixels across and down.
@@ -47,16 +57,61 @@ fn numbers<const N: usize>(text: &str, form: &str) -> Result<[f64; N], String> {
 }
 
 /// `E,N,Z` or `E,N,+H`.
-pub fn eye(text: &str) -> Result<Eye, String> {
-    let [east, north, z] = numbers(text, "E,N,Z or E,N,+H in metres")?;
+pub fn eye(text: &str) -> Result<Standpoint, String> {
+    standpoint(text, "E,N,Z or E,N,+H: east and north in the CRS of the DEM, metres of height")
+}
+
+/// `LON,LAT,Z` or `LON,LAT,+H`.
+pub fn lonlat(text: &str) -> Result<Standpoint, String> {
+    let eye = standpoint(text, "LON,LAT,Z or LON,LAT,+H in degrees and metres")?;
+    if eye.place.x.abs() > 360.0 || eye.place.y.abs() > 90.0 {
+        return Err("want longitude (-360 to 360) before latitude (-90 to 90), in degrees".into());
+    }
+    Ok(eye)
+}
+
+fn standpoint(text: &str, form: &str) -> Result<Standpoint, String> {
+    let [x, y, z] = numbers(text, form)?;
     let above = text.rsplit(',').next().is_some_and(|z| z.trim().starts_with('+'));
-    let height = if above { EyeHeight::AboveGround(z) } else { EyeHeight::Absolute(z) };
-    Ok(Eye { place: DVec2::new(east, north), height })
+    let height = if above { Height::AboveGround(z) } else { Height::Absolute(z) };
+    Ok(Standpoint { place: DVec2::new(x, y), height })
+}
+
+/// `E,N` or `E,N,Z`.
+pub fn look_at(text: &str) -> Result<LookAt, String> {
+    let form = "E,N or E,N,Z: east and north in the CRS of the DEM, metres of height";
+    if text.split(',').count() == 2 {
+        let place = numbers(text, form).map(DVec2::from_array)?;
+        return Ok(LookAt { place, height: None });
+    }
+    let [x, y, z] = numbers(text, form)?;
+    Ok(LookAt { place: DVec2::new(x, y), height: Some(z) })
+}
+
+/// `EPSG:N`.
+pub fn epsg(text: &str) -> Result<u32, String> {
+    let code = text.split_once(':').filter(|(register, _)| register.eq_ignore_ascii_case("EPSG"));
+    code.and_then(|(_, code)| code.parse().ok()).ok_or_else(|| "want EPSG:N, for instance EPSG:32611".into())
+}
+
+/// Metres of a cell.
+pub fn metres(text: &str) -> Result<f64, String> {
+    number(text).and_then(|m| if m > 0.0 { Ok(m) } else { Err("want metres above 0".into()) })
+}
+
+/// `m`, `ft` or `us-ft`.
+pub fn elevation_unit(text: &str) -> Result<ElevationUnit, String> {
+    match text {
+        "m" => Ok(ElevationUnit::METRE),
+        "ft" => Ok(ElevationUnit::FOOT),
+        "us-ft" => Ok(ElevationUnit::US_FOOT),
+        _ => Err("want m, ft or us-ft".into()),
+    }
 }
 
 /// `E0,N0,E1,N1`, west before east and south before north.
 pub fn crop(text: &str) -> Result<[f64; 4], String> {
-    let window: [f64; 4] = numbers(text, "E0,N0,E1,N1 in metres")?;
+    let window: [f64; 4] = numbers(text, "E0,N0,E1,N1 in the CRS of the DEM")?;
     let [west, south, east, north] = window;
     if west < east && south < north { Ok(window) } else { Err("want west,south,east,north in this order".into()) }
 }

@@ -2,28 +2,51 @@
 
 use gdal::raster::GdalDataType;
 
-use super::source::Source;
-use crate::error::Result;
+use super::crs::Crs;
+use super::history::History;
+use super::source::{Source, heard};
+use crate::error::{Error, Result};
 
 /// At and below this many metres an elevation is a mark for no data, declared or not: -32767, -32768, -3.4e38.
 const DEEPEST: f64 = -32767.0;
 /// Above this many metres too: 9.97e36, 1e20. No mountain of the solar system reaches a quarter of it.
 const HIGHEST: f64 = 100_000.0;
 
+/// Units below this many metres are small enough for elevations to reach the marks.
+const SMALL_UNIT: f64 = 0.09;
+
 /// Metres per international foot, exact.
 const FOOT: f64 = 0.3048;
 /// Metres per US survey foot: 1200 / 3937.
 const US_FOOT: f64 = 1200.0 / 3937.0;
+
+/// A unit of length that elevations are found in.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ElevationUnit(f64);
+
+impl ElevationUnit {
+    /// The metre.
+    pub const METRE: Self = Self(1.0);
+    /// The international foot, 0.3048 m.
+    pub const FOOT: Self = Self(FOOT);
+    /// The US survey foot, 1200 / 3937 m.
+    pub const US_FOOT: Self = Self(US_FOOT);
+
+    /// By its name in a file: `m`, `ft`, `US survey foot`, `cm`…; `None` for others.
+    pub fn named(name: &str) -> Option<Self> {
+        metres_per(name).map(Self)
+    }
+}
 
 /// How the numbers of one band become metres.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Elevation {
     scale: f64,
     offset: f64,
+    /// Metres per unit of the scaled number.
+    factor: f64,
     nodata: Option<f64>,
     kind: GdalDataType,
-    /// Whether the file says that its elevations are metres.
-    pub says_metres: bool,
 }
 
 /// What one number of a band is.
@@ -38,38 +61,41 @@ pub(super) enum Reading {
 }
 
 impl Elevation {
-    /// The rules of band 1 of `source`. Fails when its elevations are not metres after scale and offset.
-    pub fn of(source: &Source) -> Result<Self> {
+    /// The rules of the band of `source`, whose places are in `crs`; `unit` overrules what the file says. What was found goes to `history`.
+    pub fn of(source: &Source, crs: &Crs, unit: Option<ElevationUnit>, history: &mut History) -> Result<Self> {
         let band = source.band()?;
-        let unit = band.unit().trim().to_lowercase();
         let elevation = Self {
             scale: band.scale().unwrap_or(1.0),
             offset: band.offset().unwrap_or(0.0),
+            factor: factor(source, crs, unit, history)?,
             nodata: band.no_data_value(),
             kind: band.band_type(),
-            says_metres: is_metre(&unit),
         };
-        if !elevation.says_metres && !["", "unknown", "unspecified"].contains(&unit.as_str()) {
-            return Err(not_metres(source, &unit));
-        }
-        if !elevation.scale.is_finite() || elevation.scale == 0.0 || !elevation.offset.is_finite() {
+        let Self { scale, offset, .. } = elevation;
+        if !scale.is_finite() || scale == 0.0 || !offset.is_finite() {
             return Err(source.error(
-                format!("its band has scale {} and offset {}", elevation.scale, elevation.offset),
+                format!("its band has scale {scale} and offset {offset}"),
                 "give it sound ones: `gdal_translate -a_scale 1 -a_offset 0 IN OUT.tif`",
             ));
+        }
+        if scale != 1.0 || offset != 0.0 {
+            history.convert(format!("elevations are the file's numbers x {scale} + {offset}, as its band declares"));
         }
         Ok(elevation)
     }
 
     /// What the number `raw` stands for.
     pub fn reading(&self, raw: f64) -> Reading {
-        let metres = raw * self.scale + self.offset;
+        let value = raw * self.scale + self.offset;
+        let metres = value * self.factor;
         if self.is_declared_void(raw) || !metres.is_finite() {
             return Reading::Void;
         }
+        // Marks are written in the file's own unit, but one much smaller than a metre reaches them with elevations.
+        let mark = if self.factor < SMALL_UNIT { metres } else { value };
         // Tenths of a metre in 16 bits still end at -32768: the mark is in the number, not in the metres.
         let lowest_numbers = self.kind == GdalDataType::Int16 && raw <= DEEPEST;
-        match lowest_numbers || metres <= DEEPEST || metres > HIGHEST {
+        match lowest_numbers || mark <= DEEPEST || metres > HIGHEST {
             true => Reading::Sentinel,
             false => Reading::Metres(metres),
         }
@@ -82,15 +108,51 @@ impl Elevation {
     }
 }
 
-fn is_metre(unit: &str) -> bool {
-    ["m", "m.", "metre", "metres", "meter", "meters"].contains(&unit)
+/// Metres per unit: as the user says, the band, or the vertical part of the CRS; else metres are assumed.
+fn factor(source: &Source, crs: &Crs, unit: Option<ElevationUnit>, history: &mut History) -> Result<f64> {
+    let band = source.band()?.unit();
+    let (vertical, vertical_metres) = vertical_unit(source);
+    let named = [band.trim().to_owned(), vertical].into_iter().find(|name| !is_blank(name));
+    let (factor, name) = match (unit, named) {
+        (Some(ElevationUnit(factor)), _) => (factor, "as --elevation-unit says".to_owned()),
+        (None, Some(name)) => {
+            let known = metres_per(&name).or(vertical_metres).ok_or_else(|| unknown_unit(source, &name))?;
+            (known, format!("\"{name}\""))
+        }
+        (None, None) => {
+            let clause = "elevations are metres (no unit is named; if they are feet, say --elevation-unit ft or us-ft)";
+            // Beside feet on the map metres are a surprise.
+            match crs.metres_per_unit() {
+                None | Some(1.0) => history.assume_as_usual(clause.into()),
+                Some(_) => history.assume(clause.into()),
+            }
+            return Ok(1.0);
+        }
+    };
+    if factor != 1.0 {
+        history.convert(format!("elevations x {factor} to metres ({name})"));
+    }
+    Ok(factor)
+}
+
+fn is_blank(unit: &str) -> bool {
+    ["", "unknown", "unspecified"].contains(&unit.to_lowercase().as_str())
+}
+
+/// Name and metres of the vertical unit of a compound CRS, which counts where the band itself names no unit.
+fn vertical_unit(source: &Source) -> (String, Option<f64>) {
+    let (reference, _) = heard(|| source.dataset.spatial_ref());
+    let Some(reference) = reference.ok().filter(|r| r.is_compound()) else { return Default::default() };
+    let unit = |child| reference.get_attr_value("COMPD_CS|VERT_CS|UNIT", child).ok().flatten();
+    (unit(0).unwrap_or_default(), unit(1).and_then(|factor| factor.parse().ok()))
 }
 
 /// Metres per unit, for the units elevations are found in.
 fn metres_per(unit: &str) -> Option<f64> {
-    let words: String = unit.chars().map(|c| if c.is_alphanumeric() { c } else { ' ' }).collect();
+    let words: String = unit.to_lowercase().chars().map(|c| if c.is_alphanumeric() { c } else { ' ' }).collect();
     let words = words.split_whitespace().collect::<Vec<_>>().join(" ");
     Some(match words.as_str() {
+        "m" | "metre" | "metres" | "meter" | "meters" => 1.0,
         "ft" | "foot" | "feet" | "international foot" | "international feet" => FOOT,
         "us survey foot" | "us survey feet" | "us ft" | "us foot" | "us feet" | "ftus" | "usft" | "foot us" => US_FOOT,
         "cm" | "centimetre" | "centimetres" | "centimeter" | "centimeters" => 0.01,
@@ -101,17 +163,9 @@ fn metres_per(unit: &str) -> Option<f64> {
     })
 }
 
-fn not_metres(source: &Source, unit: &str) -> crate::error::Error {
-    let what = format!("its elevations are in \"{unit}\", not metres");
-    match metres_per(unit) {
-        // gdal_translate drops the unit when it scales, as it should here; gdalwarp keeps or loses it by format.
-        Some(factor) => source
-            .error(what, format!("convert them first: `gdal_translate -ot Float32 -scale 0 1 0 {factor} IN OUT.tif`")),
-        None => source.error(
-            what,
-            "convert them first: `gdal_translate -ot Float32 -scale 0 1 0 F IN OUT.tif` with F metres per unit",
-        ),
-    }
+fn unknown_unit(source: &Source, unit: &str) -> Error {
+    let what = format!("its elevations are in \"{unit}\", which is no known unit of length");
+    source.error(what, "say which it is with --elevation-unit m, ft or us-ft")
 }
 
 #[cfg(test)]
@@ -119,7 +173,7 @@ mod tests {
     use super::*;
 
     const PLAIN: Elevation =
-        Elevation { scale: 1.0, offset: 0.0, nodata: None, kind: GdalDataType::Float32, says_metres: true };
+        Elevation { scale: 1.0, offset: 0.0, factor: 1.0, nodata: None, kind: GdalDataType::Float32 };
 
     #[test]
     fn sentinels_end_where_elevations_begin() {
@@ -135,7 +189,16 @@ mod tests {
         let decimetres = Elevation { scale: 0.1, kind: GdalDataType::Int16, ..PLAIN };
         assert_eq!(decimetres.reading(-32768.0), Reading::Sentinel);
         assert_eq!(decimetres.reading(-4000.0), Reading::Metres(-400.0));
-        let millimetres = Elevation { scale: 0.001, kind: GdalDataType::Int32, ..PLAIN };
+        let scaled = Elevation { scale: 0.001, kind: GdalDataType::Int32, ..PLAIN };
+        assert_eq!(scaled.reading(-32768.0), Reading::Metres(-32.768));
+    }
+
+    #[test]
+    fn marks_are_written_in_the_unit_of_the_file() {
+        let feet = Elevation { factor: FOOT, ..PLAIN };
+        assert_eq!(feet.reading(-32767.0), Reading::Sentinel);
+        assert_eq!(feet.reading(1000.0), Reading::Metres(304.8));
+        let millimetres = Elevation { factor: 0.001, kind: GdalDataType::Int32, ..PLAIN };
         assert_eq!(millimetres.reading(-32768.0), Reading::Metres(-32.768));
     }
 

@@ -1,36 +1,42 @@
-//! What a raster holds, in the words of `hachure info`.
+//! What rasters hold, in the words of `hachure info`.
 
 use std::fmt::{self, Display, Formatter};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use super::read::{Grid, ReadOptions};
+use super::crs::Crs;
+use super::history::History;
+use super::read::{ReadOptions, Reading, Stage};
 use crate::error::Result;
 
-/// What is known of a DEM file after reading it whole. `Display` prints a few aligned lines.
+/// What is known of a DEM after reading it whole. `Display` prints a few aligned lines.
+///
+/// Size, extent, cell and range are those of the DEM as it is drawn; where its files are on another grid, `source` says so.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Info {
-    /// The file as the user named it.
-    pub path: PathBuf,
-    /// GDAL's name of the format.
+    /// The files as the user named them.
+    pub paths: Vec<PathBuf>,
+    /// GDAL's name of the format of the first.
     pub driver: String,
+    /// The files' own grid in words, where the DEM is warped from it.
+    pub source: Option<String>,
     /// Samples from west to east.
     pub columns: usize,
     /// Samples from north to south.
     pub rows: usize,
-    /// Name of the coordinate reference system, empty when the file has none.
-    pub crs: String,
-    /// Its EPSG code, where the file names one.
-    pub epsg: Option<u32>,
+    /// The coordinate reference system of the DEM as drawn.
+    pub crs: Crs,
     /// West, south, east and north of the outermost sample centres, metres.
     pub extent: [f64; 4],
+    /// Degrees of longitude and latitude of the DEM's middle, where its system is known.
+    pub middle: Option<[f64; 2]>,
     /// Metres between columns and between rows.
     pub cell: [f64; 2],
     /// Lowest and highest elevation, metres.
     pub range: [f32; 2],
     /// Samples without elevation.
     pub voids: usize,
-    /// What the file does not say and was taken as given, one clause each.
-    pub assumed: Vec<String>,
+    /// What was done to the files' samples and what was assumed of them.
+    pub history: History,
 }
 
 impl Info {
@@ -40,58 +46,72 @@ impl Info {
     }
 }
 
-/// Reads `path` whole and says what it holds.
+/// Reads `paths` as [`read_all`](super::read_all()) does and says what they hold.
 ///
 /// # Errors
-/// Those of [`read`](super::read()) without crop.
-pub fn info(path: &Path) -> Result<Info> {
-    let grid = Grid::open(path)?;
-    let loaded = grid.load(&ReadOptions::default())?;
-    let dem = &loaded.dem;
+/// Those of [`read_all`](super::read_all()).
+pub fn info(paths: &[PathBuf], options: &ReadOptions, progress: &dyn Fn(Stage, f64)) -> Result<Info> {
+    let reading = Reading::new(paths, options)?;
+    let (driver, files) = (reading.mosaic.format(), reading.mosaic.grid.clone());
+    let source = reading.target.warps.then(|| {
+        let (cell, units) = (files.cell(), files.crs.units());
+        let [west, south, east, north] = files.extent();
+        format!(
+            "{} x {} samples, {}, cells of {:.6} x {:.6} {units}, W {west:.5} S {south:.5} E {east:.5} N {north:.5}",
+            files.columns,
+            files.rows,
+            files.crs.label(),
+            cell.x,
+            cell.y
+        )
+    });
+    let dem = reading.finish(options, progress)?;
+    let [west, south, east, north] = dem.extent();
+    let middle = dem.georeference().lonlat(glam::DVec2::new((west + east) / 2.0, (south + north) / 2.0))?;
     Ok(Info {
-        path: path.to_owned(),
-        driver: grid.source.dataset.driver().long_name(),
+        paths: paths.to_owned(),
+        driver,
+        source,
         columns: dem.columns(),
         rows: dem.rows(),
-        crs: grid.georeference.crs.clone(),
-        epsg: grid.georeference.epsg,
+        crs: dem.georeference().world().clone(),
         extent: dem.extent(),
+        middle: middle.map(|place| place.to_array()),
         cell: dem.cell().to_array(),
         range: dem.range().unwrap_or_default(),
         voids: dem.voids(),
-        assumed: assumptions(&grid, loaded.sentinels),
+        history: dem.history().clone(),
     })
-}
-
-fn assumptions(grid: &Grid, sentinels: usize) -> Vec<String> {
-    let bands = grid.source.dataset.raster_count();
-    let list = [
-        (sentinels > 0).then(|| {
-            format!("{sentinels} samples at or below -32767 m or above 100000 m are voids (no such nodata is declared)")
-        }),
-        grid.georeference.crs.is_empty().then(|| "coordinates are metres (no coordinate system is named)".into()),
-        (!grid.elevation.says_metres).then(|| "elevations are metres (no unit is named)".into()),
-        (bands > 1).then(|| format!("elevations are in band 1 of {bands}")),
-    ];
-    list.into_iter().flatten().collect()
 }
 
 impl Display for Info {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let [west, south, east, north] = self.extent;
-        let crs = match (self.crs.as_str(), self.epsg) {
-            ("", _) => "none".to_owned(),
-            (name, Some(code)) => format!("{name} (EPSG:{code})"),
-            (name, None) => name.to_owned(),
+        let crs = match self.crs.label() {
+            label if label.is_empty() => "none".to_owned(),
+            label => label,
         };
-        let samples = self.columns * self.rows;
-        writeln!(f, "file       {} ({})", self.path.display(), self.driver)?;
-        writeln!(f, "size       {} columns x {} rows = {samples} samples", self.columns, self.rows)?;
+        for path in &self.paths {
+            writeln!(f, "file       {} ({})", path.display(), self.driver)?;
+        }
+        self.source.iter().try_for_each(|source| writeln!(f, "source     {source}"))?;
+        writeln!(f, "size       {} columns x {} rows = {} samples", self.columns, self.rows, self.columns * self.rows)?;
         writeln!(f, "crs        {crs}")?;
         writeln!(f, "extent     W {west:.2}  S {south:.2}  E {east:.2}  N {north:.2} m (outermost samples)")?;
-        writeln!(f, "cell       {} m x {} m (east x north)", self.cell[0], self.cell[1])?;
+        if let Some([longitude, latitude]) = self.middle {
+            writeln!(f, "middle     longitude {longitude:.5}, latitude {latitude:.5} degrees (WGS 84)")?;
+        }
+        let [across, down] = self.cell.map(short);
+        writeln!(f, "cell       {across} m x {down} m (east x north)")?;
         writeln!(f, "elevation  {:.1} to {:.1} m", self.range[0], self.range[1])?;
         write!(f, "voids      {} ({:.1} %)", self.voids, 100.0 * self.void_share())?;
-        self.assumed.iter().try_for_each(|assumption| write!(f, "\nassumed    {assumption}"))
+        self.history.converted().iter().try_for_each(|clause| write!(f, "\nconverted  {clause}"))?;
+        let assumed = self.history.assumed().iter().chain(self.history.usual());
+        assumed.into_iter().try_for_each(|clause| write!(f, "\nassumed    {clause}"))
     }
+}
+
+/// With at most four decimals.
+fn short(metres: f64) -> f64 {
+    (metres * 1e4).round() / 1e4
 }

@@ -1,15 +1,27 @@
 //! The elevation grid: what every later stage reads. GDAL is known in this folder alone.
 
+mod crs;
 mod elevation;
 mod georeference;
+mod grid;
+mod history;
 pub mod info;
+mod inscribed;
+mod mosaic;
+mod raster;
 pub mod read;
 mod source;
+mod target;
 
 use glam::{DVec2, DVec3};
 
+pub use crs::Crs;
+pub use elevation::ElevationUnit;
+pub use georeference::Georeference;
+pub use history::History;
 pub use info::{Info, info};
-pub use read::{MAX_SAMPLES, ReadOptions, read};
+pub use read::{ReadOptions, Stage, read, read_all};
+pub use target::MAX_SAMPLES;
 
 /// A north-up grid of elevations in metres.
 ///
@@ -23,7 +35,8 @@ pub struct Dem {
     origin: DVec2,
     heights: Vec<f32>,
     valid: Vec<bool>,
-    crs: String,
+    georeference: Georeference,
+    history: History,
 }
 
 impl Dem {
@@ -37,12 +50,13 @@ impl Dem {
         let valid = heights.iter().map(|h| h.is_finite()).collect();
         heights.iter_mut().filter(|h| !h.is_finite()).for_each(|h| *h = 0.0);
         let rows = heights.len() / columns;
-        Self { columns, rows, cell, origin, heights, valid, crs: String::new() }
+        let georeference = Georeference::unknown();
+        Self { columns, rows, cell, origin, heights, valid, georeference, history: History::default() }
     }
 
-    /// The same grid with the name of its coordinate reference system, for printing.
-    pub fn with_crs(self, crs: String) -> Self {
-        Self { crs, ..self }
+    /// The same grid with where it lies on Earth and how it came about.
+    fn with_source(self, georeference: Georeference, history: History) -> Self {
+        Self { georeference, history, ..self }
     }
 
     /// Samples from west to east, at least 2.
@@ -60,9 +74,14 @@ impl Dem {
         self.cell
     }
 
-    /// The coordinate reference system in words, empty when unknown.
-    pub fn crs(&self) -> &str {
-        &self.crs
+    /// Where it lies on Earth.
+    pub fn georeference(&self) -> &Georeference {
+        &self.georeference
+    }
+
+    /// What was done to the files' samples, and what was assumed of them.
+    pub fn history(&self) -> &History {
+        &self.history
     }
 
     /// Exaggerated metres, row-major from the north-west; 0 at voids.

@@ -1,188 +1,166 @@
-//! Reads band 1 of a raster as metres: the window asked for, in blocks of rows.
+//! Reads rasters as one DEM: the whole way from files to metres.
 //!
-//! Cost: one pass over the window; memory is 5 bytes a sample and one block. Not handled: resampling, warping, several
-//! files.
+//! Cost: one pass over the samples that the drawn part needs, and the warp where there is one. Memory at most 13 bytes
+//! a sample of the DEM: the rasters under way are gone before normals are computed.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use gdal::raster::{GdalType, RasterBand};
-
-use super::Dem;
-use super::elevation::{Elevation, Reading};
-use super::georeference::{Georeference, Window};
-use super::source::{MIN_SIDE, Source, heard};
+use super::elevation::ElevationUnit;
+use super::mosaic::Mosaic;
+use super::raster::{FILL_REACH, Raster};
+use super::target::Target;
+use super::{Dem, Georeference, History};
 use crate::error::{Error, Result};
-
-/// Most samples of a DEM: 4096 x 4096, 64 MiB of heights, half of the largest buffer that every GPU grants.
-pub const MAX_SAMPLES: usize = 4096 * 4096;
 
 /// Largest exaggeration: above it the highest mountain stands higher than the Earth is wide.
 const MAX_EXAGGERATION: f64 = 1000.0;
-/// Samples read at once: 8 MiB of f64.
-const BLOCK_SAMPLES: usize = 1 << 20;
+/// Sound cell sizes, metres: from a millimetre to a thousand kilometres.
+const CELLS: std::ops::RangeInclusive<f64> = 1e-3..=1e6;
 
-/// What to read of a file and how to change it on the way.
+/// What to read of files and how to change it on the way.
 #[derive(Debug, Clone)]
 pub struct ReadOptions {
-    /// West, south, east, north in the file's CRS; samples whose centres lie inside are read. `None`, the default,
-    /// reads all.
+    /// West, south, east, north in units of the first file's CRS; samples inside are read. `None`, the default, reads
+    /// all.
     pub crop: Option<[f64; 4]>,
     /// Factor on every elevation, above 0 and at most 1000. Default 1.
     pub exaggeration: f64,
+    /// The band with the elevations, from 1. `None`, the default, takes the first.
+    pub band: Option<usize>,
+    /// Metres between samples of files that do not say where they lie. Default `None`: such files are refused.
+    pub cell: Option<f64>,
+    /// Warp to square cells of so many metres. Default `None`: warp only what is not north-up in a map projection.
+    pub resample: Option<f64>,
+    /// Fill voids up to 100 samples from data. Default false: voids stay holes.
+    pub fill_voids: bool,
+    /// The unit of elevations, whatever the files say. Default `None`: the files' own, else metres.
+    pub elevation_unit: Option<ElevationUnit>,
+    /// Open files on a network, and VRTs that refer to files outside their folder. Default false.
+    pub allow_remote: bool,
 }
 
 impl Default for ReadOptions {
     fn default() -> Self {
-        Self { crop: None, exaggeration: 1.0 }
+        Self {
+            crop: None,
+            exaggeration: 1.0,
+            band: None,
+            cell: None,
+            resample: None,
+            fill_voids: false,
+            elevation_unit: None,
+            allow_remote: false,
+        }
     }
 }
 
-/// Reads band 1 of `path` as a DEM of at least 2 x 2 and at most [`MAX_SAMPLES`] samples, metres, north-up.
+/// What is being done, for a progress bar.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stage {
+    /// Samples come from the files.
+    Read,
+    /// They are warped to a north-up grid in metres.
+    Warp,
+    /// Voids are filled.
+    Fill,
+}
+
+/// Reads `path` as a DEM of at least 2 x 2 and at most [`MAX_SAMPLES`](super::MAX_SAMPLES) samples, metres, north-up.
+/// See [`read_all`].
 ///
-/// Sample (c, r) lies in the middle of its pixel. Scale and offset of the band are applied, then the exaggeration.
-/// Voids are the declared nodata value, masked and transparent samples, numbers that are not finite, and marks for no data that the file forgot to
-/// declare: at or below -32767 m, above 100 000 m. A file without a coordinate reference system counts as metres.
-/// `path` may name one grid of a container as `NETCDF:file:grid`; `.gz` and `.zip` are read through.
+/// # Errors
+/// As [`read_all`].
+pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Dem> {
+    read_all(&[path.as_ref().to_owned()], options, &|_, _| ())
+}
+
+/// Reads `paths` as one DEM of at least 2 x 2 and at most [`MAX_SAMPLES`](super::MAX_SAMPLES) samples, metres, north-up.
+///
+/// Sample (c, r) lies in the middle of its pixel. Scale, offset and unit of the band are applied, then the exaggeration.
+/// Voids are the declared nodata value, masked and transparent samples, numbers that are not finite, and marks for no
+/// data that the file forgot to declare: at or below -32767, above 100 000 m. Of files that overlap the last wins; those
+/// on another grid than the first are warped to it. Degrees and turned grids are warped to square cells in metres.
+/// What was converted and what had to be assumed stands in [`Dem::history`]. A path may name one grid of a container as
+/// `NETCDF:file:grid`; `.gz` and `.zip` are read through. `progress` hears what is being done and the share done, 0 to 1.
 ///
 /// The first call installs a GDAL error handler that prints nothing, for the whole process.
 ///
 /// # Errors
 /// [`Error::Flag`] for options that make no sense, [`Error::Limit`] for more samples than fit, [`Error::Input`] for a
-/// file that is missing, damaged, no raster, not in north-up metres, without elevations, or outside the crop.
-pub fn read(path: &Path, options: &ReadOptions) -> Result<Dem> {
-    check_options(options)?;
-    Grid::open(path)?.load(options).map(|loaded| loaded.dem)
+/// file that is missing, damaged, no raster, nowhere, without elevations, not to be trusted, or outside the crop.
+pub fn read_all(paths: &[PathBuf], options: &ReadOptions, progress: &dyn Fn(Stage, f64)) -> Result<Dem> {
+    Reading::new(paths, options)?.finish(options, progress)
 }
 
-/// An open raster whose place and elevations are understood.
-pub(super) struct Grid {
-    pub source: Source,
-    pub georeference: Georeference,
-    pub elevation: Elevation,
+/// Files opened and understood: what can be known without reading samples.
+pub(super) struct Reading {
+    pub mosaic: Mosaic,
+    pub target: Target,
+    pub history: History,
 }
 
-/// A DEM and how it came about.
-pub(super) struct Loaded {
-    pub dem: Dem,
-    /// Samples that became void by their impossible value alone.
-    pub sentinels: usize,
-}
-
-impl Grid {
-    /// Opens `path` and checks all that can be checked without reading samples.
-    pub fn open(path: &Path) -> Result<Self> {
-        let source = Source::open(path)?;
-        // First the elevations: a warp may lose their unit, and feet would pass for metres.
-        let elevation = Elevation::of(&source)?;
-        let georeference = Georeference::of(&source)?;
-        Ok(Self { source, georeference, elevation })
+impl Reading {
+    /// Opens the files.
+    pub fn new(paths: &[PathBuf], options: &ReadOptions) -> Result<Self> {
+        check_options(options)?;
+        let mut history = History::default();
+        let mosaic = Mosaic::open(paths, options, &mut history)?;
+        let target = Target::of(&mosaic.grid, mosaic.path(), options, &mut history)?;
+        Ok(Self { mosaic, target, history })
     }
 
     /// Reads the samples.
-    pub fn load(&self, options: &ReadOptions) -> Result<Loaded> {
-        let window = self.window(options.crop)?;
-        let mut heights = Vec::with_capacity(window.size[0] * window.size[1]);
-        let mut sentinels = 0;
-        self.each_block(window, |raw| {
-            heights.extend(raw.iter().map(|raw| match self.elevation.reading(*raw) {
-                Reading::Metres(metres) => (metres * options.exaggeration) as f32,
-                Reading::Void => f32::NAN,
-                Reading::Sentinel => {
-                    sentinels += 1;
-                    f32::NAN
-                }
-            }));
-        })?;
-        if heights.iter().all(|h| !h.is_finite()) {
-            let inside = if options.crop.is_some() { " inside the crop" } else { "" };
-            return Err(self.source.error(
-                format!("holds no elevation{inside}, all {} samples are void", heights.len()),
-                "check band 1 and its nodata value with `gdalinfo -stats`, or move --crop",
-            ));
+    pub fn finish(mut self, options: &ReadOptions, progress: &dyn Fn(Stage, f64)) -> Result<Dem> {
+        let mut raster =
+            self.mosaic.read(self.target.window, &mut self.history, &|done| progress(Stage::Read, done))?;
+        if self.target.warps {
+            let mut onto = Raster::void(self.target.grid.clone())?;
+            onto.lay(&raster, &|done| progress(Stage::Warp, done))?;
+            raster = onto;
         }
-        let origin = self.georeference.sample(window.first[0], window.first[1]);
-        let dem = Dem::from_heights(window.size[0], self.georeference.cell, origin, heights);
-        Ok(Loaded { dem: dem.with_crs(self.crs()), sentinels })
+        let before = if options.fill_voids { raster.voids()? } else { 0 };
+        if before > 0 {
+            raster.fill(&|done| progress(Stage::Fill, done))?;
+            self.history.convert(filled(before, raster.voids()?));
+        }
+        let mut heights = raster.heights()?;
+        drop(raster);
+        if heights.iter().all(|height| height.is_nan()) {
+            return Err(self.all_void(heights.len(), options));
+        }
+        heights.iter_mut().for_each(|height| *height = (f64::from(*height) * options.exaggeration) as f32);
+        Ok(self.dem(heights))
     }
 
-    /// Name and EPSG code of the CRS, empty when the file has none.
-    pub fn crs(&self) -> String {
-        match self.georeference.epsg {
-            Some(code) => format!("{} (EPSG:{code})", self.georeference.crs),
-            None => self.georeference.crs.clone(),
+    fn dem(self, heights: Vec<f32>) -> Dem {
+        let grid = self.target.grid;
+        let metres = grid.crs.metres_per_unit().unwrap_or(1.0);
+        let mut history = self.history;
+        if metres != 1.0 {
+            history.convert(format!("coordinates x {metres} to metres ({})", grid.crs.units()));
         }
+        let georeference = Georeference::new(self.mosaic.grid.crs.clone(), grid.crs.clone());
+        let origin = grid.sample(0.0, 0.0) * metres;
+        let dem = Dem::from_heights(grid.columns, grid.cell() * metres, origin, heights);
+        dem.with_source(georeference, history)
     }
 
-    /// The samples to read: at least 2 x 2, at most [`MAX_SAMPLES`].
-    fn window(&self, crop: Option<[f64; 4]>) -> Result<Window> {
-        let Source { columns, rows, .. } = self.source;
-        let window = match crop {
-            None => Window { first: [0, 0], size: [columns, rows] },
-            Some(crop) => self.georeference.window(&self.source, crop).ok_or_else(|| self.outside())?,
-        };
-        let [width, height] = window.size;
-        if width < MIN_SIDE || height < MIN_SIDE {
-            let cell = self.georeference.cell;
-            return Err(self.source.error(
-                format!("--crop leaves {width} x {height} samples; a surface needs at least 2 x 2"),
-                format!("widen it: the samples are {} m east and {} m north apart", cell.x, cell.y),
-            ));
-        }
-        let samples = width as u64 * height as u64;
-        if samples > MAX_SAMPLES as u64 {
-            return Err(Error::Limit {
-                what: format!(
-                    "{}: {width} x {height} = {samples} samples, at most {MAX_SAMPLES} fit",
-                    self.source.path.display()
-                ),
-                remedy: "use --crop to take a part, or make it coarser with `gdalwarp -tr M M -r average`".into(),
-            });
-        }
-        Ok(window)
-    }
-
-    fn outside(&self) -> Error {
-        let Source { columns, rows, .. } = self.source;
-        let [nw, se] = [self.georeference.sample(0, 0), self.georeference.sample(columns - 1, rows - 1)];
-        self.source.error(
-            "no sample lies inside --crop",
-            format!("give E0,N0,E1,N1 within {},{},{},{} m", nw.x, se.y, se.x, nw.y),
+    fn all_void(&self, samples: usize, options: &ReadOptions) -> Error {
+        let inside = if options.crop.is_some() { " inside the crop" } else { "" };
+        Error::input(
+            self.mosaic.path(),
+            format!("holds no elevation{inside}, all {samples} samples are void"),
+            "check the band and its nodata value with `gdalinfo -stats`, choose another --band, or move --crop",
         )
     }
+}
 
-    /// Hands the raw numbers of `window` to `take`, row-major, a few rows at a time; NaN where the file masks them.
-    fn each_block(&self, window: Window, mut take: impl FnMut(&[f64])) -> Result<()> {
-        let band = self.source.band()?;
-        let masked = band.mask_flags().is_ok_and(|flags| flags.is_per_dataset());
-        let mask = if masked { band.open_mask_band().ok() } else { None };
-        let ([column, first_row], [width, height]) = (window.first, window.size);
-        let step = (BLOCK_SAMPLES / width).max(1);
-        for row in (0..height).step_by(step) {
-            let place = (column as isize, (first_row + row) as isize);
-            let size = (width, step.min(height - row));
-            let mut raw = self.block::<f64>(&band, place, size)?;
-            if let Some(mask) = &mask {
-                let seen = self.block::<u8>(mask, place, size)?;
-                raw.iter_mut().zip(seen).filter(|(_, seen)| *seen == 0).for_each(|(raw, _)| *raw = f64::NAN);
-            }
-            take(&raw);
-        }
-        Ok(())
-    }
-
-    /// One block of numbers, or the error for a damaged file.
-    fn block<T: GdalType + Copy>(
-        &self,
-        band: &RasterBand,
-        place: (isize, isize),
-        size: (usize, usize),
-    ) -> Result<Vec<T>> {
-        let (block, complaint) = heard(|| band.read_as::<T>(place, size, size, None));
-        match (block, complaint) {
-            (Ok(block), None) => Ok(block.into_shape_and_vec().1),
-            // A driver that complains and goes on has made the numbers up.
-            (_, words) => Err(self.source.unreadable(words.as_deref())),
-        }
+/// What filling did, in words.
+fn filled(before: usize, after: usize) -> String {
+    let filled = format!("{} voids filled from up to {FILL_REACH} samples away (--fill-voids)", before - after);
+    match after {
+        0 => filled,
+        left => format!("{filled}, {left} farther away stay holes"),
     }
 }
 
@@ -191,6 +169,12 @@ fn check_options(options: &ReadOptions) -> Result<()> {
     if !(factor > 0.0 && factor <= MAX_EXAGGERATION) {
         let what = format!("{factor} is no factor to draw with");
         return Err(Error::flag("--exaggeration", what, "give a number above 0 and at most 1000"));
+    }
+    for (flag, metres) in [("--cell", options.cell), ("--resample", options.resample)] {
+        if let Some(metres) = metres.filter(|metres| !CELLS.contains(metres)) {
+            let what = format!("{metres} is no size of a cell");
+            return Err(Error::flag(flag, what, "give metres, from 0.001 to 1000000"));
+        }
     }
     let Some([west, south, east, north]) = options.crop else { return Ok(()) };
     let finite = [west, south, east, north].iter().all(|edge| edge.is_finite());

@@ -43,7 +43,7 @@ pub(super) struct Source {
 
 impl Source {
     /// Opens `path`. Fails when it is missing, no file, empty, no raster, or no grid of real numbers.
-    pub fn open(path: &Path) -> Result<Self> {
+    pub fn open(path: &Path, _band: usize, _allow_remote: bool) -> Result<Self> {
         let name = connection_name(path)?;
         let flags =
             GdalOpenFlags::GDAL_OF_RASTER | GdalOpenFlags::GDAL_OF_READONLY | GdalOpenFlags::GDAL_OF_VERBOSE_ERROR;

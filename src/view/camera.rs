@@ -23,6 +23,14 @@ pub struct Camera {
     pub height: u32,
 }
 
+/// Azimuth and altitude of a direction, degrees to four decimals; `None` for no direction.
+pub fn direction(towards: DVec3) -> Option<(f64, f64)> {
+    let round = |degrees: f64| (degrees * 1e4).round() / 1e4;
+    let level = towards.truncate().length();
+    let azimuth = round(towards.x.atan2(towards.y).to_degrees()).rem_euclid(360.0);
+    (towards.length() > 0.0).then(|| (azimuth, round(towards.z.atan2(level).to_degrees())))
+}
+
 impl Camera {
     /// Right, up and forward, unit vectors.
     pub fn axes(&self) -> [DVec3; 3] {

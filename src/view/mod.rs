@@ -3,5 +3,5 @@
 pub mod camera;
 pub mod choose;
 
-pub use camera::Camera;
+pub use camera::{Camera, direction};
 pub use choose::{Fixed, choose};

@@ -5,20 +5,18 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use gdal::Dataset;
-use glam::DVec2;
 use hachure::dem::{MAX_SAMPLES, ReadOptions, info, read};
 
-use super::{HALF_DOME, Raster, copy, cropped, folder, hill, read_all, sized_vrt, vrt};
-use crate::common::shared_dems;
-
+use super::{Raster, copy, cropped, folder, hill, read_all, sized_vrt, vrt};
 /// Reading `path` fails with one line that names the file, holds all `words`, and exit code 1; so does `info`.
 pub fn refused(path: &Path, words: &[&str]) -> String {
     let line = refused_with(path, &ReadOptions::default(), words);
-    assert_eq!(info(path).unwrap_err().to_string(), line);
+    let told = info(&[path.to_owned()], &ReadOptions::default(), &|_, _| ());
+    assert_eq!(told.unwrap_err().to_string(), line);
     line
 }
 
-fn refused_with(path: &Path, options: &ReadOptions, words: &[&str]) -> String {
+pub fn refused_with(path: &Path, options: &ReadOptions, words: &[&str]) -> String {
     let error = read(path, options).expect_err(&format!("{} was read", path.display()));
     let line = error.to_string();
     assert!(!line.contains('\n'), "more than one line: {line}");
@@ -81,17 +79,6 @@ fn files_that_are_no_raster() {
 }
 
 #[test]
-fn a_container_lists_its_grids() {
-    let Some(shared) = shared_dems() else { return };
-    let path = shared.join("topo.nc");
-    let line = refused(&path, &["grids", "name the one"]);
-    let name = line.split('`').nth(1).unwrap();
-    assert_eq!(name, format!("NETCDF:{}:dem", path.display()));
-    let dem = read_all(Path::new(name));
-    assert_eq!((dem.columns(), dem.rows(), dem.cell()), (156, 168, DVec2::splat(50.0)));
-}
-
-#[test]
 fn truncated_files_are_damaged_never_sea() {
     let dir = folder();
     let whole = dir.path().join("whole.tif");
@@ -131,7 +118,7 @@ fn what_is_no_surface_is_refused() {
         refused(&path, &[size, "at least 2 x 2", "larger grid"]);
     }
     let void = Raster { nodata: Some(-1.0), ..Raster::new(2, vec![-1.0f32; 4]) };
-    refused(&void.write("GTiff", &at("void.tif")), &["no elevation", "all 4 samples are void", "gdalinfo"]);
+    refused(&void.write("GTiff", &at("void.tif")), &["no elevation", "all 4 samples are void", "gdalinfo", "--band"]);
     let complex = "dataType=\"CFloat32\" band=\"1\">";
     refused(&vrt(&at("complex.vrt"), "", complex), &["complex numbers", "gdal_translate"]);
     let unscaled = "<Scale>0</Scale>";
@@ -142,72 +129,37 @@ fn what_is_no_surface_is_refused() {
 fn too_many_samples_are_refused_before_they_are_read() {
     let dir = folder();
     let huge = sized_vrt(&dir.path().join("huge.vrt"), 1_000_000, 1_000_000, "", "<Scale>1</Scale>");
-    let line = refused(&huge, &["1000000 x 1000000 = 1000000000000 samples", "at most 16777216 fit", "--crop"]);
-    assert!(line.contains(&MAX_SAMPLES.to_string()));
+    refused(
+        &huge,
+        &["1000000 x 1000000 = 1000000000000 samples", &format!("at most {MAX_SAMPLES} fit"), "--crop", "--resample"],
+    );
     let part = read(&huge, &cropped([20_000_000.0, -9_000_000.0, 20_000_900.0, -8_999_400.0])).unwrap();
     assert_eq!((part.columns(), part.rows()), (30, 30));
-    let most = sized_vrt(&dir.path().join("most.vrt"), 4097, 4096, "", "<Scale>1</Scale>");
-    refused(&most, &["4097 x 4096 = 16781312 samples"]);
+    let most = sized_vrt(&dir.path().join("most.vrt"), 8193, 4096, "", "<Scale>1</Scale>");
+    let line = refused(&most, &["8193 x 4096 = 33558528 samples"]);
+    // The remedy is one.
+    let metres: f64 = line.rsplit("--resample ").next().unwrap().split(' ').next().unwrap().parse().unwrap();
+    let coarser = ReadOptions { resample: Some(metres), ..Default::default() };
+    assert!(read(&most, &coarser).unwrap().columns() > 4000);
+    let degrees = "<SRS>EPSG:4326</SRS><GeoTransform>8, 1e-5, 0, 47, 0, -1e-5</GeoTransform>";
+    let fine = sized_vrt(&dir.path().join("fine.vrt"), 1_000_000, 1_000_000, degrees, "<Scale>1</Scale>");
+    refused(&fine, &["samples, at most", "--crop", "--resample"]);
+    let part = read(&fine, &cropped([9.0, 46.0, 9.001, 46.001])).unwrap();
+    assert!((80..=100).contains(&part.columns()), "{}", part.columns());
 }
 
 #[test]
-fn degrees_are_sent_to_their_utm_zone() {
+fn places_that_make_no_sense_are_refused() {
     let dir = folder();
-    for (place, zone) in [([-119.6, 37.8], "EPSG:32611"), ([170.1, -43.5], "EPSG:32759"), ([10.0, 88.0], "EPSG:3413")] {
-        let transform = Some([place[0], 0.001, 0.0, place[1], 0.0, -0.001]);
-        let degrees = Raster { transform, epsg: Some(4326), ..hill() };
-        let path = degrees.write("GTiff", &dir.path().join("degrees.tif"));
-        refused(&path, &["in degrees", &format!("gdalwarp -t_srs {zone} ")]);
-    }
-    let nameless = Raster { transform: Some([-119.6, 0.001, 0.0, 37.8, 0.0, -0.001]), epsg: None, ..hill() };
-    refused(&nameless.write("GTiff", &dir.path().join("nameless.tif")), &["look like degrees", "-a_srs EPSG:4326"]);
-}
-
-#[test]
-fn feet_are_refused_on_every_axis() {
-    let dir = folder();
-    let californian = Raster { transform: Some([6.8e6, 100.0, 0.0, 2.1e6, 0.0, -100.0]), epsg: Some(2227), ..hill() };
-    let path = californian.write("GTiff", &dir.path().join("feet.tif"));
-    refused(&path, &["US survey foot", "gdalwarp -t_srs EPSG:32611 "]);
-    for (unit, factor) in
-        [("ft", "0.3048 "), ("US survey foot", "0.3048006096"), ("us-ft", "0.3048006096"), ("Feet", "0.3048 ")]
-    {
-        let path = vrt(&dir.path().join("up.vrt"), "", &format!("<UnitType>{unit}</UnitType>"));
-        refused(
-            &path,
-            &[&unit.to_lowercase(), "not metres", &format!("gdal_translate -ot Float32 -scale 0 1 0 {factor}")],
-        );
-    }
-    refused(&vrt(&dir.path().join("odd.vrt"), "", "<UnitType>degC</UnitType>"), &["degc", "metres per unit"]);
-    for unit in ["m", "metre", "Meters", ""] {
-        read_all(&vrt(&dir.path().join("up.vrt"), "", &format!("<UnitType>{unit}</UnitType>")));
-    }
-    let compound = "<SRS>EPSG:32610+6360</SRS><GeoTransform>500000, 30, 0, 4200000, 0, -20</GeoTransform>";
-    refused(
-        &vrt(&dir.path().join("compound.vrt"), compound, "<Scale>1</Scale>"),
-        &["foot", "-scale 0 1 0 0.3048006096"],
-    );
-}
-
-#[test]
-fn turned_grids_are_refused() {
-    let dir = folder();
-    let turned = [
-        ([5e5, 30.0, 4.0, 4e6, 4.0, -30.0], "rotated or sheared"),
-        ([5e5, 30.0, 0.0, 4e6, 0.0, 30.0], "south-up"),
-        ([5e5, -30.0, 0.0, 4e6, 0.0, -30.0], "mirrored"),
-        ([5e5, 0.0, 30.0, 4e6, 30.0, 0.0], "rotated or sheared"),
-        ([5e5, f64::INFINITY, 0.0, 4e6, 0.0, -30.0], "no geotransform"),
-    ];
-    for (transform, word) in turned {
-        let path = Raster { transform: Some(transform), ..hill() }.write("GTiff", &dir.path().join("turned.tif"));
-        refused(&path, &[word, "`gdal"]);
-    }
     let nowhere = Raster { transform: None, ..hill() }.write("GTiff", &dir.path().join("nowhere.tif"));
-    refused(&nowhere, &["no geotransform", "-a_ullr WEST NORTH EAST SOUTH"]);
+    refused(&nowhere, &["no geotransform", "--cell M"]);
+    let infinite = Raster { transform: Some([5e5, f64::INFINITY, 0.0, 4e6, 0.0, -30.0]), ..hill() };
+    refused(&infinite.write("GTiff", &dir.path().join("infinite.tif")), &["no geotransform", "--cell M"]);
     let gcps = "<GCPList Projection=\"EPSG:32610\"><GCP Id=\"1\" Pixel=\"0\" Line=\"0\" X=\"1\" Y=\"2\"/></GCPList>";
     refused(&vrt(&dir.path().join("gcps.vrt"), gcps, "<Scale>1</Scale>"), &["control points", "gdalwarp"]);
-    for transform in [[1e300, 30.0, 0.0, 4e6, 0.0, -30.0], [5e5, 1e-300, 0.0, 4e6, 0.0, -30.0]] {
+    let nonsense =
+        [[1e300, 30.0, 0.0, 4e6, 0.0, -30.0], [5e5, 1e-300, 0.0, 4e6, 0.0, -30.0], [5e5, 30.0, 30.0, 4e6, 30.0, 30.0]];
+    for transform in nonsense {
         let path = Raster { transform: Some(transform), ..hill() }.write("GTiff", &dir.path().join("far.tif"));
         refused(&path, &["makes no sense", "gdal_translate -a_ullr"]);
     }
@@ -217,16 +169,39 @@ fn turned_grids_are_refused() {
 }
 
 #[test]
-fn half_dome_in_degrees_is_refused_in_every_format() {
-    let Some(shared) = shared_dems() else { return };
-    for name in HALF_DOME {
-        let word = match name {
-            "halfdome.asc.gz" => "look like degrees",
-            "halfdome_u16.png" => "no geotransform",
-            _ => "gdalwarp -t_srs EPSG:32611",
-        };
-        refused(&shared.join("formats").join(name), &[word]);
+fn units_and_systems_nobody_knows_are_refused() {
+    let dir = folder();
+    refused(&vrt(&dir.path().join("odd.vrt"), "", "<UnitType>degC</UnitType>"), &["\"degC\"", "--elevation-unit"]);
+    let globe = Raster { epsg: Some(4978), ..hill() }.write("GTiff", &dir.path().join("globe.tif"));
+    refused(&globe, &["no map projection", "gdalwarp -t_srs"]);
+    let whole = Raster { transform: Some([-180.0, 90.0, 0.0, 90.0, 0.0, -60.0]), epsg: Some(4326), ..hill() };
+    refused(&whole.write("GTiff", &dir.path().join("whole.tif")), &["spans 270 x 120 degrees", "--crop"]);
+    let pole = Raster { transform: Some([5e5, 30.0, 0.0, 4e6, 0.0, -30.0]), epsg: Some(4326), ..hill() };
+    refused(&pole.write("GTiff", &dir.path().join("pole.tif")), &["globe", "; "]);
+}
+
+#[test]
+fn flags_against_what_the_file_says_are_wrong_usage() {
+    let dir = folder();
+    let path = hill().write("GTiff", &dir.path().join("hill.tif"));
+    let wrong = |options: ReadOptions, words: &str| {
+        let error = read(&path, &options).unwrap_err();
+        assert_eq!(error.exit_code(), 2, "{error}");
+        assert!(error.to_string().starts_with(words), "{error}");
+    };
+    wrong(ReadOptions { cell: Some(10.0), ..Default::default() }, "--cell: ");
+    for metres in [0.0, -1.0, f64::NAN, 1e9] {
+        wrong(ReadOptions { cell: Some(metres), ..Default::default() }, "--cell: ");
+        wrong(ReadOptions { resample: Some(metres), ..Default::default() }, "--resample: ");
     }
+}
+
+#[test]
+fn a_cell_larger_than_the_dem_leaves_nothing() {
+    let dir = folder();
+    let path = hill().write("GTiff", &dir.path().join("hill.tif"));
+    let coarse = ReadOptions { resample: Some(500.0), ..Default::default() };
+    refused_with(&path, &coarse, &["no 2 x 2 cells of 500 m", "--resample"]);
 }
 
 #[test]
@@ -265,12 +240,4 @@ fn cut_short(folder: &Path) -> PathBuf {
     let bytes = fs::read(&path).unwrap();
     fs::write(&path, &bytes[..bytes.len() - 20]).unwrap();
     path
-}
-
-#[test]
-fn shared_terrain_in_feet_and_degrees_is_refused() {
-    let Some(shared) = shared_dems() else { return };
-    refused(&shared.join("yosemite_calif3_feet.tif"), &["us survey foot", "-scale 0 1 0 0.3048006096"]);
-    refused(&shared.join("inl_idaho_feet.tif"), &["\"ft\"", "-scale 0 1 0 0.3048 "]);
-    refused(&shared.join("N48W125.hgt.zip"), &["in degrees", "EPSG:32610"]);
 }

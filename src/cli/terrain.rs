@@ -1,0 +1,52 @@
+//! Flags of every subcommand that reads a DEM.
+
+use std::path::PathBuf;
+
+use super::values;
+use crate::dem::{ElevationUnit, ReadOptions};
+
+/// Which files, and what of them.
+#[derive(Debug, clap::Args)]
+pub struct TerrainArguments {
+    /// The DEM: any raster; several are laid together, the last on top
+    #[arg(required = true, value_name = "DEM")]
+    pub dems: Vec<PathBuf>,
+
+    /// Take a part only: west, south, east, north in the CRS of the DEM (metres, feet or degrees, as it has them)
+    #[arg(long, value_name = "E0,N0,E1,N1", value_parser = values::crop, allow_hyphen_values = true, help_heading = "Surface")]
+    crop: Option<[f64; 4]>,
+    /// The band with the elevations, from 1 [default: 1]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..), help_heading = "Surface")]
+    band: Option<u16>,
+    /// Metres between samples, for a DEM that does not say where it lies (an image)
+    #[arg(long, value_name = "M", value_parser = values::metres, allow_hyphen_values = true, help_heading = "Surface")]
+    cell: Option<f64>,
+    /// Resample to square cells of so many metres, cubic [default: only what is not north-up in a map projection]
+    #[arg(long, value_name = "M", value_parser = values::metres, allow_hyphen_values = true, help_heading = "Surface")]
+    resample: Option<f64>,
+    /// Fill voids up to 100 samples from data
+    #[arg(long, help_heading = "Surface")]
+    fill_voids: bool,
+    /// The unit of elevations: m, ft or us-ft [default: as the DEM says, else metres]
+    #[arg(long, value_name = "UNIT", value_parser = values::elevation_unit, help_heading = "Surface")]
+    elevation_unit: Option<ElevationUnit>,
+    /// Open files on a network, and VRTs that refer to files outside their folder
+    #[arg(long, help_heading = "Surface")]
+    allow_remote: bool,
+}
+
+impl TerrainArguments {
+    /// How to read, with this exaggeration.
+    pub fn options(&self, exaggeration: f64) -> ReadOptions {
+        ReadOptions {
+            crop: self.crop,
+            exaggeration,
+            band: self.band.map(usize::from),
+            cell: self.cell,
+            resample: self.resample,
+            fill_voids: self.fill_voids,
+            elevation_unit: self.elevation_unit,
+            allow_remote: self.allow_remote,
+        }
+    }
+}

@@ -1,0 +1,274 @@
+//! Flags of the view: where the eye stands, in whatever coordinates, and where it looks.
+//!
+//! Every eye ends as a place in the DEM's file with few decimals, so that the flags printed for it repeat the picture.
+
+use glam::{DVec2, DVec3};
+use serde::Serialize;
+
+use super::values::{self, Height, LookAt, Size, Standpoint};
+use crate::dem::{Crs, Georeference};
+use crate::error::{Error, Result};
+use crate::surface::{Level, Surface};
+use crate::view::{Camera, Fixed, choose, direction};
+
+/// Decimals of printed degrees of longitude and latitude: a millimetre.
+const DEGREE_DECIMALS: i32 = 8;
+/// Decimals of other printed coordinates.
+const METRE_DECIMALS: i32 = 3;
+
+/// The flags, as typed.
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "View")]
+pub struct ViewArguments {
+    /// Eye: easting, northing in the CRS of the DEM; exaggerated height in metres, or +H above the ground
+    #[arg(long, value_name = "E,N,Z|E,N,+H", value_parser = values::eye, allow_hyphen_values = true, group = "standpoint")]
+    eye: Option<Standpoint>,
+    /// Eye: longitude, latitude in degrees (WGS 84); exaggerated height in metres, or +H above the ground
+    #[arg(long, value_name = "LON,LAT,Z|+H", value_parser = values::lonlat, allow_hyphen_values = true, group = "standpoint")]
+    lonlat: Option<Standpoint>,
+    /// What the middle of the page shows: easting, northing in the CRS of the DEM; exaggerated metres [default: ground]
+    #[arg(
+        long, value_name = "E,N[,Z]", value_parser = values::look_at, allow_hyphen_values = true,
+        requires = "standpoint", conflicts_with_all = ["azimuth", "altitude"]
+    )]
+    look_at: Option<LookAt>,
+    /// The CRS in which --eye and --look-at are given [default: the CRS of the DEM]
+    #[arg(long, value_name = "EPSG:N", value_parser = values::epsg)]
+    crs: Option<u32>,
+    /// Direction of view, degrees clockwise from grid north [default: towards the middle of the DEM]
+    #[arg(long, value_name = "DEG", value_parser = values::azimuth, allow_hyphen_values = true)]
+    azimuth: Option<f64>,
+    /// Direction of view, degrees above the horizon, -90 to 90 [default: 0 from a given eye]
+    #[arg(long, value_name = "DEG", value_parser = values::altitude, allow_hyphen_values = true)]
+    altitude: Option<f64>,
+    /// Horizontal field of view, degrees
+    #[arg(long, value_name = "DEG", value_parser = values::fov, allow_hyphen_values = true, default_value = "60")]
+    fov: f64,
+    /// Pixels across and down
+    #[arg(long, value_name = "WxH", value_parser = values::size, default_value = "1920x1080")]
+    pub size: Size,
+}
+
+/// A view found, with its eye in the coordinates of the DEM's file and on the globe.
+pub struct View {
+    /// In the world.
+    pub camera: Camera,
+    /// The eye's map place in units of the file's CRS.
+    file: DVec2,
+    /// Degrees of longitude and latitude, where the DEM's CRS is known.
+    lonlat: Option<DVec2>,
+}
+
+/// The view in `--json`: enough to set any place of the world on the page.
+#[derive(Serialize)]
+pub struct ViewReport {
+    eye: [f64; 3],
+    eye_in_file: [f64; 2],
+    lonlat: Option<[f64; 2]>,
+    azimuth: f64,
+    altitude: f64,
+    fov: f64,
+    size: [u32; 2],
+    projection: Projection,
+    crs: CrsReport,
+    crs_of_file: CrsReport,
+    exaggeration: f64,
+    flags: String,
+}
+
+/// Central projection of a world point p: with d = p - eye, the page place in pixels from its top left corner is
+/// centre + focal / (d . forward) * (d . right, -(d . up)).
+#[derive(Serialize)]
+struct Projection {
+    kind: &'static str,
+    right: [f64; 3],
+    up: [f64; 3],
+    forward: [f64; 3],
+    focal_px: f64,
+    centre_px: [f64; 2],
+}
+
+#[derive(Serialize)]
+struct CrsReport {
+    name: String,
+    epsg: Option<u32>,
+    wkt: String,
+    /// Metres a unit; world coordinates are those of the CRS times this. Nothing for degrees.
+    metres_per_unit: Option<f64>,
+}
+
+impl ViewArguments {
+    /// Checks what can be checked before the DEM is read.
+    ///
+    /// # Errors
+    /// [`Error::Flag`].
+    pub fn check(&self) -> Result<()> {
+        if self.crs.is_some() && self.eye.is_none() && self.look_at.is_none() {
+            return Err(Error::flag(
+                "--crs",
+                "says in which CRS --eye or --look-at is given",
+                "add --eye or leave it out",
+            ));
+        }
+        self.crs.map_or(Ok(()), |code| Crs::from_epsg(code).map(drop))
+    }
+
+    /// The view as asked, or as chosen; `level` is that of the drawn surface, for heights above it.
+    ///
+    /// # Errors
+    /// [`Error::Flag`] for a place that the DEM's map does not have, or without ground where a height above it is asked.
+    pub fn view(&self, surface: &Surface, level: Level) -> Result<View> {
+        let georeference = surface.dem().georeference();
+        let place = self.standpoint(georeference)?;
+        let eye = match (place, self.eye.or(self.lonlat)) {
+            (Some((world, _)), Some(standpoint)) => Some(above(surface, level, world, standpoint.height, "--eye")?),
+            _ => None,
+        };
+        let mut fixed = Fixed { eye, azimuth: self.azimuth, altitude: self.altitude };
+        if let (Some(eye), Some(look_at)) = (eye, self.look_at) {
+            let towards = self.towards(surface, level, look_at)?;
+            let (azimuth, altitude) = direction(towards - eye).ok_or_else(|| {
+                Error::flag("--look-at", "is where the eye stands", "give another place, or --azimuth and --altitude")
+            })?;
+            (fixed.azimuth, fixed.altitude) = (Some(azimuth), Some(altitude));
+        }
+        let mut camera = choose(surface.dem(), fixed, self.fov, self.size.width, self.size.height);
+        let file = match place {
+            Some((_, file)) => file,
+            None => {
+                let (world, file) = settled(georeference, camera.eye.truncate())?;
+                camera.eye = world.extend(camera.eye.z);
+                file
+            }
+        };
+        let lonlat = georeference.lonlat(camera.eye.truncate())?;
+        Ok(View { camera, file, lonlat })
+    }
+
+    /// The eye's place in the world and in the file.
+    fn standpoint(&self, georeference: &Georeference) -> Result<Option<(DVec2, DVec2)>> {
+        if let Some(eye) = self.eye {
+            let crs = self.crs.map(Crs::from_epsg).transpose()?;
+            let world = world(georeference, crs.as_ref(), eye.place, "--eye")?;
+            return match crs {
+                None => Ok(Some((world, eye.place))),
+                Some(_) => settled(georeference, world).map(Some),
+            };
+        }
+        let Some(eye) = self.lonlat else { return Ok(None) };
+        let world = world(georeference, Some(&Crs::lonlat()?), eye.place, "--lonlat")?;
+        settled(georeference, world).map(Some)
+    }
+
+    fn towards(&self, surface: &Surface, level: Level, look_at: LookAt) -> Result<DVec3> {
+        let crs = self.crs.map(Crs::from_epsg).transpose()?;
+        let place = world(surface.dem().georeference(), crs.as_ref(), look_at.place, "--look-at")?;
+        let height = look_at.height.map_or(Height::AboveGround(0.0), Height::Absolute);
+        above(surface, level, place, height, "--look-at")
+    }
+}
+
+impl View {
+    /// The flags that repeat it.
+    pub fn flags(&self) -> String {
+        let Camera { eye, azimuth, altitude, fov, width, height } = self.camera;
+        let DVec2 { x, y } = self.file;
+        format!("--eye {x},{y},{} --azimuth {azimuth} --altitude {altitude} --fov {fov} --size {width}x{height}", eye.z)
+    }
+
+    /// The same eye on the globe, as a flag, where the DEM's CRS is known.
+    pub fn lonlat_flag(&self) -> Option<String> {
+        self.lonlat.map(|at| format!("--lonlat {:.7},{:.7},{}", at.x, at.y, self.camera.eye.z))
+    }
+
+    /// What `--json` says of it.
+    pub fn report(&self, georeference: &Georeference, exaggeration: f64) -> ViewReport {
+        let camera = &self.camera;
+        let [right, up, forward] = camera.axes().map(|axis| axis.to_array());
+        ViewReport {
+            eye: camera.eye.to_array(),
+            eye_in_file: self.file.to_array(),
+            lonlat: self.lonlat.map(|at| at.to_array()),
+            azimuth: camera.azimuth,
+            altitude: camera.altitude,
+            fov: camera.fov,
+            size: [camera.width, camera.height],
+            projection: Projection {
+                kind: "central: page = centre + focal / (d . forward) * (d . right, -(d . up)) with d = world - eye",
+                right,
+                up,
+                forward,
+                focal_px: camera.focal(),
+                centre_px: [f64::from(camera.width) / 2.0, f64::from(camera.height) / 2.0],
+            },
+            crs: CrsReport::of(georeference.world()),
+            crs_of_file: CrsReport::of(georeference.file()),
+            exaggeration,
+            flags: self.flags(),
+        }
+    }
+}
+
+impl CrsReport {
+    fn of(crs: &Crs) -> Self {
+        Self {
+            name: crs.name().to_owned(),
+            epsg: crs.epsg(),
+            wkt: crs.wkt().to_owned(),
+            metres_per_unit: crs.metres_per_unit(),
+        }
+    }
+}
+
+/// World place of one given in `crs`, else in the file's own.
+fn world(georeference: &Georeference, crs: Option<&Crs>, place: DVec2, flag: &'static str) -> Result<DVec2> {
+    georeference.world_place(crs.unwrap_or(georeference.file()), place).ok_or_else(|| {
+        if georeference.world().wkt().is_empty() {
+            let what = "the DEM names no coordinate system, so other coordinates mean nothing in it";
+            return Error::flag(flag, what, "give --eye E,N in the DEM's own coordinates, without --crs");
+        }
+        let map = georeference.world().label();
+        Error::flag(
+            flag,
+            format!("there is no place {},{} on the map {map}", place.x, place.y),
+            "check its order: x first",
+        )
+    })
+}
+
+/// A world place moved by less than a millimetre to where its coordinates in the file have few decimals, and these.
+fn settled(georeference: &Georeference, world: DVec2) -> Result<(DVec2, DVec2)> {
+    let file = georeference.file();
+    let decimals = if file.is_geographic() { DEGREE_DECIMALS } else { METRE_DECIMALS };
+    let scale = 10f64.powi(decimals);
+    let place = georeference.place_in(file, world).map(|place| (place * scale).round() / scale);
+    let settled = place.and_then(|place| Some((georeference.world_place(file, place)?, place)));
+    settled.ok_or_else(|| {
+        let what = format!("there is no place {},{} m in the DEM's coordinate system", world.x, world.y);
+        Error::flag("--eye", what, "give a place on the map of the DEM")
+    })
+}
+
+/// A map place at a height.
+fn above(surface: &Surface, level: Level, place: DVec2, height: Height, flag: &'static str) -> Result<DVec3> {
+    match height {
+        Height::Absolute(z) => Ok(place.extend(z)),
+        Height::AboveGround(h) => match surface.height_below(place, level) {
+            // To the millimetre, so that it prints short.
+            Some(ground) => Ok(place.extend(((ground + h) * 1e3).round() / 1e3)),
+            None => Err(no_ground(surface, place, flag)),
+        },
+    }
+}
+
+fn no_ground(surface: &Surface, place: DVec2, flag: &'static str) -> Error {
+    let georeference = surface.dem().georeference();
+    let [west, south, east, north] = surface.dem().extent();
+    let corner = |x, y| georeference.place_in(georeference.file(), DVec2::new(x, y)).unwrap_or(DVec2::new(x, y));
+    let (low, high, at) = (corner(west, south), corner(east, north), corner(place.x, place.y));
+    Error::flag(
+        flag,
+        format!("there is no ground at {},{}", at.x, at.y),
+        format!("give a height without +, or a place with data between {},{} and {},{}", low.x, low.y, high.x, high.y),
+    )
+}

@@ -1,0 +1,199 @@
+//! Coordinate reference systems: names, units, and the way from one to another.
+//!
+//! PROJ does the mathematics, through GDAL. Coordinates always stand x first, east or longitude, whatever order the
+//! system's register gives. Not handled: heights, epochs, datum grids that are not on the machine.
+
+use gdal::spatial_ref::{AxisMappingStrategy, CoordTransform, SpatialRef};
+use glam::DVec2;
+
+use super::source::heard;
+use crate::error::{Error, Result};
+
+/// Relative difference of a linear unit to the metre that is still a metre.
+const METRE_EPSILON: f64 = 1e-9;
+
+/// A coordinate reference system: a name for people, a definition for PROJ, and a unit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Crs {
+    wkt: String,
+    name: String,
+    epsg: Option<u32>,
+    unit: Unit,
+}
+
+/// What one step of a coordinate is.
+#[derive(Debug, Clone, PartialEq)]
+enum Unit {
+    /// So many radians.
+    Angle(f64),
+    /// So many metres, and the unit's name.
+    Length(f64, String),
+}
+
+impl Crs {
+    /// Of a place that nobody named: metres from somewhere.
+    pub fn unknown() -> Self {
+        let unit = Unit::Length(1.0, "metre".into());
+        Self { wkt: String::new(), name: String::new(), epsg: None, unit }
+    }
+
+    /// Longitude and latitude in degrees, WGS 84.
+    ///
+    /// # Errors
+    /// [`Error::Flag`] when PROJ cannot find its register of coordinate systems.
+    pub fn lonlat() -> Result<Self> {
+        Self::from_epsg(4326)
+    }
+
+    /// The system that the register of EPSG gives this number.
+    ///
+    /// # Errors
+    /// [`Error::Flag`] when there is none, or none of places on a map or the globe.
+    pub fn from_epsg(code: u32) -> Result<Self> {
+        let wrong = |what: String| {
+            let remedy = "give the number of a system of map coordinates, for instance EPSG:32611 or EPSG:4326";
+            Error::flag("--crs", what, remedy)
+        };
+        let (found, words) = heard(|| SpatialRef::from_epsg(code));
+        let found = found.map_err(|_| match words {
+            Some(words) if words.contains("proj.db") => wrong(format!("PROJ cannot find its register ({words})")),
+            _ => wrong(format!("EPSG:{code} is unknown")),
+        })?;
+        Self::of(found).ok_or_else(|| wrong(format!("EPSG:{code} is no system of places on a map")))
+    }
+
+    /// Of GDAL's handle; `None` for systems that are neither a map nor longitude and latitude.
+    pub(super) fn of(mut reference: SpatialRef) -> Option<Self> {
+        if reference.is_geocentric() || (reference.is_vertical() && !reference.is_compound()) {
+            return None;
+        }
+        reference.set_axis_mapping_strategy(AxisMappingStrategy::TraditionalGisOrder);
+        let geographic = reference.is_geographic() || reference.is_derived_geographic();
+        let unit = if geographic {
+            Unit::Angle(reference.angular_units())
+        } else {
+            let metres = reference.linear_units();
+            Unit::Length(metres, reference.linear_units_name().unwrap_or_else(|| format!("{metres} m")))
+        };
+        let wkt = heard(|| reference.to_wkt()).0.ok()?;
+        let (name, epsg) = identity(reference);
+        Some(Self { wkt, name, epsg, unit })
+    }
+
+    /// Its name, empty when unknown.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Its number in the register of EPSG, where it is known.
+    pub fn epsg(&self) -> Option<u32> {
+        self.epsg
+    }
+
+    /// Its definition in the well-known text of OGC, empty when unknown.
+    pub fn wkt(&self) -> &str {
+        &self.wkt
+    }
+
+    /// Name and number, empty when unknown: `WGS 84 / UTM zone 10N (EPSG:32610)`.
+    pub fn label(&self) -> String {
+        match self.epsg {
+            Some(code) => format!("{} (EPSG:{code})", self.name),
+            None => self.name.clone(),
+        }
+    }
+
+    /// Whether its coordinates are longitude and latitude.
+    pub fn is_geographic(&self) -> bool {
+        matches!(self.unit, Unit::Angle(_))
+    }
+
+    /// Metres a step of a coordinate; `None` for angles.
+    pub fn metres_per_unit(&self) -> Option<f64> {
+        match self.unit {
+            Unit::Angle(_) => None,
+            Unit::Length(metres, _) if (metres - 1.0).abs() <= METRE_EPSILON => Some(1.0),
+            Unit::Length(metres, _) => Some(metres),
+        }
+    }
+
+    /// The unit of its coordinates in words, plural: `degrees`, `metres`, or as the file calls it.
+    pub fn units(&self) -> &str {
+        match &self.unit {
+            Unit::Angle(_) => "degrees",
+            Unit::Length(..) if self.metres_per_unit() == Some(1.0) => "metres",
+            Unit::Length(_, name) => name,
+        }
+    }
+
+    /// Steps of a full turn, for longitudes that run on beyond half of one.
+    pub(super) fn turn(&self) -> Option<f64> {
+        match self.unit {
+            Unit::Angle(radians) => Some(std::f64::consts::TAU / radians),
+            Unit::Length(..) => None,
+        }
+    }
+
+    /// GDAL's handle, x first; `None` when unknown.
+    pub(super) fn reference(&self) -> Option<SpatialRef> {
+        if self.wkt.is_empty() {
+            return None;
+        }
+        let mut reference = heard(|| SpatialRef::from_wkt(&self.wkt)).0.ok()?;
+        reference.set_axis_mapping_strategy(AxisMappingStrategy::TraditionalGisOrder);
+        Some(reference)
+    }
+}
+
+/// The way from the coordinates of one system to those of another.
+pub(super) struct Way {
+    /// Nothing where both are the same.
+    transform: Option<CoordTransform>,
+}
+
+impl Way {
+    /// `None` where PROJ knows none, or one of the two is unknown.
+    pub fn between(from: &Crs, to: &Crs) -> Option<Self> {
+        if from == to {
+            return Some(Self { transform: None });
+        }
+        let (from, to) = (from.reference()?, to.reference()?);
+        let transform = heard(|| CoordTransform::new(&from, &to)).0.ok()?;
+        Some(Self { transform: Some(transform) })
+    }
+
+    /// Carries all places over; NaN where there is no such place.
+    pub fn carry(&self, places: &mut [DVec2]) {
+        let Some(transform) = &self.transform else { return };
+        let (mut x, mut y): (Vec<_>, Vec<_>) = places.iter().map(|p| (p.x, p.y)).unzip();
+        // It fails as a whole where a single place fails, and marks those that do as infinite.
+        let _ = heard(|| transform.transform_coords(&mut x, &mut y, &mut []));
+        for (place, (x, y)) in places.iter_mut().zip(x.into_iter().zip(y)) {
+            *place = if x.is_finite() && y.is_finite() { DVec2::new(x, y) } else { DVec2::NAN };
+        }
+    }
+
+    /// One place, `None` where there is no such place.
+    pub fn place(&self, place: DVec2) -> Option<DVec2> {
+        let mut places = [place];
+        self.carry(&mut places);
+        places[0].is_finite().then_some(places[0])
+    }
+}
+
+/// Name and EPSG code of a CRS. Old formats give its parameters alone; those of UTM are recognised.
+fn identity(mut reference: SpatialRef) -> (String, Option<u32>) {
+    let name = reference.name().unwrap_or_default();
+    if let Some(code) = epsg(&reference) {
+        return (name, Some(code));
+    }
+    let (recognised, _) = heard(|| reference.auto_identify_epsg());
+    let code = recognised.ok().and_then(|()| epsg(&reference));
+    let (registered, _) = heard(|| code.and_then(|code| SpatialRef::from_epsg(code).ok()?.name()));
+    (registered.unwrap_or(name), code)
+}
+
+fn epsg(reference: &SpatialRef) -> Option<u32> {
+    let known = reference.auth_name().is_some_and(|name| name == "EPSG");
+    known.then(|| reference.auth_code().ok()?.try_into().ok()).flatten()
+}

@@ -1,0 +1,316 @@
+//! Several rasters as one grid: that of the first, run on over the others.
+//!
+//! Each file's numbers become metres by its own rules, voids marked, before anything is laid over anything: a tile in
+//! feet may stand beside one in metres, and a void covers nothing. Of files that overlap the last wins. A file whose
+//! samples fall on those of the first is copied; another is warped, by cubic convolution. Only what a window needs is read.
+
+use std::path::{Path, PathBuf};
+
+use gdal::raster::{GdalType, RasterBand};
+use glam::DVec2;
+use rayon::prelude::*;
+
+use super::crs::Way;
+use super::elevation::{Elevation, Reading};
+use super::grid::{Grid, Window};
+use super::raster::Raster;
+use super::source::{Source, heard};
+use super::{History, ReadOptions};
+use crate::error::{Error, Result};
+
+/// How far, in cells, samples may lie from those of the first file and still count as the same places.
+const ALIGNED_CELLS: f64 = 0.01;
+/// Samples read at once: 8 MiB of f64.
+const BLOCK_SAMPLES: usize = 1 << 20;
+/// Samples around a window that cubic convolution reaches, and one more.
+pub(super) const MARGIN: usize = 3;
+
+/// Files on one grid.
+pub(super) struct Mosaic {
+    /// North-up wherever that takes no resampling.
+    pub grid: Grid,
+    sources: Vec<Placed>,
+}
+
+/// A file and where it lies in the mosaic.
+struct Placed {
+    source: Source,
+    elevation: Elevation,
+    grid: Grid,
+    lie: Lie,
+}
+
+/// How the samples of a file lie to those of the mosaic.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Lie {
+    /// The same places, from this column and row on, read backwards where flipped.
+    Aligned { first: [i64; 2], flip: [bool; 2] },
+    /// Between them, in these columns and rows (first and beyond the last).
+    Apart { first: [i64; 2], end: [i64; 2] },
+}
+
+impl Mosaic {
+    /// Opens `paths`, at least one, and checks all that can be checked without reading samples.
+    pub fn open(paths: &[PathBuf], options: &ReadOptions, history: &mut History) -> Result<Self> {
+        let mut sources: Vec<Placed> = Vec::with_capacity(paths.len());
+        for path in paths {
+            let base = sources.first().map(|first| first.grid.north_up());
+            let placed = Placed::open(path, options, base.as_ref(), history)?;
+            sources.push(placed);
+        }
+        let Some(first) = sources.first() else {
+            let none = Error::input(Path::new("DEM"), "no file is named", "name at least one raster");
+            return Err(none);
+        };
+        let base = first.grid.north_up();
+        if base.to_crs != first.grid.to_crs {
+            history.convert("rows and columns are read backwards, north up".into());
+        }
+        let lies = sources.iter().map(|placed| placed.lie.bounds(&placed.grid));
+        let (low, end) = lies.fold(([0; 2], [0; 2]), |(low, end), (first, last)| {
+            ([0, 1].map(|i| first[i].min(low[i])), [0, 1].map(|i| last[i].max(end[i])))
+        });
+        sources.iter_mut().for_each(|placed| placed.lie = placed.lie.moved(low));
+        let to_crs = base.to_crs * glam::DAffine2::from_translation(DVec2::new(low[0] as f64, low[1] as f64));
+        let [columns, rows] = [0, 1].map(|i| (end[i] - low[i]) as usize);
+        if sources.len() > 1 {
+            history.convert(format!("{} files laid together: {columns} x {rows} samples", sources.len()));
+        }
+        Ok(Self { grid: Grid { to_crs, columns, rows, ..base }, sources })
+    }
+
+    /// The first file, for messages.
+    pub fn path(&self) -> &Path {
+        &self.sources[0].source.path
+    }
+
+    /// The format of the first file, in GDAL's words.
+    pub fn format(&self) -> String {
+        self.sources[0].source.dataset.driver().long_name()
+    }
+
+    /// Reads the samples of `window`. `progress` hears the share done.
+    pub fn read(&self, window: Window, history: &mut History, progress: &dyn Fn(f64)) -> Result<Raster> {
+        let mut raster = Raster::void(self.grid.part(window))?;
+        let mut sentinels = 0;
+        for (i, placed) in self.sources.iter().enumerate() {
+            let share = |done: f64| progress((i as f64 + done) / self.sources.len() as f64);
+            sentinels += placed.read(window, &mut raster, &share)?;
+        }
+        if sentinels > 0 {
+            history.assume(format!(
+                "{sentinels} samples at or below -32767 or above 100000 m are voids \
+                 (no such nodata is declared; declare it with `gdal_translate -a_nodata N IN OUT.tif`)"
+            ));
+        }
+        progress(1.0);
+        Ok(raster)
+    }
+}
+
+impl Placed {
+    /// `base` is the grid that the first file lays; the first itself has none before it.
+    fn open(path: &Path, options: &ReadOptions, base: Option<&Grid>, history: &mut History) -> Result<Self> {
+        let mut own = History::default();
+        let source = Source::open(path, options.band.unwrap_or(1), options.allow_remote)?;
+        let bands = source.dataset.raster_count();
+        if options.band.is_none() && bands > 1 {
+            own.assume(format!("elevations are in band 1 of {bands} (choose another with --band N)"));
+        }
+        let grid = Grid::of(&source, options.cell, &mut own)?;
+        let elevation = Elevation::of(&source, &grid.crs, options.elevation_unit, &mut own)?;
+        let lie = Lie::of(&grid, base.unwrap_or(&grid.north_up()), path)?;
+        if matches!(lie, Lie::Apart { .. }) {
+            own.convert("warped to the grid of the first file, cubic".into());
+        }
+        history.take(own, base.is_some().then_some(path));
+        Ok(Self { source, elevation, grid, lie })
+    }
+
+    /// Lays what falls into `window` of the mosaic over `raster`, which holds just that; returns how many samples
+    /// became void by their impossible value alone.
+    fn read(&self, window: Window, raster: &mut Raster, progress: &dyn Fn(f64)) -> Result<usize> {
+        match self.lie {
+            Lie::Aligned { first, flip } => {
+                let first = [0, 1].map(|i| first[i] - window.first[i] as i64);
+                self.copy(first, flip, raster, progress)
+            }
+            Lie::Apart { .. } => {
+                let Some(part) = reach(&raster.grid, &self.grid) else { return Ok(0) };
+                let mut own = Raster::void(self.grid.part(part))?;
+                let first = part.first.map(|first| -(first as i64));
+                let sentinels = self.copy(first, [false; 2], &mut own, &|done| progress(done / 2.0))?;
+                raster.lay(&own, &|done| progress((1.0 + done) / 2.0))?;
+                Ok(sentinels)
+            }
+        }
+    }
+
+    /// Copies the samples, as metres, to where `raster` has them: the file's first column and row, after flipping, at
+    /// `first`. Voids cover nothing.
+    fn copy(&self, first: [i64; 2], flip: [bool; 2], raster: &mut Raster, progress: &dyn Fn(f64)) -> Result<usize> {
+        let band = self.source.band()?;
+        let masked = band.mask_flags().is_ok_and(|flags| flags.is_per_dataset());
+        let mask = if masked { band.open_mask_band().ok() } else { None };
+        let (own, there) = ([self.grid.columns, self.grid.rows], [raster.grid.columns, raster.grid.rows]);
+        let low = [0, 1].map(|i| first[i].max(0));
+        let end = [0, 1].map(|i| (first[i] + own[i] as i64).min(there[i] as i64));
+        if low[0] >= end[0] || low[1] >= end[1] {
+            return Ok(0);
+        }
+        let (width, height) = ((end[0] - low[0]) as usize, (end[1] - low[1]) as usize);
+        let step = (BLOCK_SAMPLES / width).max(1);
+        let mut sentinels = 0;
+        for row in (0..height).step_by(step) {
+            let size = [width, step.min(height - row)];
+            let at = [low[0] as usize, low[1] as usize + row];
+            // The first sample of the block in the file, counted backwards where flipped.
+            let from = [0, 1].map(|i| {
+                let offset = (at[i] as i64 - first[i]) as usize;
+                if flip[i] { own[i] - offset - size[i] } else { offset }
+            });
+            let mut raw = self.numbers(&band, mask.as_ref(), from, size)?;
+            turn(&mut raw, width, flip);
+            let mut metres = raster.block(at, size)?;
+            sentinels += self.cover(&mut metres, &raw);
+            raster.put(at, size, metres)?;
+            progress((row + size[1]) as f64 / height as f64);
+        }
+        Ok(sentinels)
+    }
+
+    /// Covers `metres` with those of the numbers `raw`; returns how many are marks that nobody declared.
+    fn cover(&self, metres: &mut [f32], raw: &[f64]) -> usize {
+        let elevation = self.elevation;
+        let cover = move |(metres, raw): (&mut f32, &f64)| match elevation.reading(*raw) {
+            Reading::Metres(value) => {
+                *metres = value as f32;
+                0
+            }
+            Reading::Void => 0,
+            Reading::Sentinel => 1,
+        };
+        metres.par_iter_mut().zip(raw).map(cover).sum()
+    }
+
+    /// A block of the file's numbers, NaN where the file masks them.
+    fn numbers(
+        &self,
+        band: &RasterBand,
+        mask: Option<&RasterBand>,
+        from: [usize; 2],
+        size: [usize; 2],
+    ) -> Result<Vec<f64>> {
+        let mut raw = self.block::<f64>(band, from, size)?;
+        if let Some(mask) = mask {
+            let seen = self.block::<u8>(mask, from, size)?;
+            raw.iter_mut().zip(seen).filter(|(_, seen)| *seen == 0).for_each(|(raw, _)| *raw = f64::NAN);
+        }
+        Ok(raw)
+    }
+
+    /// One block of numbers, or the error for a damaged file.
+    fn block<T: GdalType + Copy>(&self, band: &RasterBand, from: [usize; 2], size: [usize; 2]) -> Result<Vec<T>> {
+        let (place, size) = ((from[0] as isize, from[1] as isize), (size[0], size[1]));
+        let (block, complaint) = heard(|| band.read_as::<T>(place, size, size, None));
+        match (block, complaint) {
+            (Ok(block), None) => Ok(block.into_shape_and_vec().1),
+            // A driver that complains and goes on has made the numbers up.
+            (_, words) => Err(self.source.unreadable(words.as_deref())),
+        }
+    }
+}
+
+impl Lie {
+    /// Of `grid`, that of the file `path`, to `base`.
+    fn of(grid: &Grid, base: &Grid, path: &Path) -> Result<Self> {
+        let mut places = grid.whole().outline();
+        let own = places.clone();
+        places.iter_mut().for_each(|place| *place = grid.to_crs.transform_point2(*place));
+        let way = Way::between(&grid.crs, &base.crs).ok_or_else(|| no_way(path, grid, base))?;
+        way.carry(&mut places);
+        base.pixels(&mut places);
+        if places.iter().any(|place| !place.is_finite()) {
+            return Err(no_way(path, grid, base));
+        }
+        let low = places.iter().copied().fold(DVec2::INFINITY, DVec2::min);
+        let high = places.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
+        let size = DVec2::new(grid.columns as f64, grid.rows as f64);
+        let first = (low - 0.5).round();
+        let [flip_x, flip_y] = [places[3].x < places[0].x, places[1].y < places[0].y];
+        let aligned = places.iter().zip(own).all(|(place, own)| {
+            let x = if flip_x { size.x - own.x } else { own.x };
+            let y = if flip_y { size.y - own.y } else { own.y };
+            (*place - first - DVec2::new(x, y)).abs().max_element() <= ALIGNED_CELLS
+        });
+        if aligned {
+            return Ok(Self::Aligned { first: [first.x as i64, first.y as i64], flip: [flip_x, flip_y] });
+        }
+        let (low, high) = ((low - 0.5).floor(), (high + 0.5).ceil());
+        Ok(Self::Apart { first: [low.x as i64, low.y as i64], end: [high.x as i64, high.y as i64] })
+    }
+
+    /// First column and row, and those beyond the last, of `grid` that lies so.
+    fn bounds(self, grid: &Grid) -> ([i64; 2], [i64; 2]) {
+        match self {
+            Self::Aligned { first, .. } => (first, [first[0] + grid.columns as i64, first[1] + grid.rows as i64]),
+            Self::Apart { first, end } => (first, end),
+        }
+    }
+
+    /// The same, counted from `low`.
+    fn moved(self, low: [i64; 2]) -> Self {
+        let moved = |at: [i64; 2]| [at[0] - low[0], at[1] - low[1]];
+        match self {
+            Self::Aligned { first, flip } => Self::Aligned { first: moved(first), flip },
+            Self::Apart { first, end } => Self::Apart { first: moved(first), end: moved(end) },
+        }
+    }
+}
+
+/// The samples of `source` that cubic convolution needs for all of `target`; `None` where they do not meet.
+pub(super) fn reach(target: &Grid, source: &Grid) -> Option<Window> {
+    let mut places = target.whole().outline();
+    places.iter_mut().for_each(|place| *place = target.to_crs.transform_point2(*place));
+    Way::between(&target.crs, &source.crs)?.carry(&mut places);
+    source.pixels(&mut places);
+    places.retain(|place| place.is_finite());
+    let low = places.iter().copied().fold(DVec2::INFINITY, DVec2::min);
+    let high = places.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
+    // Larger cells gather from as many more samples.
+    let ratio = (high - low) / DVec2::new(target.columns as f64, target.rows as f64);
+    let margin = MARGIN as f64 * ratio.max_element().max(1.0);
+    let sizes = [source.columns as f64, source.rows as f64];
+    let [low, end] = [(low - margin).floor().to_array(), (high + margin).ceil().to_array()];
+    let first = [0, 1].map(|i| low[i].clamp(0.0, sizes[i]));
+    let end = [0, 1].map(|i| end[i].clamp(0.0, sizes[i]));
+    let meet = first[0] < end[0] && first[1] < end[1];
+    meet.then(|| Window { first: first.map(|v| v as usize), size: [0, 1].map(|i| (end[i] - first[i]) as usize) })
+}
+
+/// Turns a block of rows of `width` numbers round, along the rows and down the columns.
+fn turn(raw: &mut [f64], width: usize, [along, down]: [bool; 2]) {
+    if along && down {
+        raw.reverse();
+    } else if along {
+        raw.chunks_mut(width).for_each(<[f64]>::reverse);
+    } else if down {
+        let rows = raw.len() / width;
+        for r in 0..rows / 2 {
+            let (upper, lower) = raw.split_at_mut((rows - 1 - r) * width);
+            upper[r * width..(r + 1) * width].swap_with_slice(&mut lower[..width]);
+        }
+    }
+}
+
+fn no_way(path: &Path, grid: &Grid, base: &Grid) -> Error {
+    let name = |crs: &super::Crs| match crs.label() {
+        label if label.is_empty() => "no named coordinate system".to_owned(),
+        label => label,
+    };
+    Error::input(
+        path,
+        format!("lies in {}, and no way from there to {} is known", name(&grid.crs), name(&base.crs)),
+        "draw it alone, or name its system with `gdal_translate -a_srs EPSG:CODE IN OUT.tif`",
+    )
+}

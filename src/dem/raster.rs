@@ -1,0 +1,153 @@
+//! Elevations under way: metres on a grid in memory, which GDAL can warp and fill.
+//!
+//! Memory: 4 bytes a sample. The unsafe calls of this crate stand here: GDAL's warper and filler have no safe wrapper.
+
+use std::ffi::{CString, c_char, c_int, c_void};
+use std::ptr::null_mut;
+
+use gdal::raster::Buffer;
+use gdal::{Dataset, DriverManager};
+
+use super::grid::Grid;
+use super::source::heard;
+use crate::error::{Error, Result};
+
+/// Farthest that GDAL fills from a sample with data, in samples: its own default.
+pub const FILL_REACH: u32 = 100;
+/// Farthest, in cells, that the warper's quick way of placing samples may miss the exact one.
+const WARP_CELLS: &str = "0.01";
+/// Memory of the warper beside the rasters, MiB.
+const WARP_MEMORY: &str = "32";
+
+/// A grid of elevations in metres, NaN at voids.
+pub(super) struct Raster {
+    /// Where the samples lie.
+    pub grid: Grid,
+    dataset: Dataset,
+}
+
+impl Raster {
+    /// All void.
+    pub fn void(grid: Grid) -> Result<Self> {
+        let make = || {
+            let memory = DriverManager::get_driver_by_name("MEM")?;
+            let mut dataset = memory.create_with_band_type::<f32, _>("", grid.columns, grid.rows, 1)?;
+            let ([x, y], m) = (grid.to_crs.translation.to_array(), grid.to_crs.matrix2);
+            dataset.set_geo_transform(&[x, m.x_axis.x, m.y_axis.x, y, m.x_axis.y, m.y_axis.y])?;
+            if let Some(reference) = grid.crs.reference() {
+                dataset.set_spatial_ref(&reference)?;
+            }
+            let mut band = dataset.rasterband(1)?;
+            band.set_no_data_value(Some(f64::NAN))?;
+            band.fill(f64::NAN, None)?;
+            Ok::<_, gdal::errors::GdalError>(dataset)
+        };
+        let (made, words) = heard(make);
+        match made {
+            Ok(dataset) => Ok(Self { grid, dataset }),
+            Err(e) => Err(out_of_memory(&grid, &words.unwrap_or_else(|| e.to_string()))),
+        }
+    }
+
+    /// The block of samples at `first` (column, row) of `size` columns and rows, row-major.
+    pub fn block(&self, first: [usize; 2], size: [usize; 2]) -> Result<Vec<f32>> {
+        let (place, size) = ((first[0] as isize, first[1] as isize), (size[0], size[1]));
+        let read = || self.dataset.rasterband(1)?.read_as::<f32>(place, size, size, None);
+        let (block, words) = heard(read);
+        block.map(|b| b.into_shape_and_vec().1).map_err(|e| self.failed(words, &e.to_string()))
+    }
+
+    /// All samples, row-major.
+    pub fn heights(&self) -> Result<Vec<f32>> {
+        self.block([0, 0], [self.grid.columns, self.grid.rows])
+    }
+
+    /// How many samples are void.
+    pub fn voids(&self) -> Result<usize> {
+        let rows = (0..self.grid.rows).map(|row| self.block([0, row], [self.grid.columns, 1]));
+        rows.map(|row| row.map(|row| row.iter().filter(|height| height.is_nan()).count())).sum()
+    }
+
+    /// Puts a block of samples at `first` (column, row), `size` columns and rows, row-major.
+    pub fn put(&mut self, first: [usize; 2], size: [usize; 2], samples: Vec<f32>) -> Result<()> {
+        let (place, size) = ((first[0] as isize, first[1] as isize), (size[0], size[1]));
+        let mut block = Buffer::new(size, samples);
+        let (put, words) = heard(|| self.dataset.rasterband(1)?.write(place, size, &mut block));
+        put.map_err(|e| self.failed(words, &e.to_string()))
+    }
+
+    /// Lays `from` over what is here, by cubic convolution in the systems and grids of both; voids of `from` cover
+    /// nothing. `progress` hears the share done.
+    pub fn lay(&mut self, from: &Self, progress: &dyn Fn(f64)) -> Result<()> {
+        let threads = "NUM_THREADS=ALL_CPUS";
+        let words = ["-r", "cubic", "-et", WARP_CELLS, "-wm", WARP_MEMORY, "-wo", threads, "-novshift"];
+        let words = words.map(|word| CString::new(word).unwrap_or_default());
+        let mut list = pointers(&words);
+        let mut sources = [from.dataset.c_dataset()];
+        let onto = self.dataset.c_dataset();
+        let work = || {
+            let mut misused: c_int = 0;
+            // SAFETY: `list` ends with null and its strings outlive the call, as do both datasets and `progress`,
+            // which `share` alone reads, on this thread while GDALWarp runs. The result is `onto` itself or null.
+            unsafe {
+                let options = gdal_sys::GDALWarpAppOptionsNew(list.as_mut_ptr(), null_mut());
+                gdal_sys::GDALWarpAppOptionsSetProgress(options, Some(share), argument(&progress));
+                let done = gdal_sys::GDALWarp(null_mut(), onto, 1, sources.as_mut_ptr(), options, &raw mut misused);
+                gdal_sys::GDALWarpAppOptionsFree(options);
+                !done.is_null() && misused == 0
+            }
+        };
+        let (done, words) = heard(work);
+        if done { Ok(()) } else { Err(self.failed(words, "the warper gave up")) }
+    }
+
+    /// Fills voids up to [`FILL_REACH`] samples from data, by inverse distance weighting. `progress` hears the share done.
+    pub fn fill(&mut self, progress: &dyn Fn(f64)) -> Result<()> {
+        // Its working rasters would otherwise be files in the folder where hachure is started.
+        let words = [c"TEMP_FILE_DRIVER=MEM".to_owned()];
+        let mut list = pointers(&words);
+        let dataset = self.dataset.c_dataset();
+        let work = || {
+            // SAFETY: as in `lay`; band 1 is there, and without a mask GDAL takes the band's own, NaN.
+            unsafe {
+                let band = gdal_sys::GDALGetRasterBand(dataset, 1);
+                let reach = f64::from(FILL_REACH);
+                let argument = argument(&progress);
+                gdal_sys::GDALFillNodata(band, null_mut(), reach, 0, 0, list.as_mut_ptr(), Some(share), argument)
+            }
+        };
+        let (done, words) = heard(work);
+        if done == gdal_sys::CPLErr::CE_None { Ok(()) } else { Err(self.failed(words, "the filler gave up")) }
+    }
+
+    fn failed(&self, words: Option<String>, otherwise: &str) -> Error {
+        out_of_memory(&self.grid, words.as_deref().unwrap_or(otherwise))
+    }
+}
+
+/// What else can fail in memory.
+fn out_of_memory(grid: &Grid, words: &str) -> Error {
+    let words = words.lines().next().unwrap_or_default();
+    Error::Limit {
+        what: format!("{} x {} samples cannot be held and warped in memory ({words})", grid.columns, grid.rows),
+        remedy: "use --crop to take a part, or --resample M for larger cells".into(),
+    }
+}
+
+/// A list of strings as GDAL takes it, ended by null.
+fn pointers(words: &[CString]) -> Vec<*mut c_char> {
+    words.iter().map(|word| word.as_ptr().cast_mut()).chain([null_mut()]).collect()
+}
+
+/// A pointer to `progress`, for [`share`].
+fn argument(progress: &&dyn Fn(f64)) -> *mut c_void {
+    std::ptr::from_ref(progress).cast_mut().cast()
+}
+
+/// Called back by GDAL with the share done; 1 means go on.
+extern "C" fn share(complete: f64, _: *const c_char, argument: *mut c_void) -> c_int {
+    // SAFETY: `argument` is the pointer made above, to a borrow that lives while GDAL runs.
+    let progress = unsafe { &*argument.cast::<&dyn Fn(f64)>() };
+    progress(complete);
+    1
+}

@@ -1,0 +1,356 @@
+//! The grid that is drawn: north-up, in metres, and which samples of the files it takes.
+//!
+//! A projected north-up grid is taken as it is. Degrees, turned grids and grids to be resampled are warped: degrees to
+//! the UTM zone of the middle of what is drawn, polar stereographic near the poles, others in their own system; square
+//! cells, at whole multiples of their size, as many as fit into the largest rectangle inside the data. Not handled: DEMs
+//! so wide that one map cannot show them.
+
+use std::path::Path;
+
+use glam::DVec2;
+
+use super::crs::{Crs, Way};
+use super::grid::{Grid, Window};
+use super::inscribed::largest;
+use super::mosaic::reach;
+use super::source::MIN_SIDE;
+use super::{History, ReadOptions};
+use crate::error::{Error, Result};
+
+/// Most samples of a DEM: 128 MiB of heights, the largest buffer that every GPU binds.
+pub const MAX_SAMPLES: usize = 1 << 25;
+/// Most samples that are read to be warped: 1 GiB.
+const MAX_READ: u64 = 1 << 28;
+/// Bytes a sample of the files at work, and of the DEM with its normals.
+const READ_BYTES: u64 = 4;
+const DEM_BYTES: u64 = 13;
+/// A map whose metres differ from those on the ground by more than this share gets a warning.
+const TRUE_SCALE: f64 = 0.01;
+/// Latitude where UTM ends in the north and in the south, degrees.
+const UTM_NORTH: f64 = 84.0;
+const UTM_SOUTH: f64 = -80.0;
+/// Widest and highest DEM in degrees that a zone of UTM shows within two percent of its true size.
+const WIDEST: f64 = 20.0;
+const HIGHEST: f64 = 30.0;
+
+/// What is drawn of the files' grid.
+#[derive(Debug)]
+pub(super) struct Target {
+    /// North-up, in a system of lengths.
+    pub grid: Grid,
+    /// The samples to read for it.
+    pub window: Window,
+    /// Whether it must be warped; else `window` is the grid.
+    pub warps: bool,
+}
+
+impl Target {
+    /// For the grid of the files; `path` is the first, for messages. Fails when too little is left, or too much.
+    pub fn of(files: &Grid, path: &Path, options: &ReadOptions, history: &mut History) -> Result<Self> {
+        let window = match options.crop {
+            None => files.whole(),
+            Some(crop) => files.window(crop).ok_or_else(|| outside(files, path))?,
+        };
+        check_sides(window.size, files, path)?;
+        let target = if files.is_north_up() && !files.crs.is_geographic() && options.resample.is_none() {
+            Self { grid: files.part(window), window, warps: false }
+        } else {
+            Self::warped(files, window, path, options, history)?
+        };
+        target.check_size(files, path)?;
+        if let Some(stretch) = target.stretch().filter(|stretch| (stretch - 1.0).abs() > TRUE_SCALE) {
+            let wrong = if stretch > 1.0 { "too flat" } else { "too steep" };
+            history.assume(format!(
+                "map metres are metres on the ground (this projection shows them {stretch:.2} x as long here, so slopes \
+                 are drawn {wrong}; for true ones warp to UTM: `gdalwarp -t_srs EPSG:{} -r cubic IN OUT.tif`)",
+                target.middle_epsg().unwrap_or(3857)
+            ));
+        }
+        Ok(target)
+    }
+
+    /// How long a metre on the ground is on the map, at the middle; `None` where the place on the globe is unknown.
+    fn stretch(&self) -> Option<f64> {
+        let middle = self.grid.centre(self.grid.whole());
+        let mut places = [middle, middle + DVec2::X * self.grid.cell().x];
+        let ground = Crs::from_epsg(self.middle_epsg()?).ok()?;
+        let length = self.grid.cell().x * self.grid.crs.metres_per_unit()?;
+        Way::between(&self.grid.crs, &ground)?.carry(&mut places);
+        Some(length / (places[1] - places[0]).length()).filter(|stretch| stretch.is_finite())
+    }
+
+    /// EPSG code of the map in metres that is true around the middle.
+    fn middle_epsg(&self) -> Option<u32> {
+        let middle = Way::between(&self.grid.crs, &Crs::lonlat().ok()?)?.place(self.grid.centre(self.grid.whole()))?;
+        Some(metric_epsg(middle))
+    }
+
+    fn warped(files: &Grid, window: Window, path: &Path, options: &ReadOptions, history: &mut History) -> Result<Self> {
+        let crs = if files.crs.is_geographic() { zone(files, window, path)? } else { files.crs.clone() };
+        let lost = || {
+            Error::input(
+                path,
+                "its place cannot be put on a map in metres",
+                "check its coordinate system with `gdalinfo`",
+            )
+        };
+        let way = Way::between(&files.crs, &crs).ok_or_else(lost)?;
+        let back = Way::between(&crs, &files.crs).ok_or_else(lost)?;
+        let unit = crs.metres_per_unit().ok_or_else(lost)?;
+        let cell = match options.resample {
+            Some(metres) => metres / unit,
+            None => cell_like(files, window, &way).ok_or_else(lost)?,
+        };
+        let all = lattice_around(files, window, &way, &crs, cell).ok_or_else(lost)?;
+        let region = Region { files, window, crop: options.crop, back };
+        let inside =
+            |at: &[[usize; 2]]| region.holds(at.iter().map(|[c, r]| all.sample(*c as f64, *r as f64)).collect());
+        check_extent(&all, cell * unit, path)?;
+        let part = largest(all.columns, all.rows, inside).ok_or_else(|| too_small(path, cell * unit))?;
+        let grid = all.part(part);
+        let window = reach(&grid, files).ok_or_else(lost)?;
+        history.convert(format!(
+            "warped from {} to {}, cubic, {} x {} square cells of {} m, the largest rectangle inside the data",
+            turned(files),
+            if files.crs == crs { "north-up".to_owned() } else { crs.label() },
+            grid.columns,
+            grid.rows,
+            rounded(cell * unit, 6),
+        ));
+        Ok(Self { grid, window, warps: true })
+    }
+
+    /// At least 2 x 2 samples, at most [`MAX_SAMPLES`], and memory for all.
+    fn check_size(&self, files: &Grid, path: &Path) -> Result<()> {
+        let Grid { columns, rows, .. } = self.grid;
+        check_sides([columns, rows], files, path)?;
+        let samples = columns as u64 * rows as u64;
+        if samples > MAX_SAMPLES as u64 {
+            return Err(too_many(path, [columns, rows], self.metres_to_fit(samples, MAX_SAMPLES as u64)));
+        }
+        let read = self.window.samples();
+        if self.warps && read > MAX_READ {
+            return Err(Error::Limit {
+                what: format!("{}: {read} samples would be read for this, at most {MAX_READ} fit", path.display()),
+                remedy: "use --crop to take a part".into(),
+            });
+        }
+        let work = if self.warps { read * READ_BYTES } else { 0 };
+        check_memory(path, (work + samples * READ_BYTES).max(samples * DEM_BYTES), available_memory())
+    }
+
+    /// Cell size in metres at which no more than `fit` of `samples` are left.
+    fn metres_to_fit(&self, samples: u64, fit: u64) -> f64 {
+        let cell = self.grid.cell() * self.grid.crs.metres_per_unit().unwrap_or(1.0);
+        // A percent more, for rows and columns are whole.
+        rounded_up((cell.x * cell.y * samples as f64 / fit as f64).sqrt() * 1.01)
+    }
+}
+
+/// The part of the files that a warped grid may cover.
+struct Region<'a> {
+    files: &'a Grid,
+    window: Window,
+    crop: Option<[f64; 4]>,
+    back: Way,
+}
+
+impl Region<'_> {
+    /// Which of `places` in the target's system lie between samples of the files, and inside the crop.
+    fn holds(&self, mut places: Vec<DVec2>) -> Vec<bool> {
+        self.back.carry(&mut places);
+        let turn = self.files.crs.turn();
+        let cropped = |place: &DVec2| {
+            self.crop.is_none_or(|[west, south, east, north]| {
+                let x = turn.map_or(place.x, |turn| place.x + turn * (((west + east) / 2.0 - place.x) / turn).round());
+                (west..=east).contains(&x) && (south..=north).contains(&place.y)
+            })
+        };
+        let cropped: Vec<_> = places.iter().map(cropped).collect();
+        self.files.pixels(&mut places);
+        let whole = self.crop.map_or(self.window, |_| self.files.whole());
+        let low = DVec2::new(whole.first[0] as f64, whole.first[1] as f64) + 0.5;
+        let far = low + DVec2::new((whole.size[0] - 1) as f64, (whole.size[1] - 1) as f64);
+        let within = |place: &DVec2| place.cmpge(low).all() && place.cmple(far).all();
+        places.iter().zip(cropped).map(|(place, cropped)| cropped && within(place)).collect()
+    }
+}
+
+/// The system in metres for a window of degrees. Fails where it spans too much of the globe for one.
+fn zone(files: &Grid, window: Window, path: &Path) -> Result<Crs> {
+    let part = files.part(window);
+    let [west, south, east, north] = part.extent();
+    let degrees = 360.0 / files.crs.turn().unwrap_or(360.0);
+    let [width, height] = [(east - west) * degrees, (north - south) * degrees];
+    let lonlat = Crs::lonlat()?;
+    let middle = Way::between(&files.crs, &lonlat).and_then(|way| way.place(files.centre(window)));
+    let middle = middle.ok_or_else(|| {
+        Error::input(path, "its place on the globe is unknown", "check its coordinate system with `gdalinfo`")
+    })?;
+    let polar = middle.y > UTM_NORTH || middle.y < UTM_SOUTH;
+    if height > HIGHEST || (width > WIDEST && !polar) {
+        return Err(Error::input(
+            path,
+            format!("spans {width:.0} x {height:.0} degrees, too much of the globe for one map in metres"),
+            format!("take at most {WIDEST} x {HIGHEST} degrees with --crop WEST,SOUTH,EAST,NORTH"),
+        ));
+    }
+    Crs::from_epsg(metric_epsg(middle))
+}
+
+/// EPSG code of the UTM zone (WGS 84) of a place in degrees, beyond UTM of polar stereographic.
+fn metric_epsg(DVec2 { x: longitude, y: latitude }: DVec2) -> u32 {
+    if latitude > UTM_NORTH {
+        return 3413;
+    }
+    if latitude < UTM_SOUTH {
+        return 3031;
+    }
+    let zone = ((longitude + 180.0).rem_euclid(360.0) / 6.0).floor().clamp(0.0, 59.0) as u32 + 1;
+    if latitude < 0.0 { 32700 + zone } else { 32600 + zone }
+}
+
+/// Side of a square as large as the cell in the middle of `window`, to three digits where the system changes.
+fn cell_like(files: &Grid, window: Window, way: &Way) -> Option<f64> {
+    let middle = files.to_crs.inverse().transform_point2(files.centre(window));
+    let mut corners = [DVec2::ZERO, DVec2::X, DVec2::Y].map(|step| files.to_crs.transform_point2(middle + step));
+    way.carry(&mut corners);
+    let area = (corners[1] - corners[0]).perp_dot(corners[2] - corners[0]).abs();
+    let side = if files.crs.is_geographic() { rounded(area.sqrt(), 3) } else { area.sqrt() };
+    (side.is_finite() && side > 0.0).then_some(side)
+}
+
+/// All places at whole multiples of `cell` around a window of the files.
+fn lattice_around(files: &Grid, window: Window, way: &Way, crs: &Crs, cell: f64) -> Option<Grid> {
+    let mut places = window.outline();
+    places.iter_mut().for_each(|place| *place = files.to_crs.transform_point2(*place));
+    way.carry(&mut places);
+    let low = places.iter().copied().fold(DVec2::INFINITY, DVec2::min) / cell;
+    let high = places.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max) / cell;
+    let (low, high) = (low.floor(), high.ceil());
+    let size = high - low + 1.0;
+    let matrix = glam::DMat2::from_diagonal(DVec2::new(cell, -cell));
+    let corner = DVec2::new(low.x - 0.5, high.y + 0.5) * cell;
+    let to_crs = glam::DAffine2::from_mat2_translation(matrix, corner);
+    let sound = places.iter().all(|place| place.is_finite()) && size.max_element() < 1e9;
+    sound.then(|| Grid { crs: crs.clone(), to_crs, columns: size.x as usize, rows: size.y as usize })
+}
+
+/// What is odd about the files' grid.
+fn turned(files: &Grid) -> String {
+    match (files.crs.is_geographic(), files.is_north_up()) {
+        (true, _) if files.crs.name().is_empty() => "degrees".into(),
+        (true, _) => format!("degrees ({})", files.crs.label()),
+        (false, false) => "rows that do not run from west to east".into(),
+        (false, true) => format!("cells of {} {}", files.cell().x, files.crs.units()),
+    }
+}
+
+fn check_sides([width, height]: [usize; 2], files: &Grid, path: &Path) -> Result<()> {
+    if width >= MIN_SIDE && height >= MIN_SIDE {
+        return Ok(());
+    }
+    let (cell, units) = (files.cell(), files.crs.units());
+    Err(Error::input(
+        path,
+        format!("--crop leaves {width} x {height} samples; a surface needs at least 2 x 2"),
+        format!("widen it: the samples are {} and {} {units} apart", cell.x, cell.y),
+    ))
+}
+
+/// No more places to look at than a DEM twice too large has.
+fn check_extent(all: &Grid, metres: f64, path: &Path) -> Result<()> {
+    let samples = all.columns as f64 * all.rows as f64;
+    let most = 4.0 * MAX_SAMPLES as f64;
+    if samples <= most {
+        return Ok(());
+    }
+    let fit = rounded_up(metres * (samples / MAX_SAMPLES as f64).sqrt());
+    Err(too_many(path, [all.columns, all.rows], fit))
+}
+
+fn too_many(path: &Path, [columns, rows]: [usize; 2], metres: f64) -> Error {
+    let samples = columns as u64 * rows as u64;
+    Error::Limit {
+        what: format!("{}: {columns} x {rows} = {samples} samples, at most {MAX_SAMPLES} fit", path.display()),
+        remedy: format!("use --crop to take a part, or --resample {metres} for cells of {metres} m"),
+    }
+}
+
+fn too_small(path: &Path, metres: f64) -> Error {
+    Error::input(
+        path,
+        format!("no 2 x 2 cells of {metres} m lie inside the data"),
+        "give smaller cells with --resample M, or widen --crop",
+    )
+}
+
+fn outside(files: &Grid, path: &Path) -> Error {
+    let ([west, south, east, north], units) = (files.extent(), files.crs.units());
+    Error::input(
+        path,
+        "no sample lies inside --crop",
+        format!("give E0,N0,E1,N1 within {west},{south},{east},{north} {units}"),
+    )
+}
+
+fn check_memory(path: &Path, needed: u64, available: Option<u64>) -> Result<()> {
+    match available {
+        Some(available) if available < needed => Err(Error::Limit {
+            what: format!("{}: needs {} MiB of memory, {} MiB are free", path.display(), needed >> 20, available >> 20),
+            remedy: "use --crop to take a part, or --resample M for larger cells".into(),
+        }),
+        _ => Ok(()),
+    }
+}
+
+/// Bytes of memory that new work may take, where the system says so (Linux).
+fn available_memory() -> Option<u64> {
+    let text = std::fs::read_to_string("/proc/meminfo").ok()?;
+    let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
+    line.trim().trim_end_matches(" kB").parse::<u64>().ok().map(|kib| kib * 1024)
+}
+
+/// To so many significant digits.
+fn rounded(value: f64, digits: i32) -> f64 {
+    let scale = 10f64.powi(digits - 1 - value.abs().log10().floor() as i32);
+    (value * scale).round() / scale
+}
+
+/// Upward to two significant digits.
+fn rounded_up(value: f64) -> f64 {
+    let scale = 10f64.powi(1 - value.log10().floor() as i32);
+    (value * scale).ceil() / scale
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn zones_and_poles() {
+        let zone = |x, y| metric_epsg(DVec2::new(x, y));
+        assert_eq!(zone(-119.53, 37.7), 32611);
+        assert_eq!(zone(174.0, -41.0), 32760);
+        assert_eq!(zone(180.0, 10.0), 32601);
+        assert_eq!(zone(241.0, 37.0), 32611);
+        assert_eq!(zone(0.0, 85.0), 3413);
+        assert_eq!(zone(0.0, -85.0), 3031);
+    }
+
+    #[test]
+    fn memory_is_checked_before_it_is_taken() {
+        let path = Path::new("a.tif");
+        assert!(check_memory(path, 100 << 20, Some(100 << 20)).is_ok());
+        assert!(check_memory(path, 100 << 20, None).is_ok());
+        let said = check_memory(path, 200 << 20, Some(100 << 20)).unwrap_err().to_string();
+        assert_eq!(said.split(';').next(), Some("a.tif: needs 200 MiB of memory, 100 MiB are free"));
+    }
+
+    #[test]
+    fn digits() {
+        assert_eq!(rounded(27.4961, 3), 27.5);
+        assert_eq!(rounded_up(111.2), 120.0);
+        assert_eq!(rounded_up(0.0451), 0.046);
+    }
+}

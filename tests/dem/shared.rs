@@ -1,0 +1,174 @@
+//! Every file of shared terrain is read, and says what was done to it.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use gdal::Dataset;
+use glam::DVec2;
+use hachure::dem::{Dem, Info, ReadOptions, info, read};
+
+use super::{read_all, refused::refused, told};
+use crate::common::shared_dems;
+
+/// Metres between formats of one terrain: whole-metre formats round by half a metre, text formats by a little more.
+const FORMATS_METRES: f32 = 0.501;
+
+/// The Half Dome crop in every format that says where it lies.
+const HALF_DOME: [&str; 10] = [
+    "halfdome_f64.tif",
+    "halfdome_bigtiff_lzw.tif",
+    "halfdome.asc",
+    "halfdome.asc.gz",
+    "halfdome_f.flt",
+    "halfdome_i.bil",
+    "halfdome_envi.img",
+    "halfdome.nc",
+    "halfdome.dem",
+    "halfdome.vrt",
+];
+
+fn worst(a: &Dem, b: &[f32]) -> f32 {
+    assert_eq!(a.heights().len(), b.len());
+    a.heights().iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
+}
+
+#[test]
+fn half_dome_is_the_same_terrain_in_every_format() {
+    let Some(shared) = shared_dems() else { return };
+    let formats = shared.join("formats");
+    let dems = HALF_DOME.map(|name| read_all(&formats.join(name)));
+    for (name, dem) in HALF_DOME.iter().zip(&dems) {
+        assert_eq!((dem.extent(), dem.voids()), (dems[0].extent(), 0), "{name}");
+        let gap = worst(dem, dems[0].heights());
+        assert!(gap <= FORMATS_METRES, "{name}: {gap} m");
+    }
+    assert_ne!(dems[0].heights(), dems[5].heights(), "whole metres must differ from f64");
+    // The scaled one declares tenths over the same numbers: the same shape, a tenth as high.
+    let scaled = read(formats.join("halfdome_scaled.vrt"), &ReadOptions { exaggeration: 10.0, ..Default::default() });
+    assert!(worst(&scaled.unwrap(), dems[0].heights()) < 0.01);
+    // The image is nowhere: its samples are those of the file, before any warp.
+    let image = formats.join("halfdome_u16.png");
+    refused(&image, &["no geotransform", "--cell M"]);
+    let image = read(image, &ReadOptions { cell: Some(27.5), ..Default::default() }).unwrap();
+    let file = Dataset::open(formats.join("halfdome_f64.tif")).unwrap();
+    let raw = file.rasterband(1).unwrap().read_band_as::<f32>().unwrap();
+    assert!(worst(&image, raw.data()) <= FORMATS_METRES);
+}
+
+/// File, samples, EPSG code of the map it is drawn in, lowest and highest metres in the file, share of voids, and how
+/// far a warp may lower or raise the extremes, metres.
+type Row = (&'static str, [usize; 2], Option<u32>, [f32; 2], f64, f32);
+
+const FILES: [Row; 15] = [
+    ("west_temple_50m.tif", [120, 140], Some(26912), [1176.2, 2365.4], 0.0, 0.1),
+    ("zion_srtm3.tif", [402, 502], Some(32612), [1024.0, 2892.0], 0.0, 26.0),
+    ("sthelens_utm10n_10m.tif", [1450, 2073], Some(26910), [567.6, 2536.6], 0.0225, 0.1),
+    ("SainteHelens.dem", [327, 468], Some(26710), [682.0, 2543.0], 0.0271, 0.1),
+    ("half_dome_ned1.tif", [888, 956], Some(32611), [1175.0, 3568.0], 0.0, 12.0),
+    ("yosemite_utm11n_30m.tif", [863, 923], Some(26911), [1175.9, 3563.6], 0.0534, 0.1),
+    ("yosemite_calif3_feet.tif", [834, 894], Some(2227), [1175.6, 3561.6], 0.0208, 0.1),
+    ("inl_idaho_feet.tif", [1145, 1142], None, [1345.1, 3696.6], 0.0, 0.1),
+    ("mt_rainier_90m.tif", [970, 1426], Some(32610), [263.0, 4371.0], 0.0065, 6.0),
+    ("N46E008.tif", [988, 1439], Some(32632), [187.0, 4173.0], 0.0719, 16.0),
+    ("N36E137.hgt", [1045, 1309], Some(32653), [-19.0, 3178.0], 0.0, 2.0),
+    ("N48W125.hgt.zip", [2847, 4357], Some(32610), [0.0, 1061.0], 0.5007, 20.0),
+    ("coastal_flat_nodata.tif", [241, 267], Some(32617), [1.0, 26.0], 0.0773, 3.0),
+    ("craterlake-elev-16bit-30m.tif", [363, 320], Some(32610), [1289.0, 1880.0], 0.309, 6.0),
+    ("topo.nc", [156, 168], Some(32611), [2383.8, 3581.2], 0.0, 0.1),
+];
+
+/// What must be said of some of them.
+const WORDS: [(&str, &str); 7] = [
+    ("yosemite_calif3_feet.tif", "elevations x 0.3048006096012192 to metres (\"US survey foot\")"),
+    ("yosemite_calif3_feet.tif", "coordinates x 0.30480060960121924 to metres"),
+    ("inl_idaho_feet.tif", "elevations x 0.3048 to metres (\"ft\")"),
+    ("half_dome_ned1.tif", "warped from degrees (NAD83 (EPSG:4269)) to WGS 84 / UTM zone 11N (EPSG:32611)"),
+    ("craterlake-elev-16bit-30m.tif", "39489 samples at or below -32767 or above 100000 m are voids"),
+    ("N36E137.hgt", "square cells of 83.1 m, the largest rectangle inside the data"),
+    ("coastal_flat_nodata.tif", "cubic"),
+];
+
+fn named(shared: &Path, name: &str) -> PathBuf {
+    match name {
+        "topo.nc" => PathBuf::from(format!("NETCDF:{}:dem", shared.join(name).display())),
+        _ => shared.join(name),
+    }
+}
+
+#[test]
+fn every_shared_file_is_read() {
+    let Some(shared) = shared_dems() else { return };
+    for (name, [columns, rows], epsg, [low, high], voids, slack) in FILES {
+        let told = told(&named(&shared, name));
+        let near = |a: usize, b: usize| a.abs_diff(b) <= 1;
+        assert!(near(told.columns, columns) && near(told.rows, rows), "{name}:\n{told}");
+        assert_eq!(told.crs.epsg(), epsg, "{name}:\n{told}");
+        let [lowest, highest] = told.range;
+        assert!((lowest - low).abs() <= slack + 0.1 && (highest - high).abs() <= slack + 0.1, "{name}:\n{told}");
+        assert!((told.void_share() - voids).abs() < 0.0006, "{name}: {} of voids:\n{told}", told.void_share());
+        for (_, words) in WORDS.iter().filter(|(of, _)| *of == name) {
+            assert!(told.to_string().contains(words), "{name} does not say {words:?}:\n{told}");
+        }
+    }
+}
+
+#[test]
+fn every_shared_file_is_listed() {
+    let Some(shared) = shared_dems() else { return };
+    let listed = |name: &str| {
+        let alone = ["INDEX.md", "n37_w123_1arc_v3_deflate.tif", "korea_srtm3_4400.tif", "formats"];
+        FILES.iter().any(|row| row.0 == name) || alone.contains(&name)
+    };
+    for entry in fs::read_dir(shared).unwrap() {
+        let name = entry.unwrap().file_name().into_string().unwrap();
+        assert!(listed(&name), "{name} is read by no test");
+    }
+}
+
+#[test]
+fn the_sample_is_a_part_of_its_tile() {
+    let Some(shared) = shared_dems() else { return };
+    let sample = read_all(&Path::new(env!("CARGO_MANIFEST_DIR")).join("dem/golden-gate.tif"));
+    // The sample was warped to 30 m by gdalwarp: our own way from the tile must end at the same heights.
+    let [west, south, east, north] = [-122.59, 37.765, -122.4, 37.915];
+    let options = ReadOptions { crop: Some([west, south, east, north]), resample: Some(30.0), ..Default::default() };
+    let ours = read(shared.join("n37_w123_1arc_v3_deflate.tif"), &options).unwrap();
+    let (mut compared, mut worst) = (0, 0.0f32);
+    for (c, r) in (0..ours.rows()).flat_map(|r| (0..ours.columns()).map(move |c| (c, r))) {
+        let at = sample.grid_place(ours.position(c, r).truncate());
+        let (x, y) = (at.x.round(), at.y.round());
+        assert!((at - DVec2::new(x, y)).length() < 1.0);
+        let inside = x >= 0.0 && y >= 0.0 && x < sample.columns() as f64 && y < sample.rows() as f64;
+        if !inside || (at - DVec2::new(x, y)).length() > 1e-6 {
+            continue;
+        }
+        worst = worst.max((ours.height(c, r).unwrap() - sample.height(x as usize, y as usize).unwrap()).abs());
+        compared += 1;
+    }
+    println!("{compared} samples of the tile differ by at most {worst} m from the sample");
+    assert!(compared > 100_000 && worst < 0.5, "{compared} samples, {worst} m");
+}
+
+#[test]
+fn voids_of_rainier_and_the_alps_are_holes_or_filled() {
+    let Some(shared) = shared_dems() else { return };
+    for (name, left) in [("mt_rainier_90m.tif", 0), ("N46E008.tif", 0)] {
+        let holes = read_all(&shared.join(name));
+        let filled: Info =
+            info(&[shared.join(name)], &ReadOptions { fill_voids: true, ..Default::default() }, &|_, _| ()).unwrap();
+        assert!(holes.voids() > 8000 && filled.voids == left, "{name}: {} of {} left", filled.voids, holes.voids());
+        let words = format!("{} voids filled from up to 100 samples away", holes.voids());
+        assert!(filled.to_string().contains(&words), "{filled}");
+    }
+}
+
+#[test]
+fn a_container_lists_its_grids() {
+    let Some(shared) = shared_dems() else { return };
+    let path = shared.join("topo.nc");
+    let line = refused(&path, &["grids", "name the one"]);
+    let name = line.split('`').nth(1).unwrap();
+    assert_eq!(name, format!("NETCDF:{}:dem", path.display()));
+    let dem = read_all(Path::new(name));
+    assert_eq!((dem.columns(), dem.rows(), dem.cell()), (156, 168, DVec2::splat(50.0)));
+}
