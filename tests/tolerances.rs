@@ -120,13 +120,13 @@ pub mod raster {
 /// How far a warped sample may lie from a wave of 18 cells and 40 m, m: cubic convolution rounds it, a half-cell shift
 /// would move it by 7 m.
 ///
-/// Example: on a crest of 1 540 m the warped sample may be 1 539.7 m.
-pub const WARP_METRES: f64 = 0.5;
+/// Example: on a crest of 1 540 m the warped sample may be 1 539.9 m.
+pub const WARP_METRES: f64 = 0.1;
 
-/// How far a sample resampled on a plane may lie from it, m: f32 and the hundredth of a cell that the warper may misplace.
+/// How far a sample resampled on a plane may lie from it, m: weights that add up to 1 but for rounding.
 ///
-/// Example: on a slope of 0.36 with cells of 30 m a hundredth of a cell is 0.11 m.
-pub const PLANE_METRES: f64 = 0.11;
+/// Example: on a slope of 0.36 with cells of 30 m 0.02 m are a five-hundredth of a cell.
+pub const PLANE_METRES: f64 = 0.02;
 
 /// Memory that reading may take beside the grid and its normals, bytes a sample.
 ///

@@ -7,7 +7,9 @@ use std::ptr::null_mut;
 
 use gdal::raster::Buffer;
 use gdal::{Dataset, DriverManager};
+use glam::DVec2;
 
+use super::crs::Way;
 use super::grid::Grid;
 use super::source::heard;
 use crate::error::{Error, Result};
@@ -16,6 +18,8 @@ use crate::error::{Error, Result};
 pub const FILL_REACH: u32 = 100;
 /// Farthest, in cells, that the warper's quick way of placing samples may miss the exact one.
 const WARP_CELLS: &str = "0.01";
+/// From this many samples a sample on, nothing is smoothed when warping.
+const DENSE: f64 = 2.0 / 3.0;
 /// Memory of the warper beside the rasters, MiB.
 const WARP_MEMORY: &str = "32";
 
@@ -80,8 +84,12 @@ impl Raster {
     /// nothing. `progress` hears the share done.
     pub fn lay(&mut self, from: &Self, progress: &dyn Fn(f64)) -> Result<()> {
         let threads = "NUM_THREADS=ALL_CPUS";
-        let words = ["-r", "cubic", "-et", WARP_CELLS, "-wm", WARP_MEMORY, "-wo", threads, "-novshift"];
-        let words = words.map(|word| CString::new(word).unwrap_or_default());
+        // GDAL's own estimate takes turned grids for smaller ones and blurs them.
+        let [x, y] = shrink(&from.grid, &self.grid);
+        let (x, y) = (format!("XSCALE={x}"), format!("YSCALE={y}"));
+        let quick = ["-et", WARP_CELLS, "-wm", WARP_MEMORY, "-wo", threads];
+        let words = [&["-r", "cubic", "-novshift", "-wo", &x, "-wo", &y], &quick[..]].concat();
+        let words: Vec<_> = words.into_iter().map(|word| CString::new(word).unwrap_or_default()).collect();
         let mut list = pointers(&words);
         let mut sources = [from.dataset.c_dataset()];
         let onto = self.dataset.c_dataset();
@@ -123,6 +131,20 @@ impl Raster {
     fn failed(&self, words: Option<String>, otherwise: &str) -> Error {
         out_of_memory(&self.grid, words.as_deref().unwrap_or(otherwise))
     }
+}
+
+/// Samples of `onto` a sample of `from`, along its rows and down its columns, in the middle of `from`; 1 where they are
+/// about as dense or denser, for there is nothing to smooth away.
+fn shrink(from: &Grid, onto: &Grid) -> [f64; 2] {
+    let middle = DVec2::new(from.columns as f64, from.rows as f64) / 2.0;
+    let mut places = [DVec2::ZERO, DVec2::X, DVec2::Y].map(|step| from.to_crs.transform_point2(middle + step));
+    if let Some(way) = Way::between(&from.crs, &onto.crs) {
+        way.carry(&mut places);
+    }
+    onto.pixels(&mut places);
+    [places[1], places[2]]
+        .map(|place| (place - places[0]).length())
+        .map(|ratio| if ratio < DENSE { ratio } else { 1.0 })
 }
 
 /// What else can fail in memory.

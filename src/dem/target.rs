@@ -24,6 +24,8 @@ const MAX_READ: u64 = 1 << 28;
 /// Bytes a sample of the files at work, and of the DEM with its normals.
 const READ_BYTES: u64 = 4;
 const DEM_BYTES: u64 = 13;
+/// Pixels from the border of the files to where cubic convolution has all its samples.
+const BORDER: f64 = 1.5;
 /// A map whose metres differ from those on the ground by more than this share gets a warning.
 const TRUE_SCALE: f64 = 0.01;
 /// Latitude where UTM ends in the north and in the south, degrees.
@@ -102,7 +104,7 @@ impl Target {
             None => cell_like(files, window, &way).ok_or_else(lost)?,
         };
         let all = lattice_around(files, window, &way, &crs, cell).ok_or_else(lost)?;
-        let region = Region { files, window, crop: options.crop, back };
+        let region = Region { files, crop: options.crop, back };
         let inside =
             |at: &[[usize; 2]]| region.holds(at.iter().map(|[c, r]| all.sample(*c as f64, *r as f64)).collect());
         check_extent(&all, cell * unit, path)?;
@@ -150,13 +152,12 @@ impl Target {
 /// The part of the files that a warped grid may cover.
 struct Region<'a> {
     files: &'a Grid,
-    window: Window,
     crop: Option<[f64; 4]>,
     back: Way,
 }
 
 impl Region<'_> {
-    /// Which of `places` in the target's system lie between samples of the files, and inside the crop.
+    /// Which of `places` in the target's system lie where cubic convolution has all its samples, and inside the crop.
     fn holds(&self, mut places: Vec<DVec2>) -> Vec<bool> {
         self.back.carry(&mut places);
         let turn = self.files.crs.turn();
@@ -168,9 +169,8 @@ impl Region<'_> {
         };
         let cropped: Vec<_> = places.iter().map(cropped).collect();
         self.files.pixels(&mut places);
-        let whole = self.crop.map_or(self.window, |_| self.files.whole());
-        let low = DVec2::new(whole.first[0] as f64, whole.first[1] as f64) + 0.5;
-        let far = low + DVec2::new((whole.size[0] - 1) as f64, (whole.size[1] - 1) as f64);
+        let low = DVec2::splat(BORDER);
+        let far = DVec2::new(self.files.columns as f64, self.files.rows as f64) - BORDER;
         let within = |place: &DVec2| place.cmpge(low).all() && place.cmple(far).all();
         places.iter().zip(cropped).map(|(place, cropped)| cropped && within(place)).collect()
     }

@@ -71,7 +71,7 @@ fn a_warped_dem_is_cut_to_a_full_rectangle() {
     let dem = read_all(&written(waves(), "waves.tif", dir.path()));
     assert_eq!(dem.voids(), 0, "no sample may lie outside the data");
     let share = (dem.columns() * dem.rows()) as f64 / (SIZE[0] * SIZE[1]) as f64;
-    assert!(share > 0.92, "only {share} of the samples are left");
+    assert!(share > 0.88, "only {share} of the samples are left");
 }
 
 #[test]
@@ -89,7 +89,7 @@ fn a_crop_in_degrees_takes_the_same_samples() {
         let place = part.georeference().lonlat(part.position(c, r).truncate()).unwrap().unwrap();
         assert!((west..=east).contains(&place.x) && (south..=north).contains(&place.y), "{place} is outside");
         let gap = part.height(c, r).unwrap() - whole.height(c + dc, r + dr).unwrap();
-        assert!(gap.abs() < 0.01, "sample {c}, {r}: {gap} m");
+        assert!(f64::from(gap.abs()) < WARP_METRES, "sample {c}, {r}: {gap} m");
     }
 }
 
@@ -135,7 +135,7 @@ fn marks_are_voids_before_anything_is_resampled() {
     }
     raster.nodata = Some(-9999.0);
     let dem = read_all(&written(raster, "marks.tif", dir.path()));
-    assert!((3..40).contains(&dem.voids()), "{} voids", dem.voids());
+    assert!((1..9).contains(&dem.voids()), "{} voids", dem.voids());
     let worst = off_waves(&dem);
     assert!(worst < 10.0 * WARP_METRES, "beside a void {worst} m");
     assert!(dem.history().assumed()[0].starts_with("1 samples at or below -32767"), "{:?}", dem.history());
@@ -269,6 +269,18 @@ fn resampling_is_asked_for_and_exact_on_a_plane() {
             assert!((p.z - plane).abs() < PLANE_METRES, "{metres} m, sample {c}, {r}: {} is not {plane}", p.z);
         }
     }
+}
+
+#[test]
+fn larger_cells_are_means_not_picks() {
+    let dir = folder();
+    // Every other sample 100 m higher: a pick is 20 m or 120 m, a mean 70 m.
+    let heights = (0..6400).map(|i| if (i % 80 + i / 80) % 2 == 0 { 20.0 } else { 120.0 }).collect();
+    let transform = Some([5e5, 10.0, 0.0, 42e5, 0.0, -10.0]);
+    let path = written(Raster { transform, ..Raster::new(80, heights) }, "checks.tif", dir.path());
+    let dem = read(&path, &ReadOptions { resample: Some(60.0), ..Default::default() }).unwrap();
+    let [low, high] = dem.range().unwrap();
+    assert!(low > 60.0 && high < 80.0, "{low} to {high} m");
 }
 
 #[test]
