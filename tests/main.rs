@@ -21,6 +21,7 @@ mod metrics;
 mod reflection;
 mod same_bytes;
 mod scenes;
+mod shell;
 mod silhouettes;
 mod tolerances;
 mod vertices;
