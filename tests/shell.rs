@@ -150,7 +150,8 @@ fn examples_in_help_are_commands() {
     command.build();
     let shown = command.get_subcommands().filter(|c| !c.is_hide_set() && c.get_name() != "help");
     for command in std::iter::once(&command).chain(shown) {
-        let help = command.get_after_help().expect(command.get_name()).to_string().replace("\\\n", " ");
+        let help = command.get_after_help().unwrap_or_else(|| panic!("{} has no example", command.get_name()));
+        let help = help.to_string().replace("\\\n", " ");
         let examples = help.lines().map(str::trim).filter(|l| l.starts_with("hachure ")).collect::<Vec<_>>();
         assert!(!examples.is_empty(), "{} has no example", command.get_name());
         for example in examples {
