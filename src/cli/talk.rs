@@ -8,8 +8,8 @@
 //! | progress | standard error, after a second | silent | silent |
 //! | error | standard error | said | said, without colour |
 //!
-//! Colours are those clap gives its own errors, shown by its own rule: on a terminal, unless `NO_COLOR` is set. Does not
-//! handle: a standard error that cannot be written, since there is nowhere left to say so.
+//! Colours are those clap gives its own errors, shown by its own rule: on a terminal, unless `NO_COLOR` is set.
+//! Does not handle: a standard error that cannot be written, since there is nowhere left to say so.
 
 use std::io::{IsTerminal, Write, stderr};
 use std::sync::{Mutex, PoisonError};
