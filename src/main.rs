@@ -3,22 +3,25 @@
 use std::process::ExitCode;
 
 use clap::Parser;
+use hachure::cli::Arguments;
 
 /// Exit code for "try again": here, ended by a signal.
 const TRY_AGAIN: i32 = 75;
 
 fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let talk = arguments.talk();
     let handled = ctrlc::set_handler(|| {
         hachure::ink::discard_all();
         std::process::exit(TRY_AGAIN);
     });
     if let Err(error) = handled {
-        eprintln!("warning: a signal may leave temporary files behind ({error})");
+        talk.warn(&format!("a signal may leave temporary files behind ({error})"));
     }
-    match hachure::cli::Arguments::parse().run() {
+    match arguments.run(&talk) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {error}");
+            talk.error(&error);
             ExitCode::from(error.exit_code())
         }
     }

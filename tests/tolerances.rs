@@ -132,3 +132,13 @@ pub const PLANE_METRES: f64 = 0.02;
 ///
 /// Example: 18.8 million samples take 244 MB, and 113 MB beside them while they are read and warped.
 pub const READ_BYTES_BESIDE: f64 = 6.0;
+
+/// Least share of ink within a pixel between two samplings of the same ground, drawn from afar.
+///
+/// Example: of 20 000 inked pixels 400 may have no partner: bits of ridges that one grid of 30 m has and another has not.
+pub const SAME_TERRAIN_SHARE: f64 = 0.98;
+
+/// The same for the same samples in other units.
+///
+/// Example: of 20 000 inked pixels 20 may have no partner, where heights round to another f32.
+pub const SAME_GRID_SHARE: f64 = 0.999;

@@ -1,21 +1,22 @@
 //! `hachure draw`: a DEM as ink on a page.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::ValueEnum;
 use glam::DVec2;
 use serde::Serialize;
 
-use super::say;
+use super::outputs::OutputArguments;
+use super::talk::Talk;
 use super::terrain::TerrainArguments;
 use super::values;
 use super::viewpoint::{View, ViewArguments, ViewReport};
-use crate::dem::{self, Dem};
+use crate::dem::Dem;
 use crate::error::{Error, Result};
 use crate::gpu::sizes::page_fits;
 use crate::gpu::{AdapterChoice, Gpu, Int64};
-use crate::ink::{self, Output, Style};
+use crate::ink::{self, Style};
 use crate::plan::{Border, Method, Plan, Share};
 use crate::render::{Frame, PassTime, Renderer};
 use crate::surface::bounds::spheres;
@@ -25,20 +26,30 @@ use crate::view::Camera;
 /// Warm frames behind the median of `--json`.
 const WARM_FRAMES: usize = 9;
 
+/// The end of `hachure draw --help`.
+const EXAMPLES: &str = "\
+Examples:
+  A view that shows the relief is chosen, and printed as flags that repeat it:
+  hachure draw dem/golden-gate.tif -o golden-gate.png
+
+  From 300 m above the ground, heights doubled, looking north-west:
+  hachure draw dem/golden-gate.tif -o golden-gate.png --exaggeration 2 \\
+      --eye 547500,4183300,+300 --azimuth 318 --altitude -6 --fov 50 --size 1600x700
+
+  Several tiles in degrees, from 400 m above a place on the globe, looking at another:
+  hachure draw N37W123.hgt N38W123.hgt -o bay.png --lonlat -122.47,37.786,+400 --crs EPSG:4326 --look-at -122.6,37.924
+
+  The mask alone, to another program, and what was done, to a file:
+  hachure draw dem/golden-gate.tif -o golden-gate.png --json golden-gate.json --mask - | wc -c";
+
 /// Flags of `hachure draw`, as typed.
 #[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
 pub struct DrawArguments {
     #[command(flatten)]
     terrain: TerrainArguments,
-    /// The drawing, a .png
-    #[arg(short, long, value_name = "OUT.png")]
-    output: PathBuf,
-    /// Also the mask: 1 bit a pixel, 0 ink, 255 paper, exactly --size
-    #[arg(long, value_name = "OUT.png")]
-    mask: Option<PathBuf>,
-    /// Also what was done, with times of ten further frames
-    #[arg(long, value_name = "OUT.json")]
-    json: Option<PathBuf>,
+    #[command(flatten)]
+    outputs: OutputArguments,
 
     #[command(flatten)]
     view: ViewArguments,
@@ -124,39 +135,45 @@ struct LeftOut {
 ///
 /// # Errors
 /// Whatever went wrong; nothing stands under a final name then.
-pub fn run(arguments: &DrawArguments) -> Result<()> {
+pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     let method = arguments.method()?;
     let size = [arguments.view.size.width, arguments.view.size.height];
     page_fits(size)?;
     arguments.view.check()?;
-    let outputs = Outputs::open(arguments)?;
+    let mut outputs = arguments.outputs.open(&arguments.terrain.dems)?;
     let started = Instant::now();
-    let options = arguments.terrain.options(arguments.exaggeration);
-    let surface = Surface::new(dem::read_all(&arguments.terrain.dems, &options, &|_, _| ())?);
-    for clause in surface.dem().history().assumed() {
-        eprintln!("warning: assumed that {clause}");
-    }
-    for clause in surface.dem().history().converted() {
-        say(&format!("converted: {clause}\n"))?;
-    }
+    let dem = arguments.terrain.read(arguments.exaggeration, talk)?;
+    talk.progress("computing normals", 0.1);
+    let surface = Surface::new(dem);
     let view = arguments.view.view(&surface, arguments.level)?;
-    warn_below_ground(&surface, &view.camera, arguments.level);
-    say(&format!("view: {}\n", view.flags()))?;
-    if let Some(flag) = view.lonlat_flag() {
-        say(&format!("or with: {flag}\n"))?;
-    }
+    warn_below_ground(&surface, &view.camera, arguments.level, talk);
+    talk.say(&format!("view: {}", view.flags()))?;
+    view.lonlat_flag().map_or(Ok(()), |flag| talk.say(&format!("or with: {flag}")))?;
+    talk.progress("opening the adapter", 0.2);
     let int64 = if arguments.no_int64 { Int64::Never } else { Int64::IfPresent };
     let gpu = Gpu::open(&arguments.adapter.clone().unwrap_or_default(), int64)?;
-    say(&format!("adapter: {}\n", gpu.info.name))?;
+    talk.say(&format!("adapter: {}", gpu.info.name))?;
+    talk.detail(&format!("driver: {} {}", gpu.info.driver, gpu.info.driver_info))?;
+    talk.progress("drawing", 0.4);
     let renderer = Renderer::new(&gpu, &surface, Plan::new(arguments.level, method, arguments.border), size)?;
     renderer.frame(&view.camera)?;
     let frame = renderer.read()?;
     let drawing = ink::draw(&frame.raster, &Style::for_page(view.camera.width));
-    let report = outputs.json.is_some().then(|| arguments.report(&gpu, &surface, &renderer, &view, method, &frame));
-    outputs.write(&drawing, &frame, report.transpose()?.as_ref())?;
-    say(&format!(
-        "{}: {} facets, {} of {} pixels inked, {:.2} s\n",
-        arguments.output.display(),
+    let report = || {
+        talk.progress("timing ten more frames", 0.6);
+        arguments.report(&gpu, &surface, &renderer, &view, method, &frame)
+    };
+    let report = outputs.want_report().then(report).transpose()?;
+    if talk.is_verbose() {
+        explain(talk, &arguments.left_out(&surface, &renderer, &view.camera), report.as_ref())?;
+    }
+    talk.progress("writing", 0.8);
+    outputs.write(&drawing, &frame, report.as_ref())?;
+    talk.progress("writing", 1.0);
+    outputs.publish()?;
+    talk.say(&format!(
+        "{}: {} facets, {} of {} pixels inked, {:.2} s",
+        arguments.outputs.drawing().display(),
         renderer.facets(),
         frame.inked(),
         frame.raster.pixels.len(),
@@ -165,6 +182,11 @@ pub fn run(arguments: &DrawArguments) -> Result<()> {
 }
 
 impl DrawArguments {
+    /// Whether one of the files is standard output.
+    pub fn fill_stdout(&self) -> bool {
+        self.outputs.fill_stdout()
+    }
+
     fn method(&self) -> Result<Method> {
         if self.wide && self.method != MethodName::TowardAway {
             return Err(Error::flag("--wide", "goes with toward-away only", "add --method toward-away"));
@@ -197,12 +219,6 @@ impl DrawArguments {
             })
             .collect::<Result<Vec<_>>>()?;
         times.sort_by(f64::total_cmp);
-        let mut left_out = Vec::new();
-        let mut leave = |out: bool, what, why, saved| left_out.extend(out.then_some(LeftOut { what, why, saved }));
-        let (beside, chunks) = chunks_beside(surface, renderer, camera);
-        leave(beside > 0, "chunks", "beside the page", Some(format!("{beside} of {chunks} chunks")));
-        leave(self.border == Border::Off, "border pass", "--border off", None);
-        leave(surface.dem().voids() == 0, "void tests", "the DEM has no voids", None);
         Ok(Report {
             version: env!("CARGO_PKG_VERSION"),
             dem: DemReport::of(&self.terrain.dems, surface.dem()),
@@ -217,9 +233,32 @@ impl DrawArguments {
             adapter: format!("{} ({})", gpu.info.name, gpu.info.driver_info),
             int64: gpu.int64,
             view: view.report(surface.dem().georeference(), self.exaggeration),
-            left_out,
+            left_out: self.left_out(surface, renderer, camera),
         })
     }
+
+    /// What the frame did without.
+    fn left_out(&self, surface: &Surface, renderer: &Renderer<'_>, camera: &Camera) -> Vec<LeftOut> {
+        let mut left_out = Vec::new();
+        let mut leave = |out: bool, what, why, saved| left_out.extend(out.then_some(LeftOut { what, why, saved }));
+        let (beside, chunks) = chunks_beside(surface, renderer, camera);
+        leave(beside > 0, "chunks", "beside the page", Some(format!("{beside} of {chunks} chunks")));
+        leave(self.border == Border::Off, "border pass", "--border off", None);
+        leave(surface.dem().voids() == 0, "void tests", "the DEM has no voids", None);
+        left_out
+    }
+}
+
+/// Says what was left out and, where they were taken, the times.
+fn explain(talk: &Talk, left_out: &[LeftOut], report: Option<&Report>) -> Result<()> {
+    for LeftOut { what, why, saved } in left_out {
+        let saved = saved.as_ref().map_or(String::new(), |saved| format!(" ({saved})"));
+        talk.detail(&format!("left out: {what}, {why}{saved}"))?;
+    }
+    for PassTime { name, ms } in report.iter().flat_map(|report| &report.passes) {
+        talk.detail(&format!("pass {name}: {ms:.2} ms"))?;
+    }
+    report.map_or(Ok(()), |report| talk.detail(&format!("median frame: {:.2} ms", report.frame_ms)))
 }
 
 /// How many chunks lie beside the page's map projection, where nothing of them is computed, and how many there are.
@@ -248,63 +287,11 @@ impl DemReport {
     }
 }
 
-fn warn_below_ground(surface: &Surface, camera: &Camera, level: Level) {
+fn warn_below_ground(surface: &Surface, camera: &Camera, level: Level, talk: &Talk) {
     if let Some(ground) = surface.height_below(camera.eye.truncate(), level)
         && camera.eye.z < ground
     {
         let depth = ground - camera.eye.z;
-        eprintln!("warning: the eye is {depth:.1} m below the ground; give --eye E,N,+H to stand above it");
+        talk.warn(&format!("the eye is {depth:.1} m below the ground; give --eye E,N,+H to stand above it"));
     }
-}
-
-/// The files to write, opened before the work starts.
-struct Outputs {
-    drawing: Output,
-    mask: Option<Output>,
-    json: Option<Output>,
-}
-
-impl Outputs {
-    fn open(arguments: &DrawArguments) -> Result<Self> {
-        wants_ending("--output", &arguments.output, "png")?;
-        if let Some(mask) = &arguments.mask {
-            wants_ending("--mask", mask, "png")?;
-        }
-        let dems = arguments.terrain.dems.iter().map(std::fs::canonicalize);
-        let mut taken: Vec<PathBuf> = dems.filter_map(|dem| dem.ok()).collect();
-        let mut open = |flag, path: &Path| {
-            let output = Output::create(path)?;
-            let target = std::path::absolute(output.target()).unwrap_or_else(|_| output.target().to_owned());
-            if taken.contains(&target) {
-                let what = format!("{} is the DEM or another output", path.display());
-                return Err(Error::flag(flag, what, "give each file a name of its own"));
-            }
-            taken.push(target);
-            Ok(output)
-        };
-        Ok(Self {
-            drawing: open("--output", &arguments.output)?,
-            mask: arguments.mask.as_deref().map(|path| open("--mask", path)).transpose()?,
-            json: arguments.json.as_deref().map(|path| open("--json", path)).transpose()?,
-        })
-    }
-
-    /// Writes the drawing and, where asked, the mask and the report; names them when all are whole.
-    fn write(mut self, drawing: &ink::Drawing, frame: &Frame, report: Option<&Report>) -> Result<()> {
-        self.drawing.write(|out| ink::write_png(drawing, out))?;
-        if let Some(mask) = &mut self.mask {
-            mask.write(|out| ink::write_mask(&frame.raster, out))?;
-        }
-        if let (Some(json), Some(report)) = (&mut self.json, report) {
-            json.write(|out| serde_json::to_writer_pretty(out, report).map_err(std::io::Error::from))?;
-        }
-        [Some(self.drawing), self.mask, self.json].into_iter().flatten().try_for_each(Output::publish)
-    }
-}
-
-fn wants_ending(flag: &'static str, path: &Path, ending: &str) -> Result<()> {
-    if path.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending)) {
-        return Ok(());
-    }
-    Err(Error::flag(flag, format!("{} does not end in .{ending}", path.display()), format!("name it .{ending}")))
 }

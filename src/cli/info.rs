@@ -1,12 +1,18 @@
 //! `hachure info`: what a DEM holds.
 
-use super::say;
-use super::terrain::TerrainArguments;
+use super::talk::Talk;
+use super::terrain::{TerrainArguments, words};
 use crate::dem;
 use crate::error::Result;
 
+/// The end of `hachure info --help`.
+const EXAMPLES: &str = "\
+Examples:
+  hachure info dem/golden-gate.tif";
+
 /// Flags of `hachure info`.
 #[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
 pub struct InfoArguments {
     #[command(flatten)]
     terrain: TerrainArguments,
@@ -16,7 +22,8 @@ pub struct InfoArguments {
 ///
 /// # Errors
 /// As [`dem::info()`].
-pub fn run(arguments: &InfoArguments) -> Result<()> {
+pub fn run(arguments: &InfoArguments, talk: &Talk) -> Result<()> {
     let terrain = &arguments.terrain;
-    say(&format!("{}\n", dem::info(&terrain.dems, &terrain.options(1.0), &|_, _| ())?))
+    let info = dem::info(&terrain.dems, &terrain.options(1.0), &|stage, share| talk.progress(words(stage), share))?;
+    talk.answer(&info.to_string())
 }

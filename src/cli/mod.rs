@@ -1,22 +1,33 @@
 //! The command line, one file a subcommand: flags as typed become options checked.
 
 pub mod draw;
+pub mod generate;
 pub mod info;
+pub mod outputs;
+pub mod talk;
 pub mod terrain;
 pub mod values;
 pub mod viewpoint;
 
-use std::io::{ErrorKind, Write, stdout};
-use std::path::Path;
-
 use clap::{Parser, Subcommand};
 
-use crate::error::{Error, Result};
+use crate::error::Result;
+use talk::{Lines, Talk, TalkArguments};
+
+/// The end of `hachure --help`.
+const EXAMPLES: &str = "\
+Examples:
+  hachure info dem/golden-gate.tif
+  hachure draw dem/golden-gate.tif -o golden-gate.png
+
+`hachure draw --help` has more.";
 
 /// Pen-and-ink landscapes from digital elevation models.
 #[derive(Debug, Parser)]
-#[command(name = "hachure", version, about, max_term_width = 100)]
+#[command(name = "hachure", version, about, max_term_width = 100, after_help = EXAMPLES)]
 pub struct Arguments {
+    #[command(flatten)]
+    talk: TalkArguments,
     #[command(subcommand)]
     command: Command,
 }
@@ -27,28 +38,30 @@ enum Command {
     Draw(Box<draw::DrawArguments>),
     /// Say what a DEM holds
     Info(info::InfoArguments),
+    /// Make completions and man pages
+    #[command(hide = true)]
+    Generate(generate::GenerateArguments),
 }
 
 impl Arguments {
+    /// How the program talks to its user, as asked.
+    pub fn talk(&self) -> Talk {
+        let lines = match &self.command {
+            Command::Draw(arguments) if arguments.fill_stdout() => Lines::Stderr,
+            _ => Lines::Stdout,
+        };
+        Talk::new(&self.talk, lines)
+    }
+
     /// Does what was asked.
     ///
     /// # Errors
     /// Whatever went wrong, with the exit code it stands for.
-    pub fn run(self) -> Result<()> {
-        match self.command {
-            Command::Draw(arguments) => draw::run(&arguments),
-            Command::Info(arguments) => info::run(&arguments),
+    pub fn run(&self, talk: &Talk) -> Result<()> {
+        match &self.command {
+            Command::Draw(arguments) => draw::run(arguments, talk),
+            Command::Info(arguments) => info::run(arguments, talk),
+            Command::Generate(arguments) => generate::run(arguments),
         }
-    }
-}
-
-/// Prints to standard output. A reader that has gone away is no error.
-fn say(text: &str) -> Result<()> {
-    let mut out = stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(e) if e.kind() != ErrorKind::BrokenPipe => {
-            Err(Error::Output { path: Path::new("standard output").to_owned(), what: e.to_string() })
-        }
-        _ => Ok(()),
     }
 }

@@ -2,8 +2,10 @@
 
 use std::path::PathBuf;
 
+use super::talk::Talk;
 use super::values;
-use crate::dem::{ElevationUnit, ReadOptions};
+use crate::dem::{self, Dem, ElevationUnit, ReadOptions, Stage};
+use crate::error::Result;
 
 /// Which files, and what of them.
 #[derive(Debug, clap::Args)]
@@ -48,5 +50,27 @@ impl TerrainArguments {
             elevation_unit: self.elevation_unit,
             allow_remote: self.allow_remote,
         }
+    }
+
+    /// Reads the DEM, with progress, and says what was converted and assumed.
+    ///
+    /// # Errors
+    /// As [`dem::read_all`].
+    pub fn read(&self, exaggeration: f64, talk: &Talk) -> Result<Dem> {
+        let progress = |stage, share| talk.progress(words(stage), share);
+        let dem = dem::read_all(&self.dems, &self.options(exaggeration), &progress)?;
+        dem.history().assumed().iter().for_each(|clause| talk.warn(&format!("assumed that {clause}")));
+        dem.history().converted().iter().try_for_each(|clause| talk.say(&format!("converted: {clause}")))?;
+        dem.history().usual().iter().try_for_each(|clause| talk.detail(&format!("assumed: {clause}")))?;
+        Ok(dem)
+    }
+}
+
+/// A stage of reading, for its progress bar.
+pub fn words(stage: Stage) -> &'static str {
+    match stage {
+        Stage::Read => "reading the DEM",
+        Stage::Warp => "warping it to metres",
+        Stage::Fill => "filling voids",
     }
 }

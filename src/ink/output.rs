@@ -1,12 +1,14 @@
-//! Files that get their final name only when they are whole.
+//! Files that get their final name only when they are whole, and standard output, which gets its bytes only then.
 //!
 //! [`Output::create`] opens a temporary file beside the final one before the work starts, so that a folder that cannot
-//! be written fails in the first second; [`Output::write`] fills it, [`Output::publish`] renames it. A dropped output leaves nothing behind; one ended by a
-//! signal neither, if its handler calls [`discard_all`]. Nothing
-//! is synced to disk: after a power cut the file may be missing, as with any other writer.
+//! be written fails in the first second; [`Output::write`] fills it, [`Output::publish`] renames it. A dropped output
+//! leaves nothing behind; one ended by a signal neither, if its handler calls [`discard_all`]. [`Output::stdout`] holds
+//! its bytes in memory instead until they are published.
+//!
+//! Does not handle: power cuts. Nothing is synced to disk, the file may be missing then, as with any other writer.
 
 use std::fs;
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
@@ -14,14 +16,22 @@ use tempfile::NamedTempFile;
 
 use crate::error::{Error, Result};
 
-/// A file being made.
+/// A file being made, or bytes for standard output.
 #[derive(Debug)]
 pub struct Output {
     /// As the user named it, for messages.
     path: PathBuf,
-    /// Where it goes: `path` with links followed, so that a link stays one.
-    target: PathBuf,
-    file: NamedTempFile,
+    place: Place,
+}
+
+#[derive(Debug)]
+enum Place {
+    File {
+        /// Where it goes: `path` with links followed, so that a link stays one.
+        target: PathBuf,
+        file: NamedTempFile,
+    },
+    Stdout(Vec<u8>),
 }
 
 impl Output {
@@ -51,38 +61,57 @@ impl Output {
         if let Ok(mut list) = UNDER_WAY.lock() {
             list.push(file.path().to_owned());
         }
-        Ok(Self { path: path.to_owned(), target, file })
+        Ok(Self { path: path.to_owned(), place: Place::File { target, file } })
     }
 
-    /// The file it will be, with links followed.
-    pub fn target(&self) -> &Path {
-        &self.target
+    /// Collects bytes for standard output.
+    pub fn stdout() -> Self {
+        Self { path: "standard output".into(), place: Place::Stdout(Vec::new()) }
     }
 
-    /// Lets `write` fill the file through a buffer. It still has no name.
-    ///
-    /// [`Error::Output`] where writing fails.
-    pub fn write(&mut self, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
-        let mut buffer = BufWriter::new(self.file.as_file_mut());
-        let written = write(&mut buffer).and_then(|()| buffer.flush());
-        drop(buffer);
-        written.map_err(|e| self.failed(&e))
-    }
-
-    /// Gives the file its final name, in the place of an older one.
-    ///
-    /// [`Error::Output`] where renaming fails; then the older file still stands.
-    pub fn publish(self) -> Result<()> {
-        forget(self.file.path());
-        let Self { path, target, file } = self;
-        match file.persist(target) {
-            Ok(_) => Ok(()),
-            Err(e) => Err(Error::Output { path, what: e.error.to_string() }),
+    /// The file it will be, with links followed; `None` for standard output.
+    pub fn target(&self) -> Option<&Path> {
+        match &self.place {
+            Place::File { target, .. } => Some(target),
+            Place::Stdout(_) => None,
         }
     }
 
-    fn failed(&self, e: &io::Error) -> Error {
-        Error::Output { path: self.path.clone(), what: e.to_string() }
+    /// Lets `write` fill the file through a buffer. It still has no name, and standard output no byte.
+    ///
+    /// [`Error::Output`] where writing fails.
+    pub fn write(&mut self, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
+        let written = match &mut self.place {
+            Place::File { file, .. } => {
+                let mut buffer = BufWriter::new(file.as_file_mut());
+                write(&mut buffer).and_then(|()| buffer.flush())
+            }
+            Place::Stdout(bytes) => write(bytes),
+        };
+        written.map_err(|e| Error::Output { path: self.path.clone(), what: e.to_string() })
+    }
+
+    /// Gives the file its final name, in the place of an older one, or standard output its bytes. A reader of those
+    /// that has gone away has had what it wanted: that is no error.
+    ///
+    /// [`Error::Output`] where renaming fails (then the older file still stands) or standard output takes no more.
+    pub fn publish(self) -> Result<()> {
+        let published = match self.place {
+            Place::File { target, file } => {
+                forget(file.path());
+                file.persist(target).map(drop).map_err(|e| e.error)
+            }
+            Place::Stdout(bytes) => print(&bytes),
+        };
+        published.map_err(|e| Error::Output { path: self.path, what: e.to_string() })
+    }
+}
+
+fn print(bytes: &[u8]) -> io::Result<()> {
+    let mut out = io::stdout().lock();
+    match out.write_all(bytes).and_then(|()| out.flush()) {
+        Err(e) if e.kind() == ErrorKind::BrokenPipe => Ok(()),
+        done => done,
     }
 }
 

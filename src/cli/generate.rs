@@ -1,0 +1,68 @@
+//! `hachure generate`: completions and man pages, made from the flags. For those who package hachure, so hidden.
+
+use std::path::PathBuf;
+
+use clap::{CommandFactory, Subcommand};
+use clap_complete::{Generator, Shell};
+use clap_mangen::Man;
+
+use super::Arguments;
+use crate::error::Result;
+use crate::ink::Output;
+
+/// Flags of `hachure generate`.
+#[derive(Debug, clap::Args)]
+pub struct GenerateArguments {
+    #[command(subcommand)]
+    what: What,
+}
+
+#[derive(Debug, Subcommand)]
+enum What {
+    /// Completions, to standard output
+    Completions {
+        /// The shell they are for
+        shell: Shell,
+    },
+    /// Man pages, one a subcommand
+    Man {
+        /// A folder for one file a page [default: all pages to standard output]
+        #[arg(short, long, value_name = "DIR")]
+        output: Option<PathBuf>,
+    },
+}
+
+/// Makes them.
+///
+/// # Errors
+/// [`crate::error::Error::Output`] where they cannot be written.
+pub fn run(arguments: &GenerateArguments) -> Result<()> {
+    match &arguments.what {
+        What::Completions { shell } => {
+            let mut command = Arguments::command().bin_name("hachure");
+            command.build();
+            let mut out = Output::stdout();
+            out.write(|bytes| shell.try_generate(&command, bytes))?;
+            out.publish()
+        }
+        What::Man { output: None } => {
+            let mut out = Output::stdout();
+            pages().iter().try_for_each(|page| out.write(|bytes| page.render(bytes)))?;
+            out.publish()
+        }
+        What::Man { output: Some(folder) } => pages().iter().try_for_each(|page| {
+            let mut out = Output::create(&folder.join(page.get_filename()))?;
+            out.write(|file| page.render(file))?;
+            out.publish()
+        }),
+    }
+}
+
+/// The page of the command, then those of its subcommands.
+fn pages() -> Vec<Man> {
+    let mut command = Arguments::command().disable_help_subcommand(true);
+    command.build();
+    let subcommands = command.get_subcommands().filter(|c| !c.is_hide_set()).cloned();
+    let page = |c| Man::new(c).source(concat!("hachure ", env!("CARGO_PKG_VERSION")));
+    std::iter::once(command.clone()).chain(subcommands).map(page).collect()
+}

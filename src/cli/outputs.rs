@@ -1,0 +1,129 @@
+//! The files `hachure draw` writes: opened before the work starts, named when all are whole.
+
+use std::io::{IsTerminal, stdout};
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use crate::error::{Error, Result};
+use crate::ink::{self, Output};
+use crate::render::Frame;
+
+/// Flags that name files; `-` is standard output, for one of them.
+#[derive(Debug, clap::Args)]
+pub struct OutputArguments {
+    /// The drawing, a .png, or - for standard output
+    #[arg(short, long, value_name = "OUT.png|-")]
+    output: PathBuf,
+    /// Also the mask: 1 bit a pixel, 0 ink, 255 paper, exactly --size
+    #[arg(long, value_name = "OUT.png|-")]
+    mask: Option<PathBuf>,
+    /// Also what was done, with times of ten further frames
+    #[arg(long, value_name = "OUT.json|-")]
+    json: Option<PathBuf>,
+}
+
+/// The files to write.
+pub struct Outputs {
+    drawing: Output,
+    mask: Option<Output>,
+    json: Option<Output>,
+}
+
+impl OutputArguments {
+    /// The drawing as the user named it.
+    pub fn drawing(&self) -> &Path {
+        &self.output
+    }
+
+    /// Whether one of the files is standard output.
+    pub fn fill_stdout(&self) -> bool {
+        [Some(&self.output), self.mask.as_ref(), self.json.as_ref()].into_iter().flatten().any(|path| is_stdout(path))
+    }
+
+    /// Opens them all. None may be one of the `inputs`, or another output.
+    ///
+    /// # Errors
+    /// [`Error::Flag`] for a name that cannot be meant, [`Error::Output`] where a file cannot be written.
+    pub fn open(&self, inputs: &[PathBuf]) -> Result<Outputs> {
+        wants_png("--output", &self.output)?;
+        if let Some(mask) = &self.mask {
+            wants_png("--mask", mask)?;
+        }
+        // `None` is standard output.
+        let mut taken: Vec<Option<PathBuf>> = inputs.iter().filter_map(|p| p.canonicalize().ok()).map(Some).collect();
+        let mut open = |flag, path: &Path| {
+            let output = if is_stdout(path) { Output::stdout() } else { Output::create(path)? };
+            let target = output.target().map(|t| std::path::absolute(t).unwrap_or_else(|_| t.to_owned()));
+            if taken.contains(&target) {
+                let what = match target {
+                    Some(_) => format!("{} is the DEM or another output", path.display()),
+                    None => "standard output is another output already".into(),
+                };
+                return Err(Error::flag(flag, what, "give each file a name of its own"));
+            }
+            taken.push(target);
+            Ok(output)
+        };
+        Ok(Outputs {
+            drawing: open("--output", &self.output)?,
+            mask: self.mask.as_deref().map(|path| open("--mask", path)).transpose()?,
+            json: self.json.as_deref().map(|path| open("--json", path)).transpose()?,
+        })
+    }
+}
+
+impl Outputs {
+    /// Whether the report is asked for.
+    pub fn want_report(&self) -> bool {
+        self.json.is_some()
+    }
+
+    /// Writes the drawing and, where asked, the mask and the report. None has its name yet.
+    ///
+    /// # Errors
+    /// [`Error::Output`] where one cannot be written.
+    pub fn write(&mut self, drawing: &ink::Drawing, frame: &Frame, report: Option<&impl Serialize>) -> Result<()> {
+        self.drawing.write(|out| ink::write_png(drawing, out))?;
+        if let Some(mask) = &mut self.mask {
+            mask.write(|out| ink::write_mask(&frame.raster, out))?;
+        }
+        if let (Some(json), Some(report)) = (&mut self.json, report) {
+            json.write(|out| {
+                serde_json::to_writer_pretty(&mut *out, report)?;
+                writeln!(out)
+            })?;
+        }
+        Ok(())
+    }
+
+    /// Names them. Standard output comes first: where it takes no more, no file has its name yet.
+    ///
+    /// # Errors
+    /// [`Error::Output`] where one cannot be named.
+    pub fn publish(self) -> Result<()> {
+        let mut outputs: Vec<_> = [Some(self.drawing), self.mask, self.json].into_iter().flatten().collect();
+        outputs.sort_by_key(|output| output.target().is_some());
+        outputs.into_iter().try_for_each(Output::publish)
+    }
+}
+
+/// A file of this name is `./-`.
+fn is_stdout(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
+fn wants_png(flag: &'static str, path: &Path) -> Result<()> {
+    if is_stdout(path) {
+        let remedy = "send it on with `> picture.png` or `| program`, or name a .png";
+        return if stdout().is_terminal() {
+            Err(Error::flag(flag, "standard output is a terminal", remedy))
+        } else {
+            Ok(())
+        };
+    }
+    if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("png")) {
+        return Ok(());
+    }
+    Err(Error::flag(flag, format!("{} does not end in .png", path.display()), "name it .png"))
+}
