@@ -1,4 +1,42 @@
-//! Pen-and-ink landscapes from digital elevation models.
+//! Pen-and-ink landscapes from digital elevation models: silhouettes in ink over a hidden-surface mask, on the GPU.
+//!
+//! A DEM to a picture:
+//!
+//! ```no_run
+//! use hachure::dem::{ReadOptions, read};
+//! use hachure::gpu::{AdapterChoice, Gpu, Int64};
+//! use hachure::view::{Fixed, choose};
+//! use hachure::{ink, plan::Plan, render::Renderer, surface::Surface};
+//!
+//! let surface = Surface::new(read("dem/golden-gate.tif", &ReadOptions::default())?);
+//! let camera = choose(surface.dem(), Fixed::default(), 60.0, 1200, 600);
+//! let gpu = Gpu::open(&AdapterChoice::Best, Int64::IfPresent)?;
+//! let frame = Renderer::new(&gpu, &surface, Plan::default(), [1200, 600])?.draw(&camera)?;
+//! let drawing = ink::draw(&frame.raster, &ink::Style::for_page(1200));
+//! ink::write_png(&drawing, std::fs::File::create("picture.png")?)?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Stages
+//!
+//! | stage | from | to | where |
+//! |---|---|---|---|
+//! | read | raster files | [`Dem`](dem::Dem): a north-up grid of metres, voids marked | [`dem::read()`], CPU |
+//! | surface | the grid | [`Surface`](surface::Surface): one normal a sample, cubic PN triangles between them | CPU, once a DEM |
+//! | view | flags, or nothing | [`Camera`](view::Camera): eye, directions, page | CPU |
+//! | plan | what is asked | [`Plan`](plan::Plan): method, level, border | CPU |
+//! | upload | surface and plan | [`Renderer`](render::Renderer): buffers and compiled passes | once a scene |
+//! | frame | a camera | the mask, on the device: tessellate, facing, rasterize, silhouette, border | [`Renderer::frame`](render::Renderer::frame), GPU |
+//! | read back | the mask | [`Frame`](render::Frame): ink, kind, sub-pixel place and depth a pixel | [`Renderer::read`](render::Renderer::read) |
+//! | ink | the frame | [`Drawing`](ink::Drawing): layers of smoothed strokes | [`ink::draw`], CPU |
+//! | write | the drawing | a PNG | [`ink::write_png`] |
+//!
+//! World coordinates are metres, x east, y north, z up and exaggerated; angles are degrees, azimuth clockwise from grid
+//! north; pages are pixels from the top left corner. [`Georeference`](dem::Georeference) leads from there to the
+//! coordinates of the file and to longitude and latitude. Whatever can go wrong is an [`Error`](error::Error) of one
+//! line: what, where, remedy. A renderer draws as many frames as are asked of it; only the camera is uploaded for each.
+//!
+//! # Modules
 //!
 //! The folders stand in the order in which the data flows, and import only what stands above them:
 //!
@@ -12,9 +50,6 @@
 //! | [`ink`] | mask to chains to strokes to pictures |
 //! | [`render`] | the whole algorithm on one screen |
 //! | [`cli`] | flags as typed become options checked |
-//!
-//! A frame: [`render::Renderer::frame`] draws it on the device, [`render::Renderer::read`] brings it back,
-//! [`ink::draw`] makes lines of it, [`ink::write_png`] a picture.
 
 #![deny(missing_docs)]
 

@@ -147,6 +147,15 @@ impl<'a> Renderer<'a> {
         self.run(camera, &mut Clock::Whole)
     }
 
+    /// Draws a frame and brings it back: [`Self::frame`], then [`Self::read`].
+    ///
+    /// # Errors
+    /// As theirs.
+    pub fn draw(&self, camera: &Camera) -> Result<Frame> {
+        self.frame(camera)?;
+        self.read()
+    }
+
     /// Draws a frame pass by pass and says how long each took.
     ///
     /// # Errors

@@ -50,7 +50,7 @@ fn the_chosen_view_shows_the_relief() {
 fn the_chosen_view_shows_real_relief() {
     let Some(dems) = shared_dems() else { return };
     for name in ["west_temple_50m.tif", "yosemite_utm11n_30m.tif"] {
-        let ink = ink_in_view(read(&dems.join(name), &Default::default()).expect(name));
+        let ink = ink_in_view(read(dems.join(name), &Default::default()).expect(name));
         assert!(ink > 1500, "{name}: {ink} px");
     }
 }

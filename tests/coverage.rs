@@ -156,7 +156,7 @@ fn coverage_is_the_hardwares_where_edges_meet_pixel_centres() {
 #[test]
 fn coverage_is_the_hardwares_on_west_temple() {
     let Some(folder) = shared_dems() else { return };
-    let scene = Surface::new(read(&folder.join("west_temple_50m.tif"), &Default::default()).expect("west-temple"));
+    let scene = Surface::new(read(folder.join("west_temple_50m.tif"), &Default::default()).expect("west-temple"));
     for n in [1, 2, 4] {
         for (azimuth, altitude) in [(310.0, -10.0), (75.0, -30.0)] {
             check("west-temple", &scene, n, &from_outside(&scene, azimuth, altitude, 1.0, [1024, 512]));

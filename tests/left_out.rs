@@ -74,7 +74,7 @@ fn what_is_left_out_changes_no_bit() {
 #[test]
 fn what_is_left_out_of_real_terrain_changes_no_bit() {
     let Some(dems) = shared_dems() else { return };
-    let read = |name: &str| hachure::dem::read(&dems.join(name), &Default::default()).expect(name);
+    let read = |name: &str| hachure::dem::read(dems.join(name), &Default::default()).expect(name);
     let surface = Surface::new(read("west_temple_50m.tif"));
     assert!(compare(&surface, 4, Method::Walk, FRAMES, 77) > 1000);
 }

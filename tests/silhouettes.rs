@@ -18,7 +18,7 @@ use crate::scenes::{METHODS, count_ink, draw, gpu, level, look, renderer, rough}
 use crate::tolerances::{COUNT_SHARE, FACETS_A_LEAP, LEVEL_STRAYS, REACH_PX};
 
 fn west_temple(folder: &Path) -> Surface {
-    Surface::new(read(&folder.join("west_temple_50m.tif"), &ReadOptions::default()).expect("west-temple"))
+    Surface::new(read(folder.join("west_temple_50m.tif"), &ReadOptions::default()).expect("west-temple"))
 }
 
 #[test]

@@ -156,8 +156,7 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     talk.detail(&format!("driver: {} {}", gpu.info.driver, gpu.info.driver_info))?;
     talk.progress("drawing", 0.4);
     let renderer = Renderer::new(&gpu, &surface, Plan::new(arguments.level, method, arguments.border), size)?;
-    renderer.frame(&view.camera)?;
-    let frame = renderer.read()?;
+    let frame = renderer.draw(&view.camera)?;
     let drawing = ink::draw(&frame.raster, &Style::for_page(view.camera.width));
     let report = || {
         talk.progress("timing ten more frames", 0.6);

@@ -27,3 +27,10 @@ impl Plan {
         Self { level, method, border, thrift: Thrift::LeaveOut }
     }
 }
+
+/// The walk at level 4, with border lines.
+impl Default for Plan {
+    fn default() -> Self {
+        Self::new(Level::default(), Method::Walk, Border::On)
+    }
+}

@@ -38,6 +38,13 @@ pub const NO_SLOT: u32 = u32::MAX;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Level(u32);
 
+/// Four subdivisions of a cell's edge.
+impl Default for Level {
+    fn default() -> Self {
+        Self(4)
+    }
+}
+
 impl Level {
     /// The level with `n` subdivisions, `None` unless `n` is 1, 2, 4, 8, 16, 32 or 64.
     pub fn new(n: u32) -> Option<Self> {

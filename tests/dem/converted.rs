@@ -298,7 +298,7 @@ fn voids_are_filled_when_asked_and_only_so_far() {
     let words = &dem.history().converted()[0];
     assert!(words.starts_with(&format!("{filled} voids filled from up to 100 samples away")), "{words}");
     assert!(words.ends_with(&format!("{} farther away stay holes", dem.voids())), "{words}");
-    let whole = read(&written(hill(), "hill.tif", dir.path()), &ReadOptions { fill_voids: true, ..Default::default() });
+    let whole = read(written(hill(), "hill.tif", dir.path()), &ReadOptions { fill_voids: true, ..Default::default() });
     assert!(whole.unwrap().history().converted().is_empty(), "nothing to fill, nothing to say");
 }
 

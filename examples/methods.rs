@@ -1,0 +1,46 @@
+//! The same view by every method, with what each inks and takes: `cargo run --release --example methods -- DEM FOLDER`
+
+use std::{env, error::Error, fs::File, io::BufWriter, path::PathBuf, time::Instant};
+
+use hachure::dem::{ReadOptions, read};
+use hachure::gpu::{AdapterChoice, Gpu, Int64};
+use hachure::plan::{Method, Plan, Share};
+use hachure::view::{Fixed, choose};
+use hachure::{ink, render::Renderer, surface::Surface};
+
+/// Frames behind each median.
+const FRAMES: usize = 9;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let [dem, folder] = [1, 2].map(|i| env::args().nth(i).map(PathBuf::from));
+    let (dem, folder) = dem.zip(folder).ok_or("give a DEM and a folder for the masks")?;
+    let surface = Surface::new(read(dem, &ReadOptions::default())?);
+    let camera = choose(surface.dem(), Fixed::default(), 60.0, 1200, 600);
+    let gpu = Gpu::open(&AdapterChoice::Best, Int64::IfPresent)?;
+    let methods = [
+        ("walk", Method::Walk),
+        ("toward-away", Method::TowardAway { wide: false }),
+        ("toward-away-wide", Method::TowardAway { wide: true }),
+        ("adjacency-edge", Method::Adjacency { share: Share::Edge }),
+        ("adjacency-corner", Method::Adjacency { share: Share::Corner }),
+    ];
+    println!("{:18} {:>9} {:>9}", "method", "inked px", "frame ms");
+    for (name, method) in methods {
+        let renderer = Renderer::new(&gpu, &surface, Plan { method, ..Plan::default() }, [1200, 600])?;
+        let frame = renderer.draw(&camera)?;
+        let mut times = Vec::with_capacity(FRAMES);
+        for step in 0..FRAMES {
+            // A metre to the east each time, so that nothing kept from the last frame helps.
+            let mut moved = camera;
+            moved.eye.x += step as f64;
+            let start = Instant::now();
+            renderer.frame(&moved)?;
+            times.push(start.elapsed().as_secs_f64() * 1e3);
+        }
+        times.sort_by(f64::total_cmp);
+        println!("{name:18} {:9} {:9.1}", frame.inked(), times[FRAMES / 2]);
+        let mask = File::create(folder.join(name).with_extension("png"))?;
+        ink::write_mask(&frame.raster, BufWriter::new(mask))?;
+    }
+    Ok(())
+}
