@@ -1,10 +1,14 @@
 //! The elevation grid: what every later stage reads. GDAL is known in this folder alone.
 
 mod elevation;
+mod formats;
 mod georeference;
 pub mod info;
+mod name;
 pub mod read;
 mod source;
+mod vrt;
+mod xml;
 
 use glam::{DVec2, DVec3};
 

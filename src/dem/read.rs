@@ -71,7 +71,7 @@ pub(super) struct Loaded {
 impl Grid {
     /// Opens `path` and checks all that can be checked without reading samples.
     pub fn open(path: &Path) -> Result<Self> {
-        let source = Source::open(path)?;
+        let source = Source::open(path, 1, false)?;
         // First the elevations: a warp may lose their unit, and feet would pass for metres.
         let elevation = Elevation::of(&source)?;
         let georeference = Georeference::of(&source)?;
