@@ -143,7 +143,7 @@ pub fn run(arguments: &DrawArguments) -> Result<()> {
     page_fits(size)?;
     let outputs = Outputs::open(arguments)?;
     let started = Instant::now();
-    let read = ReadOptions { crop: arguments.crop, exaggeration: arguments.exaggeration };
+    let read = ReadOptions { crop: arguments.crop, exaggeration: arguments.exaggeration, ..Default::default() };
     let surface = Surface::new(dem::read(&arguments.dem, &read)?);
     let camera = arguments.camera(&surface)?;
     say(&format!("view: {}\n", view_flags(&camera)))?;

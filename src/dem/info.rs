@@ -45,8 +45,9 @@ impl Info {
 /// # Errors
 /// Those of [`read`](super::read()) without crop.
 pub fn info(path: &Path) -> Result<Info> {
-    let grid = Grid::open(path)?;
-    let loaded = grid.load(&ReadOptions::default())?;
+    let options = ReadOptions::default();
+    let grid = Grid::open(path, &options)?;
+    let loaded = grid.load(&options)?;
     let dem = &loaded.dem;
     Ok(Info {
         path: path.to_owned(),

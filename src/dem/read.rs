@@ -29,11 +29,15 @@ pub struct ReadOptions {
     pub crop: Option<[f64; 4]>,
     /// Factor on every elevation, above 0 and at most 1000. Default 1.
     pub exaggeration: f64,
+    /// The band of elevations, from 1. Default 1.
+    pub band: usize,
+    /// Whether files on a network, and VRTs of files outside their folder, are opened. Default false.
+    pub allow_remote: bool,
 }
 
 impl Default for ReadOptions {
     fn default() -> Self {
-        Self { crop: None, exaggeration: 1.0 }
+        Self { crop: None, exaggeration: 1.0, band: 1, allow_remote: false }
     }
 }
 
@@ -51,7 +55,7 @@ impl Default for ReadOptions {
 /// file that is missing, damaged, no raster, not in north-up metres, without elevations, or outside the crop.
 pub fn read(path: &Path, options: &ReadOptions) -> Result<Dem> {
     check_options(options)?;
-    Grid::open(path)?.load(options).map(|loaded| loaded.dem)
+    Grid::open(path, options)?.load(options).map(|loaded| loaded.dem)
 }
 
 /// An open raster whose place and elevations are understood.
@@ -70,8 +74,8 @@ pub(super) struct Loaded {
 
 impl Grid {
     /// Opens `path` and checks all that can be checked without reading samples.
-    pub fn open(path: &Path) -> Result<Self> {
-        let source = Source::open(path, 1, false)?;
+    pub fn open(path: &Path, options: &ReadOptions) -> Result<Self> {
+        let source = Source::open(path, options.band, options.allow_remote)?;
         // First the elevations: a warp may lose their unit, and feet would pass for metres.
         let elevation = Elevation::of(&source)?;
         let georeference = Georeference::of(&source)?;
