@@ -1,6 +1,7 @@
 //! Reading of DEMs: values, places, voids, crops, formats.
 
 mod refused;
+mod trusted;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -61,6 +62,8 @@ fn hill() -> Raster<f32> {
 }
 
 fn folder() -> TempDir {
+    // The first call takes drivers from GDAL; no other thread may be using it meanwhile.
+    let _ = read(Path::new(""), &ReadOptions::default());
     tempfile::tempdir().unwrap()
 }
 
@@ -289,8 +292,12 @@ const HALF_DOME: [&str; 12] = [
 fn half_dome_is_the_same_in_every_format() {
     let Some(shared) = shared_dems() else { return };
     let dir = folder();
+    // A VRT may name files of its own folder alone.
+    for file in fs::read_dir(shared.join("formats")).unwrap().flatten() {
+        fs::copy(file.path(), dir.path().join(file.file_name())).unwrap();
+    }
     // The files are in degrees, which are refused; laid out in metres by a VRT around each, they are compared.
-    let dems = HALF_DOME.map(|name| read_all(&in_metres(&shared.join("formats").join(name), dir.path())));
+    let dems = HALF_DOME.map(|name| read_all(&in_metres(&dir.path().join(name), dir.path())));
     assert!((dems[0].range().unwrap()[1] - 3026.06).abs() < 0.01);
     for (name, dem) in HALF_DOME.iter().zip(&dems) {
         assert_eq!((dem.columns(), dem.rows(), dem.voids()), (320, 280, 0), "{name}");
