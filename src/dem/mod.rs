@@ -2,16 +2,20 @@
 
 mod crs;
 mod elevation;
+mod formats;
 mod georeference;
 mod grid;
 mod history;
 pub mod info;
 mod inscribed;
 mod mosaic;
+mod name;
 mod raster;
 pub mod read;
 mod source;
 mod target;
+mod vrt;
+mod xml;
 
 use glam::{DVec2, DVec3};
 

@@ -2,11 +2,11 @@
 //!
 //! GDAL prints its complaints on stderr as they come, often several for one fault. The first use of this module
 //! installs a process-wide GDAL error handler that prints nothing and keeps the first complaint of each thread as
-//! context for our own one line. Not handled: files on a network, directories that GDAL takes for one raster, and
-//! HDF5, which prints diagnostics of its own when netCDF is read on another thread than the first.
+//! context for our own one line. What a name means is settled in `name`, what a file would make GDAL open in `vrt`, and
+//! which drivers may read it in `formats`, before GDAL opens anything. Not handled: directories that GDAL takes for one
+//! raster, and HDF5, which prints diagnostics of its own when netCDF is read on another thread than the first.
 
 use std::cell::Cell;
-use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -16,15 +16,15 @@ use gdal::errors::{CplErrType, GdalError};
 use gdal::raster::{GdalDataType, RasterBand};
 use gdal::{Dataset, DatasetOptions, GdalOpenFlags, Metadata, config};
 
+use super::formats::{self, FORMATS, VECTORS};
+use super::name::{Local, Name, Place};
+use super::vrt;
 use crate::error::{Error, Result};
 
 thread_local! {
     /// The first complaint of GDAL on this thread since `heard` last began.
     static COMPLAINT: Cell<Option<String>> = const { Cell::new(None) };
 }
-
-/// Containers whose grids are named `PREFIX:file:grid`, as GDAL lists them.
-const CONTAINERS: [&str; 3] = ["NETCDF", "HDF5", "HDF4_SDS"];
 
 /// Smallest side of a grid: one cell needs four samples.
 pub(super) const MIN_SIDE: usize = 2;
@@ -39,28 +39,39 @@ pub(super) struct Source {
     pub columns: usize,
     /// Samples from the first to the last row.
     pub rows: usize,
+    /// The band of elevations, from 1.
+    pub band: usize,
 }
 
 impl Source {
-    /// Opens `path`. Fails when it is missing, no file, empty, no raster, or no grid of real numbers.
-    pub fn open(path: &Path, _band: usize, _allow_remote: bool) -> Result<Self> {
-        let name = connection_name(path)?;
+    /// Opens `path` for the elevations in `band`, counted from 1. Fails when it is missing, no file, empty, no raster of
+    /// a format on the list, or no grid of real numbers; and, without `allow_remote`, when it or anything it names lies
+    /// on a network or, for a VRT, outside its folder.
+    pub fn open(path: &Path, band: usize, allow_remote: bool) -> Result<Self> {
+        formats::restrict(allow_remote);
+        let (name, place) = connection(path, allow_remote)?;
+        let is_vrt = vrt::inspect(path, &name, &place, allow_remote)?;
+        // What was not inspected as a VRT is not opened as one.
+        let drivers = if is_vrt { ["VRT"].as_slice() } else { &FORMATS };
         let flags =
             GdalOpenFlags::GDAL_OF_RASTER | GdalOpenFlags::GDAL_OF_READONLY | GdalOpenFlags::GDAL_OF_VERBOSE_ERROR;
-        let (opened, complaint) = heard(|| open_as(&name, flags));
+        let (opened, complaint) = heard(|| open_as(&name, flags, drivers));
         let dataset = opened.map_err(|_| cannot_open(path, &name, complaint))?;
         let (columns, rows) = dataset.raster_size();
-        let source = Self { path: path.to_owned(), dataset, columns, rows };
+        let source = Self { path: path.to_owned(), dataset, columns, rows, band };
         source.check_band(&name)?;
         source.check_length()?;
         Ok(source)
     }
 
-    /// Band 1.
+    /// The band of elevations.
     pub fn band(&self) -> Result<RasterBand<'_>> {
-        self.dataset
-            .rasterband(1)
-            .map_err(|_| Error::input(&self.path, "its first band cannot be opened", "check the file with `gdalinfo`"))
+        self.dataset.rasterband(self.band).map_err(|_| {
+            let count = self.dataset.raster_count();
+            let bands = if count == 1 { "1 band".to_owned() } else { format!("{count} bands") };
+            let remedy = format!("give `--band N` with N from 1 to {count}");
+            self.error(format!("has {bands}, none of them is band {}", self.band), remedy)
+        })
     }
 
     /// An error about this file.
@@ -138,45 +149,40 @@ pub(super) fn heard<T>(work: impl FnOnce() -> T) -> (T, Option<String>) {
                 COMPLAINT.with(|complaint| complaint.set(complaint.take().or(Some(words))));
             }
         });
-        // Reading a .gz would otherwise leave a file beside it. Without the option it does just that, no more.
-        let _ = config::set_config_option("CPL_VSIL_GZIP_WRITE_PROPERTIES", "NO");
     });
     COMPLAINT.take();
     let result = work();
     (result, COMPLAINT.take())
 }
 
-fn open_as(name: &Path, open_flags: GdalOpenFlags) -> std::result::Result<Dataset, GdalError> {
-    Dataset::open_ex(name, DatasetOptions { open_flags, ..Default::default() })
+fn open_as(name: &Path, open_flags: GdalOpenFlags, drivers: &[&str]) -> std::result::Result<Dataset, GdalError> {
+    Dataset::open_ex(name, DatasetOptions { open_flags, allowed_drivers: Some(drivers), ..Default::default() })
 }
 
-/// What GDAL is asked to open: absolute, so that no file name is taken for a connection to something else.
-fn connection_name(path: &Path) -> Result<PathBuf> {
-    if !path.exists()
-        && let Some(file) = file_of_grid(path)
-    {
-        check_file(path, file)?;
-        return Ok(path.to_owned());
-    }
-    check_file(path, path)?;
-    let absolute = std::path::absolute(path).map_err(|e| unreadable_file(path, &e))?;
-    let file_name = path.file_name().and_then(OsStr::to_str).unwrap_or_default().to_ascii_lowercase();
-    let prefix = match file_name.rsplit('.').next() {
-        Some("gz") => "/vsigzip/",
-        // The driver of .hgt reads the tile's corner from the name, zip or not.
-        Some("zip") if !file_name.ends_with(".hgt.zip") => "/vsizip/",
-        _ => return Ok(absolute),
+/// What GDAL is asked to open and where that lies: absolute, so that no file name is taken for something else.
+fn connection(path: &Path, allow_remote: bool) -> Result<(PathBuf, Place)> {
+    let name = match path.to_str() {
+        Some(text) if !path.exists() => Name::of(text),
+        _ => Name::Local(Local::by_ending(path)),
     };
-    let mut name = PathBuf::from(prefix).into_os_string();
-    name.push(&absolute);
-    Ok(name.into())
-}
-
-/// The file in `NETCDF:file:grid`.
-fn file_of_grid(path: &Path) -> Option<&Path> {
-    let (container, rest) = path.to_str()?.split_once(':')?;
-    let (file, _grid) = rest.rsplit_once(':')?;
-    CONTAINERS.contains(&container).then(|| Path::new(file.trim_matches('"')))
+    match name {
+        Name::Local(mut local) => {
+            check_file(path, &local.file)?;
+            local.file = std::path::absolute(&local.file).map_err(|e| unreadable_file(path, &e))?;
+            Ok((local.connection(), local.place()))
+        }
+        Name::Remote(name) if allow_remote => Ok((name, Place::Remote)),
+        Name::Remote(_) => Err(Error::input(
+            path,
+            "lies on a network",
+            "download it first, or add `--allow-remote` if you trust where it comes from",
+        )),
+        Name::Other => Err(Error::input(
+            path,
+            "is no file, but a connection to something else",
+            "save the raster to a file and name that",
+        )),
+    }
 }
 
 /// A regular file that is there, readable and not empty.
@@ -208,7 +214,7 @@ fn unreadable_file(path: &Path, error: &std::io::Error) -> Error {
 
 /// Why GDAL did not open `name`: vector data, a fault that GDAL names, or no raster at all.
 fn cannot_open(path: &Path, name: &Path, complaint: Option<String>) -> Error {
-    let (vector, _) = heard(|| open_as(name, GdalOpenFlags::GDAL_OF_VECTOR));
+    let (vector, _) = heard(|| open_as(name, GdalOpenFlags::GDAL_OF_VECTOR, &VECTORS));
     if vector.is_ok_and(|v| v.layer_count() > 0) {
         return Error::input(
             path,
@@ -224,8 +230,8 @@ fn cannot_open(path: &Path, name: &Path, complaint: Option<String>) -> Error {
         ),
         None => Error::input(
             path,
-            "is not in a raster format known to GDAL",
-            "give a DEM such as GeoTIFF, .asc, .flt, .bil or .dem; `gdalinfo --formats` lists all",
+            "is in no raster format that hachure reads",
+            "give a DEM such as GeoTIFF, .asc, .flt, .bil or .dem, perhaps made by `gdal_translate IN OUT.tif`",
         ),
     }
 }

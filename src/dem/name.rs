@@ -1,0 +1,193 @@
+//! What a DEM may be called: local files, archives, grids in containers; with `--allow-remote` files on a network too.
+//!
+//! GDAL takes many strings for something else than a file: addresses, pipes, memory, connections, one inside another.
+//! Every name is taken apart here, and what is not understood to its end is refused; nothing is opened. Not handled:
+//! archives in archives, and a file swapped for another between check and use.
+
+use std::ffi::{OsStr, OsString};
+use std::path::{Path, PathBuf};
+
+/// Ways into an archive. The rest of the name is the archive and perhaps a file in it.
+const ARCHIVES: [&str; 3] = ["/vsizip/", "/vsigzip/", "/vsitar/"];
+
+/// Ways to files on a network that GDAL reads piece by piece.
+const REMOTE: [&str; 9] =
+    ["/vsicurl/", "/vsis3/", "/vsigs/", "/vsiaz/", "/vsiadls/", "/vsioss/", "/vsiswift/", "/vsihdfs/", "/vsiwebhdfs/"];
+
+/// Addresses as people write them, and what GDAL writes before the rest.
+const SCHEMES: [(&str, &str); 6] = [
+    ("http://", "/vsicurl/http://"),
+    ("https://", "/vsicurl/https://"),
+    ("ftp://", "/vsicurl/ftp://"),
+    ("s3://", "/vsis3/"),
+    ("gs://", "/vsigs/"),
+    ("az://", "/vsiaz/"),
+];
+
+/// Names of one grid of a container: the prefix, how many fields follow it, which of them is the file. With another
+/// count of fields GDAL might see the file elsewhere: `NETCDF:http://host/file:grid` has three.
+const CONTAINERS: [(&str, usize, usize); 8] = [
+    ("NETCDF", 2, 0),
+    ("HDF5", 2, 0),
+    ("BAG", 2, 0),
+    ("GPKG", 2, 0),
+    ("GTIFF_DIR", 2, 1),
+    ("GTIFF_DIR", 3, 2),
+    ("HDF4_SDS", 3, 1),
+    ("HDF4_EOS", 4, 1),
+];
+
+/// A name taken apart.
+#[derive(Debug)]
+pub(super) enum Name {
+    /// A local file.
+    Local(Local),
+    /// A file on a network, as GDAL calls it.
+    Remote(PathBuf),
+    /// A pipe, memory, a database, a web service, another construction of GDAL's.
+    Other,
+}
+
+/// Where a raster lies.
+#[derive(Debug, Clone)]
+pub(super) enum Place {
+    /// In this file on the disk.
+    File(PathBuf),
+    /// In a file in this archive on the disk.
+    Archive(PathBuf),
+    /// On a network.
+    Remote,
+}
+
+/// A local file, or one grid or file in it: GDAL calls it `before`, `file`, `after`.
+#[derive(Debug)]
+pub(super) struct Local {
+    before: String,
+    /// The file, container or archive on the disk.
+    pub file: PathBuf,
+    after: String,
+    /// Whether `file` is read through as an archive.
+    pub archive: bool,
+}
+
+impl Local {
+    /// A file by the ending of its name: a `.gz` or `.zip` is read through.
+    pub fn by_ending(file: &Path) -> Self {
+        let ending = file.file_name().and_then(OsStr::to_str).unwrap_or_default().to_ascii_lowercase();
+        let before = match ending.rsplit('.').next() {
+            Some("gz") => "/vsigzip/",
+            // The driver of .hgt reads the tile's corner from the name, zip or not.
+            Some("zip") if !ending.ends_with(".hgt.zip") => "/vsizip/",
+            _ => "",
+        };
+        Self { before: before.into(), file: file.into(), after: String::new(), archive: !before.is_empty() }
+    }
+
+    /// What GDAL is asked to open.
+    pub fn connection(&self) -> PathBuf {
+        let mut name = OsString::from(&self.before);
+        name.push(&self.file);
+        name.push(&self.after);
+        name.into()
+    }
+
+    /// Where it lies.
+    pub fn place(&self) -> Place {
+        if self.archive { Place::Archive(self.file.clone()) } else { Place::File(self.file.clone()) }
+    }
+
+    /// What a plain name in a file of that name on a network stands for.
+    pub fn beside(&self, remote: &Path) -> Option<PathBuf> {
+        let plain = self.before.is_empty() && self.after.is_empty() && !self.file.is_absolute();
+        let (folder, _) = remote.to_str()?.rsplit_once('/')?;
+        plain.then(|| format!("{folder}/{}", self.file.display()).into())
+    }
+
+    /// The archive and the file in it in `inner`.
+    fn in_archive(before: &str, inner: &str) -> Self {
+        // The archive is the part of the way that is a file.
+        let archive = Path::new(inner).ancestors().find(|way| way.is_file()).unwrap_or(Path::new(inner));
+        let after = inner[archive.as_os_str().len()..].to_owned();
+        Self { before: before.into(), file: archive.into(), after, archive: true }
+    }
+
+    /// One grid of a container.
+    fn in_container(text: &str) -> Option<Self> {
+        let (prefix, rest) = text.split_once(':')?;
+        let fields = fields(rest);
+        let (_, _, place) = CONTAINERS.iter().find(|c| c.0.eq_ignore_ascii_case(prefix) && c.1 == fields.len())?;
+        let bare = fields[*place].trim_matches('"');
+        let quote = if bare.len() < fields[*place].len() { "\"" } else { "" };
+        let before = fields[..*place].iter().fold(format!("{prefix}:"), |text, field| text + field + ":") + quote;
+        let after = fields[place + 1..].iter().fold(quote.to_owned(), |text, field| text + ":" + field);
+        Some(Self { before, file: bare.into(), after, archive: false })
+    }
+}
+
+impl Name {
+    /// Takes `text` apart.
+    pub fn of(text: &str) -> Self {
+        if let Some((scheme, prefix)) = SCHEMES.iter().find(|(scheme, _)| starts_with(text, scheme)) {
+            return Self::Remote(format!("{prefix}{}", &text[scheme.len()..]).into());
+        }
+        if text.starts_with("/vsi") {
+            return Self::of_virtual(text);
+        }
+        match Local::in_container(text) {
+            Some(grid) if grid.file.to_str().is_some_and(|file| names_remote(file) || file.contains('"')) => {
+                Self::Other
+            }
+            Some(grid) => Self::Local(grid),
+            None if is_connection(text) => Self::Other,
+            None => {
+                Self::Local(Local { before: String::new(), file: text.into(), after: String::new(), archive: false })
+            }
+        }
+    }
+
+    fn of_virtual(text: &str) -> Self {
+        let archive = ARCHIVES.iter().find_map(|before| Some((*before, text.strip_prefix(before)?)));
+        let inner = archive.map_or(text, |(_, inner)| inner);
+        match archive {
+            _ if REMOTE.iter().any(|prefix| inner.starts_with(prefix)) => Self::Remote(text.into()),
+            Some((before, inner)) if !inner.starts_with("/vsi") && !inner.starts_with('{') => {
+                Self::Local(Local::in_archive(before, inner))
+            }
+            _ => Self::Other,
+        }
+    }
+}
+
+/// Whether `text` begins as the name of something that is not on the disk.
+pub(super) fn names_remote(text: &str) -> bool {
+    starts_with(text, "/vsi") || SCHEMES.iter().any(|(scheme, _)| starts_with(text, scheme))
+}
+
+/// `PG:…`, `WMS:…`, `MEM:::…`, `vrt://…`, XML in place of a name; not the drive of `C:\…`.
+fn is_connection(text: &str) -> bool {
+    let prefix = text.split(':').next().unwrap_or_default();
+    let is_prefix = prefix.len() > 1 && prefix.len() < text.len();
+    let shouts = prefix.bytes().all(|b| b.is_ascii_uppercase() || b.is_ascii_digit() || b == b'_');
+    text.starts_with('<') || is_prefix && (shouts || text[prefix.len()..].starts_with("://"))
+}
+
+/// Splits at the colons outside quotes, and not behind the letter of a drive.
+fn fields(text: &str) -> Vec<&str> {
+    let (mut quoted, mut start) = (false, 0);
+    let mut fields = Vec::new();
+    for (place, letter) in text.char_indices() {
+        quoted ^= letter == '"';
+        let drive = cfg!(windows) && place == start + 1;
+        if letter == ':' && !quoted && !drive {
+            fields.push(&text[start..place]);
+            start = place + 1;
+        }
+    }
+    fields.push(&text[start..]);
+    fields
+}
+
+/// Whether `text` begins with the ASCII `start`, in capitals or not.
+fn starts_with(text: &str, start: &str) -> bool {
+    text.get(..start.len()).is_some_and(|head| head.eq_ignore_ascii_case(start))
+}
