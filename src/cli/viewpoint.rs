@@ -63,24 +63,25 @@ pub struct View {
 #[derive(Serialize)]
 pub struct ViewReport {
     eye: [f64; 3],
-    eye_in_file: [f64; 2],
     lonlat: Option<[f64; 2]>,
     azimuth: f64,
     altitude: f64,
     fov: f64,
     size: [u32; 2],
-    projection: Projection,
-    crs: CrsReport,
-    crs_of_file: CrsReport,
+    projection: &'static str,
+    page: Page,
+    /// Name and number of the CRS whose coordinates, times `metres_per_unit`, are the world's.
+    crs: String,
+    crs_wkt: String,
+    metres_per_unit: Option<f64>,
+    file: FileReport,
     exaggeration: f64,
     flags: String,
 }
 
-/// Central projection of a world point p: with d = p - eye, the page place in pixels from its top left corner is
-/// centre + focal / (d . forward) * (d . right, -(d . up)).
+/// The numbers of the projection: unit vectors of the world, and pixels.
 #[derive(Serialize)]
-struct Projection {
-    kind: &'static str,
+struct Page {
     right: [f64; 3],
     up: [f64; 3],
     forward: [f64; 3],
@@ -88,13 +89,12 @@ struct Projection {
     centre_px: [f64; 2],
 }
 
+/// The eye in the coordinates of the file.
 #[derive(Serialize)]
-struct CrsReport {
-    name: String,
-    epsg: Option<u32>,
-    wkt: String,
-    /// Metres a unit; world coordinates are those of the CRS times this. Nothing for degrees.
-    metres_per_unit: Option<f64>,
+struct FileReport {
+    eye: [f64; 2],
+    crs: String,
+    crs_wkt: String,
 }
 
 impl ViewArguments {
@@ -185,37 +185,29 @@ impl View {
     pub fn report(&self, georeference: &Georeference, exaggeration: f64) -> ViewReport {
         let camera = &self.camera;
         let [right, up, forward] = camera.axes().map(|axis| axis.to_array());
+        let (world, file) = (georeference.world(), georeference.file());
         ViewReport {
             eye: camera.eye.to_array(),
-            eye_in_file: self.file.to_array(),
             lonlat: self.lonlat.map(|at| at.to_array()),
             azimuth: camera.azimuth,
             altitude: camera.altitude,
             fov: camera.fov,
             size: [camera.width, camera.height],
-            projection: Projection {
-                kind: "central: page = centre + focal / (d . forward) * (d . right, -(d . up)) with d = world - eye",
+            projection: "central: with d = world - eye the place on the page, px from its top left corner, \
+                         is centre + focal / (d . forward) * (d . right, -(d . up))",
+            page: Page {
                 right,
                 up,
                 forward,
                 focal_px: camera.focal(),
                 centre_px: [f64::from(camera.width) / 2.0, f64::from(camera.height) / 2.0],
             },
-            crs: CrsReport::of(georeference.world()),
-            crs_of_file: CrsReport::of(georeference.file()),
+            crs: world.label(),
+            crs_wkt: world.wkt().to_owned(),
+            metres_per_unit: world.metres_per_unit(),
+            file: FileReport { eye: self.file.to_array(), crs: file.label(), crs_wkt: file.wkt().to_owned() },
             exaggeration,
             flags: self.flags(),
-        }
-    }
-}
-
-impl CrsReport {
-    fn of(crs: &Crs) -> Self {
-        Self {
-            name: crs.name().to_owned(),
-            epsg: crs.epsg(),
-            wkt: crs.wkt().to_owned(),
-            metres_per_unit: crs.metres_per_unit(),
         }
     }
 }

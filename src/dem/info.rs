@@ -60,7 +60,7 @@ pub fn info(paths: &[PathBuf], options: &ReadOptions, progress: &dyn Fn(Stage, f
             "{} x {} samples, {}, cells of {:.6} x {:.6} {units}, W {west:.5} S {south:.5} E {east:.5} N {north:.5}",
             files.columns,
             files.rows,
-            files.crs.label(),
+            name_of(&files.crs),
             cell.x,
             cell.y
         )
@@ -87,10 +87,7 @@ pub fn info(paths: &[PathBuf], options: &ReadOptions, progress: &dyn Fn(Stage, f
 impl Display for Info {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let [west, south, east, north] = self.extent;
-        let crs = match self.crs.label() {
-            label if label.is_empty() => "none".to_owned(),
-            label => label,
-        };
+        let crs = name_of(&self.crs);
         for path in &self.paths {
             writeln!(f, "file       {} ({})", path.display(), self.driver)?;
         }
@@ -108,6 +105,14 @@ impl Display for Info {
         self.history.converted().iter().try_for_each(|clause| write!(f, "\nconverted  {clause}"))?;
         let assumed = self.history.assumed().iter().chain(self.history.usual());
         assumed.into_iter().try_for_each(|clause| write!(f, "\nassumed    {clause}"))
+    }
+}
+
+/// Its label, or that there is none.
+fn name_of(crs: &Crs) -> String {
+    match crs.label() {
+        label if label.is_empty() => "none".to_owned(),
+        label => label,
     }
 }
 

@@ -173,3 +173,19 @@ extern "C" fn share(complete: f64, _: *const c_char, argument: *mut c_void) -> c
     progress(complete);
     1
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::DAffine2;
+
+    use super::super::Crs;
+    use super::*;
+
+    #[test]
+    fn more_than_memory_is_an_error_in_words() {
+        let grid = Grid { crs: Crs::unknown(), to_crs: DAffine2::IDENTITY, columns: 1 << 30, rows: 1 << 30 };
+        let said = Raster::void(grid).err().map(|e| e.to_string()).unwrap_or_default();
+        assert!(said.starts_with("1073741824 x 1073741824 samples cannot be held"), "{said}");
+        assert!(said.ends_with("use --crop to take a part, or --resample M for larger cells"), "{said}");
+    }
+}

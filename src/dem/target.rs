@@ -89,28 +89,21 @@ impl Target {
 
     fn warped(files: &Grid, window: Window, path: &Path, options: &ReadOptions, history: &mut History) -> Result<Self> {
         let crs = if files.crs.is_geographic() { zone(files, window, path)? } else { files.crs.clone() };
-        let lost = || {
-            Error::input(
-                path,
-                "its place cannot be put on a map in metres",
-                "check its coordinate system with `gdalinfo`",
-            )
-        };
-        let way = Way::between(&files.crs, &crs).ok_or_else(lost)?;
-        let back = Way::between(&crs, &files.crs).ok_or_else(lost)?;
-        let unit = crs.metres_per_unit().ok_or_else(lost)?;
+        let way = Way::between(&files.crs, &crs).ok_or_else(|| lost(path))?;
+        let back = Way::between(&crs, &files.crs).ok_or_else(|| lost(path))?;
+        let unit = crs.metres_per_unit().ok_or_else(|| lost(path))?;
         let cell = match options.resample {
             Some(metres) => metres / unit,
-            None => cell_like(files, window, &way).ok_or_else(lost)?,
+            None => cell_like(files, window, &way).ok_or_else(|| lost(path))?,
         };
-        let all = lattice_around(files, window, &way, &crs, cell).ok_or_else(lost)?;
+        let all = lattice_around(files, window, &way, &crs, cell).ok_or_else(|| lost(path))?;
         let region = Region { files, crop: options.crop, back };
         let inside =
             |at: &[[usize; 2]]| region.holds(at.iter().map(|[c, r]| all.sample(*c as f64, *r as f64)).collect());
         check_extent(&all, cell * unit, path)?;
         let part = largest(all.columns, all.rows, inside).ok_or_else(|| too_small(path, cell * unit))?;
         let grid = all.part(part);
-        let window = reach(&grid, files).ok_or_else(lost)?;
+        let window = reach(&grid, files).ok_or_else(|| lost(path))?;
         history.convert(format!(
             "warped from {} to {}, cubic, {} x {} square cells of {} m, the largest rectangle inside the data",
             turned(files),
@@ -184,9 +177,7 @@ fn zone(files: &Grid, window: Window, path: &Path) -> Result<Crs> {
     let [width, height] = [(east - west) * degrees, (north - south) * degrees];
     let lonlat = Crs::lonlat()?;
     let middle = Way::between(&files.crs, &lonlat).and_then(|way| way.place(files.centre(window)));
-    let middle = middle.ok_or_else(|| {
-        Error::input(path, "its place on the globe is unknown", "check its coordinate system with `gdalinfo`")
-    })?;
+    let middle = middle.ok_or_else(|| lost(path))?;
     let polar = middle.y > UTM_NORTH || middle.y < UTM_SOUTH;
     if height > HIGHEST || (width > WIDEST && !polar) {
         return Err(Error::input(
@@ -275,6 +266,11 @@ fn too_many(path: &Path, [columns, rows]: [usize; 2], metres: f64) -> Error {
         what: format!("{}: {columns} x {rows} = {samples} samples, at most {MAX_SAMPLES} fit", path.display()),
         remedy: format!("use --crop to take a part, or --resample {metres} for cells of {metres} m"),
     }
+}
+
+fn lost(path: &Path) -> Error {
+    let what = "its place cannot be put on a map in metres";
+    Error::input(path, what, "check its coordinate system and extent with `gdalinfo`")
 }
 
 fn too_small(path: &Path, metres: f64) -> Error {

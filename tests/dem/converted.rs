@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use glam::{DVec2, DVec3};
-use hachure::dem::{Crs, Dem, ElevationUnit, ReadOptions, read};
+use hachure::dem::{Crs, Dem, ElevationUnit, ReadOptions, Stage, read, read_all as read_files};
 
 use super::{Raster, TRANSFORM, cropped, folder, hill, read_all, sized_vrt, vrt};
 use crate::tolerances::{PLANE_METRES, WARP_METRES};
@@ -319,4 +319,22 @@ fn a_huge_grid_of_degrees_is_read_by_window() {
     let path = sized_vrt(&dir.path().join("globe.vrt"), 36_000_000, 18_000_000, degrees, "<Scale>1</Scale>");
     let dem = read(&path, &cropped([8.0, 46.0, 8.002, 46.002])).unwrap();
     assert!(dem.columns() > 150 && dem.rows() > 150, "{} x {}", dem.columns(), dem.rows());
+}
+
+#[test]
+fn progress_runs_through_every_stage_once() {
+    let dir = folder();
+    let mut raster = waves();
+    raster.values[5050] = f32::NAN;
+    let path = written(raster, "waves.tif", dir.path());
+    let heard = std::cell::RefCell::new(Vec::new());
+    let options = ReadOptions { fill_voids: true, ..Default::default() };
+    read_files(&[path], &options, &|stage, share| heard.borrow_mut().push((stage, share))).unwrap();
+    let heard = heard.into_inner();
+    for stage in [Stage::Read, Stage::Warp, Stage::Fill] {
+        let shares: Vec<_> = heard.iter().filter(|(s, _)| *s == stage).map(|(_, share)| *share).collect();
+        assert!(shares.is_sorted() && shares.last() == Some(&1.0), "{stage:?}: {shares:?}");
+    }
+    let order = heard.iter().map(|(stage, _)| *stage as u8);
+    assert!(order.is_sorted(), "{heard:?}");
 }
