@@ -10,6 +10,7 @@ mod coverage;
 mod dem;
 mod drawing;
 mod drawn;
+mod facets;
 mod forms;
 mod gpu_errors;
 mod hardware;

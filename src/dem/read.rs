@@ -13,8 +13,8 @@ use super::georeference::{Georeference, Window};
 use super::source::{MIN_SIDE, Source, heard};
 use crate::error::{Error, Result};
 
-/// Most samples of a DEM: 4096 x 4096, 64 MiB of heights, half of the largest buffer that every GPU grants.
-pub const MAX_SAMPLES: usize = 4096 * 4096;
+/// Most samples of a DEM: 2^25, 128 MiB of heights, the largest buffer that every GPU binds.
+pub const MAX_SAMPLES: usize = 1 << 25;
 
 /// Largest exaggeration: above it the highest mountain stands higher than the Earth is wide.
 const MAX_EXAGGERATION: f64 = 1000.0;

@@ -142,12 +142,12 @@ fn what_is_no_surface_is_refused() {
 fn too_many_samples_are_refused_before_they_are_read() {
     let dir = folder();
     let huge = sized_vrt(&dir.path().join("huge.vrt"), 1_000_000, 1_000_000, "", "<Scale>1</Scale>");
-    let line = refused(&huge, &["1000000 x 1000000 = 1000000000000 samples", "at most 16777216 fit", "--crop"]);
+    let line = refused(&huge, &["1000000 x 1000000 = 1000000000000 samples", "at most 33554432 fit", "--crop"]);
     assert!(line.contains(&MAX_SAMPLES.to_string()));
     let part = read(&huge, &cropped([20_000_000.0, -9_000_000.0, 20_000_900.0, -8_999_400.0])).unwrap();
     assert_eq!((part.columns(), part.rows()), (30, 30));
-    let most = sized_vrt(&dir.path().join("most.vrt"), 4097, 4096, "", "<Scale>1</Scale>");
-    refused(&most, &["4097 x 4096 = 16781312 samples"]);
+    let most = sized_vrt(&dir.path().join("most.vrt"), 8193, 4096, "", "<Scale>1</Scale>");
+    refused(&most, &["8193 x 4096 = 33558528 samples"]);
 }
 
 #[test]
