@@ -16,7 +16,7 @@ struct Patch {
 }
 
 fn normal_at(i: u32) -> vec3<f32> {
-    return vec3<f32>(-gradients[i], 1.0);
+    return vec3<f32>(-gradients_east[i], -gradients_north[i], 1.0);
 }
 
 // A third of what of an edge lies in the tangent plane with that normal; `scale` is 1 / its squared length.

@@ -11,6 +11,7 @@ mod dem;
 mod drawing;
 mod drawn;
 mod examples;
+mod facets;
 mod forms;
 mod gpu_errors;
 mod hardware;

@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 use std::mem::offset_of;
 
+use hachure::dem::MAX_SAMPLES;
 use hachure::gpu::pass::reflect;
 use hachure::gpu::sizes::{BLOCK, LARGEST_BINDING, fits, written};
 use hachure::gpu::uniforms::{BatchUniform, Counts, SceneUniform};
@@ -218,7 +219,8 @@ fn every_binding_fits_at_every_level() {
             ("slots", size_of_val(lattice.slots()) as u64),
             ("spheres", chunks * 16),
             ("heights", 500 * 500 * 4),
-            ("gradients", 500 * 500 * 8),
+            ("gradients_east", 500 * 500 * 4),
+            ("gradients_north", 500 * 500 * 4),
         ]);
         for (name, size) in &sizes {
             assert!(fits(name, *size).is_ok(), "level {n}: {name} takes {size} bytes");
@@ -229,7 +231,10 @@ fn every_binding_fits_at_every_level() {
         assert_eq!(of("screens"), chunks.min(u64::from(BATCH_CHUNKS)) * u64::from(lattice::CHUNK_VERTICES) * 16);
         assert!(of("queue") >= 4 + chunks.min(u64::from(BATCH_CHUNKS)) * u64::from(lattice::CHUNK_FACETS) * 4);
     }
+    // As many samples as are read: each of heights and gradients takes one whole binding.
+    assert!(fits("heights", MAX_SAMPLES as u64 * 4).is_ok());
     assert!(fits("heights", LARGEST_BINDING).is_ok());
-    assert!(fits("heights", LARGEST_BINDING + 1).is_err());
+    let line = fits("heights", LARGEST_BINDING + 1).expect_err("a byte too many").to_string();
+    assert!(line.contains("129 MiB of heights, a device binds 128; use a --crop"), "{line}");
     assert!(written(1, [16_384, 1025]).is_err());
 }

@@ -76,7 +76,7 @@ fn several_batches_draw_the_same_with_and_without_int64() {
 fn a_second_frame_uploads_nothing_but_the_camera() {
     let surface = Surface::new(rough(70, 60, 1.0, 6.0, false));
     let [first, second, _] = views(&surface);
-    for name in ["heights", "gradients", "chunks", "spheres", "scene"] {
+    for name in ["heights", "gradients_east", "gradients_north", "chunks", "spheres", "scene"] {
         let renderer = renderer(gpu(), &surface, &first, level(2), Method::Walk, Border::On);
         let expected = bytes(gpu(), &renderer, &first);
         assert!(bytes(gpu(), &renderer, &second) != expected, "the camera is uploaded");

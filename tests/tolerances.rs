@@ -26,6 +26,11 @@ pub const GRID_ERROR_PX: f64 = 0.25;
 /// Example: where a hill cuts a line off, the true line ends at most 0.125 px wrong.
 pub const TRUTH_PIECE_PX: f64 = 0.25;
 
+/// How far a stored gradient may be from the one in f64, as a share of it: one unit in the last place of f32.
+///
+/// Example: a slope of 0.5 may be stored 6e-8 off.
+pub const GRADIENT: f64 = 1.2e-7;
+
 /// How far a true line may lie from its closed form (sphere, cone, saddle), as a share of the scene's size.
 ///
 /// Example: on a sphere of 400 m radius 1e-6 are 0.4 mm.

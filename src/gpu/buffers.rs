@@ -57,7 +57,9 @@ impl Buffers {
         buffers.upload(gpu, "spheres", bytemuck::cast_slice(&spheres(surface, lattice)))?;
         buffers.upload(gpu, "slots", bytemuck::cast_slice(lattice.slots()))?;
         buffers.upload(gpu, "heights", bytemuck::cast_slice(dem.heights()))?;
-        buffers.upload(gpu, "gradients", bytemuck::cast_slice(surface.gradients()))?;
+        for (name, gradients) in ["gradients_east", "gradients_north"].into_iter().zip(surface.gradients()) {
+            buffers.upload(gpu, name, bytemuck::cast_slice(gradients))?;
+        }
         let voids = dem.voids() > 0;
         buffers.upload(gpu, "valid", bytemuck::cast_slice(&if voids { valid_bits(dem) } else { vec![0] }))?;
         buffers.upload(gpu, "rim", bytemuck::cast_slice(rim))?;
@@ -111,7 +113,9 @@ impl Buffers {
     fn upload(&mut self, gpu: &Gpu, name: &'static str, bytes: &[u8]) -> Result<()> {
         fits(name, bytes.len() as u64)?;
         self.named.insert(name, upload(gpu, name, bytes, wgpu::BufferUsages::STORAGE));
-        Ok(())
+        // Sent at once: until then the driver holds a second copy.
+        gpu.queue.submit([]);
+        gpu.wait()
     }
 
     fn create(&mut self, gpu: &Gpu, name: &'static str, size: u64) -> Result<()> {

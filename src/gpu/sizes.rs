@@ -68,7 +68,11 @@ pub fn fits(name: &str, size: u64) -> Result<()> {
         return Ok(());
     }
     Err(Error::Limit {
-        what: format!("this DEM needs {} MiB of {name}, a device binds {}", size >> 20, LARGEST_BINDING >> 20),
+        what: format!(
+            "this DEM needs {} MiB of {name}, a device binds {}",
+            size.div_ceil(1 << 20),
+            LARGEST_BINDING >> 20
+        ),
         remedy: "use a --crop".into(),
     })
 }

@@ -48,6 +48,5 @@ fn sphere(surface: &Surface, chunk: &Chunk) -> [f32; 4] {
 
 /// How far an edge leaves the tangent plane of one of its ends, metres, measured upwards.
 fn deviation(surface: &Surface, c: usize, r: usize, edge: DVec3) -> f64 {
-    let [p, q] = surface.gradients()[r * surface.dem().columns() + c].map(f64::from);
-    (edge.z - p * edge.x - q * edge.y).abs()
+    (edge.z - surface.gradient(c, r).dot(edge.truncate())).abs()
 }

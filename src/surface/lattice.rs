@@ -187,3 +187,12 @@ pub fn patch_exists(dem: &Dem, c: usize, r: usize, patch: usize) -> bool {
     let third = if patch == 0 { dem.height(c, r + 1) } else { dem.height(c + 1, r) };
     dem.height(c, r).and(dem.height(c + 1, r + 1)).and(third).is_some()
 }
+
+/// Which of its two patches each cell of row `r` has, from the west; see [`patch_exists`].
+pub fn patches_of_row(dem: &Dem, r: usize) -> impl Iterator<Item = [bool; 2]> {
+    let valid = |r: usize| dem.valid()[r * dem.columns()..][..dem.columns()].windows(2);
+    valid(r).zip(valid(r + 1)).map(|(north, south)| {
+        let diagonal = north[0] && south[1];
+        [diagonal && south[0], diagonal && north[1]]
+    })
+}

@@ -3,50 +3,65 @@
 //! The normal of a sample is the normalised sum of the cross products of its incident facets of level 1. On a grid each
 //! of these is (cell area) x (-p, -q, 1) with (p, q) the facet's gradient, so the sum has the direction of the *mean
 //! gradient* and is stored as such: two numbers, no square root, exact for planes. Facets with a void corner contribute
-//! nothing. Cost: 6 facets a sample.
+//! nothing. Cost: 6 facets a sample; memory beside the result: three rows a core.
 
+use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 use crate::dem::Dem;
 
-/// Column and row steps of the two other corners of the six facets around a sample: first the one reached along the
-/// row or the diagonal, counter-clockwise from above. Cells are split along NW-SE.
-const INCIDENT: [[(i64, i64); 2]; 6] = [
-    [(1, 0), (0, -1)],   // the SW facet of the north-east cell
-    [(0, -1), (-1, -1)], // the NE facet of the north-west cell
-    [(-1, -1), (-1, 0)], // the SW facet of the north-west cell
-    [(-1, 0), (0, 1)],   // the NE facet of the south-west cell
-    [(0, 1), (1, 1)],    // the SW facet of the south-east cell
-    [(1, 1), (1, 0)],    // the NE facet of the south-east cell
+/// Steps east and north to the six neighbours of a sample, counter-clockwise from above; two in a row share a facet
+/// with it. Cells are split along NW-SE.
+const NEIGHBOURS: [DVec2; 6] = [
+    DVec2::new(1.0, 0.0),
+    DVec2::new(0.0, 1.0),
+    DVec2::new(-1.0, 1.0),
+    DVec2::new(-1.0, 0.0),
+    DVec2::new(0.0, -1.0),
+    DVec2::new(1.0, -1.0),
 ];
 
-/// Gradient (dz/d east, dz/d north) of each sample, in the order of `dem.heights()`; the normal is (-p, -q, 1)
-/// normalised. (0, 0) at voids and where every incident facet has a void corner.
-pub fn gradients(dem: &Dem) -> Vec<[f32; 2]> {
-    (0..dem.rows())
-        .into_par_iter()
-        .flat_map_iter(|r| (0..dem.columns()).map(move |c| gradient(dem, c as i64, r as i64)))
-        .collect()
+/// Gradient of each sample, all dz/d east, then all dz/d north, in the order of `dem.heights()`; the normal is
+/// (-p, -q, 1) normalised. (0, 0) at voids and where every incident facet has a void corner.
+///
+/// Two arrays, for each must fit one binding on the device.
+pub fn gradients(dem: &Dem) -> [Vec<f32>; 2] {
+    let columns = dem.columns();
+    let [mut east, mut north] = [(); 2].map(|()| vec![0.0; dem.heights().len()]);
+    let rows = east.par_chunks_exact_mut(columns).zip(north.par_chunks_exact_mut(columns)).enumerate();
+    rows.for_each(|(r, (east, north))| {
+        let rows = [r.wrapping_sub(1), r, r + 1].map(|r| padded_row(dem, r));
+        let [above, here, below] = rows.each_ref().map(|row| row.windows(3));
+        let blocks = above.zip(here).zip(below).map(|((above, here), below)| [above, here, below]);
+        for ((p, q), block) in east.iter_mut().zip(north).zip(blocks) {
+            [*p, *q] = gradient(block, dem.cell());
+        }
+    });
+    [east, north]
 }
 
-fn gradient(dem: &Dem, c: i64, r: i64) -> [f32; 2] {
-    let height = |dc: i64, dr: i64| {
-        let (c, r) = (c + dc, r + dr);
-        let inside = c >= 0 && r >= 0 && c < dem.columns() as i64 && r < dem.rows() as i64;
-        inside.then(|| dem.height(c as usize, r as usize)).flatten().map(f64::from)
-    };
-    let Some(h) = height(0, 0) else { return [0.0; 2] };
-    let cell = dem.cell();
-    let (mut sum, mut count) = ([0.0; 2], 0);
-    for [a, b] in INCIDENT {
-        let (Some(ha), Some(hb)) = (height(a.0, a.1), height(b.0, b.1)) else { continue };
-        // Both steps in metres, x east and y north; the plane through them has gradient (p, q).
-        let (ax, ay, az) = (a.0 as f64 * cell.x, -a.1 as f64 * cell.y, ha - h);
-        let (bx, by, bz) = (b.0 as f64 * cell.x, -b.1 as f64 * cell.y, hb - h);
-        let area = ax * by - ay * bx;
-        sum[0] += (az * by - bz * ay) / area;
-        sum[1] += (ax * bz - bx * az) / area;
-        count += 1;
+/// Heights of row `r` with one more sample at either end; NaN where there is none.
+fn padded_row(dem: &Dem, r: usize) -> Vec<f64> {
+    let mut row = vec![f64::NAN; dem.columns() + 2];
+    if r < dem.rows() {
+        let span = r * dem.columns()..(r + 1) * dem.columns();
+        let samples = dem.heights()[span.clone()].iter().zip(&dem.valid()[span]);
+        for (padded, (height, valid)) in row[1..].iter_mut().zip(samples) {
+            *padded = if *valid { f64::from(*height) } else { f64::NAN };
+        }
     }
-    if count == 0 { [0.0; 2] } else { sum.map(|s| (s / f64::from(count)) as f32) }
+    row
+}
+
+/// Gradient at the middle of a block of 3 x 3 heights, rows from the north; NaN where there is none.
+fn gradient([above, here, below]: [&[f64]; 3], cell: DVec2) -> [f32; 2] {
+    let around = [here[2], above[1], above[0], here[0], below[1], below[2]];
+    let step = |k: usize| (NEIGHBOURS[k % 6] * cell).extend(around[k % 6] - here[1]);
+    let mut sum = DVec3::ZERO;
+    for k in 0..6 {
+        // Downwards: (cell area) x (p, q, -1). A void corner makes p NaN.
+        let normal = step(k + 1).cross(step(k));
+        sum += if normal.x.is_nan() { DVec3::ZERO } else { normal };
+    }
+    if sum.z == 0.0 { [0.0; 2] } else { (sum.truncate() / -sum.z).as_vec2().to_array() }
 }

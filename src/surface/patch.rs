@@ -5,8 +5,9 @@
 //! Cost: about 150 operations a point. It does not handle creases: one sample has one normal.
 
 use glam::{DVec2, DVec3};
+use rayon::prelude::*;
 
-use super::lattice::{CELL_STEPS, LatticePoint, Level, patch_exists};
+use super::lattice::{CELL_STEPS, LatticePoint, Level, patches_of_row};
 use super::normals::gradients;
 use crate::dem::Dem;
 
@@ -14,7 +15,7 @@ use crate::dem::Dem;
 #[derive(Debug, Clone)]
 pub struct Surface {
     dem: Dem,
-    gradients: Vec<[f32; 2]>,
+    gradients: [Vec<f32>; 2],
 }
 
 impl Surface {
@@ -28,9 +29,15 @@ impl Surface {
         &self.dem
     }
 
-    /// Gradient of each sample, see [`gradients`].
-    pub fn gradients(&self) -> &[[f32; 2]] {
-        &self.gradients
+    /// Gradients of all samples, dz/d east and dz/d north, see [`gradients`].
+    pub fn gradients(&self) -> [&[f32]; 2] {
+        self.gradients.each_ref().map(Vec::as_slice)
+    }
+
+    /// Gradient of sample (c, r): dz/d east, dz/d north.
+    pub fn gradient(&self, c: usize, r: usize) -> DVec2 {
+        let i = r * self.dem.columns() + c;
+        DVec2::from_array(self.gradients.each_ref().map(|of| f64::from(of[i])))
     }
 
     /// World position in metres of a lattice vertex; `None` where a sample it depends on is void or outside.
@@ -50,16 +57,15 @@ impl Surface {
                 return None;
             }
             points[i] = self.dem.position(c, r);
-            let [p, q] = self.gradients[r * self.dem.columns() + c].map(f64::from);
-            normals[i] = DVec3::new(-p, -q, 1.0).normalize();
+            normals[i] = (-self.gradient(c, r)).extend(1.0).normalize();
         }
         Some(pn_point(points, normals, weights))
     }
 
     /// How many patches exist.
     pub fn patches(&self) -> u64 {
-        let cells = (0..self.dem.rows() - 1).flat_map(|r| (0..self.dem.columns() - 1).map(move |c| (c, r)));
-        cells.map(|(c, r)| (0..2).filter(|&half| patch_exists(&self.dem, c, r, half)).count() as u64).sum()
+        let in_row = |r| patches_of_row(&self.dem, r).map(|[a, b]| u64::from(a) + u64::from(b)).sum::<u64>();
+        (0..self.dem.rows() - 1).into_par_iter().map(in_row).sum()
     }
 
     /// Height in exaggerated metres of the highest facet of `level` over a map place in metres; `None` over voids and

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::lattice::patch_exists;
+use super::lattice::patches_of_row;
 use crate::dem::Dem;
 
 /// A patch edge of the rim, laid out as the shaders read it.
@@ -19,23 +19,29 @@ pub struct RimEdge {
 
 /// Every rim edge, row by row. Cost: three edges a sample.
 pub fn rim(dem: &Dem) -> Vec<RimEdge> {
-    let exists = |c: i64, r: i64, half: usize| {
-        let inside = c >= 0 && r >= 0 && c + 1 < dem.columns() as i64 && r + 1 < dem.rows() as i64;
-        inside && patch_exists(dem, c as usize, r as usize, half)
-    };
-    let edges_at = |c: usize, r: usize| {
-        let (x, y) = (c as i64, r as i64);
-        // For each direction, the patches of half 0 and half 1 that may have the edge.
-        let sides = [
-            [exists(x, y - 1, 0), exists(x, y, 1)],
-            [exists(x, y, 0), exists(x - 1, y, 1)],
-            [exists(x, y, 0), exists(x, y, 1)],
-        ];
-        sides.into_iter().zip(0..).filter(|(s, _)| s[0] != s[1]).map(move |(s, direction)| RimEdge {
-            sample: [c as u32, r as u32],
-            direction,
-            half: u32::from(s[1]),
-        })
-    };
-    (0..dem.rows()).into_par_iter().flat_map_iter(|r| (0..dem.columns()).flat_map(move |c| edges_at(c, r))).collect()
+    (0..dem.rows()).into_par_iter().flat_map_iter(|r| edges_of_row(dem, r)).collect()
+}
+
+fn edges_of_row(dem: &Dem, r: usize) -> Vec<RimEdge> {
+    let (above, here) = (padded_row(dem, r.wrapping_sub(1)), padded_row(dem, r));
+    let mut edges = Vec::new();
+    for (c, (above, here)) in (0..).zip(above.windows(2).zip(here.windows(2))) {
+        // For each direction, whether patches of half 0 and half 1 have the edge.
+        let sides = [[above[1][0], here[1][1]], [here[1][0], here[0][1]], here[1]];
+        for (direction, [first, second]) in (0..).zip(sides) {
+            if first != second {
+                edges.push(RimEdge { sample: [c, r as u32], direction, half: u32::from(second) });
+            }
+        }
+    }
+    edges
+}
+
+/// Patches of the cells of row `r` with one more cell at either end; none where there is no cell.
+fn padded_row(dem: &Dem, r: usize) -> Vec<[bool; 2]> {
+    let mut row = vec![[false; 2]; dem.columns() + 1];
+    if r < dem.rows() - 1 {
+        row[1..].iter_mut().zip(patches_of_row(dem, r)).for_each(|(padded, patches)| *padded = patches);
+    }
+    row
 }
