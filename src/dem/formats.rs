@@ -9,6 +9,8 @@ use std::sync::Once;
 
 use gdal::{DriverManager, Metadata, config};
 
+/// Memory in which GDAL keeps blocks of files, MiB: by itself a twentieth of the machine's, for files that are read once.
+const CACHE_MIB: &str = "32";
 /// GDAL's names of the formats in which people bring elevations. Left out are those that name other files or addresses
 /// to be opened by any driver (ERS, ISIS3, MRF, PCIDSK, PDS, Zarr …), services and products that are no elevations.
 pub(super) const FORMATS: [&str; 38] = [
@@ -77,8 +79,12 @@ pub(super) fn restrict(allow_remote: bool) {
     };
 }
 
-/// Takes from GDAL the drivers off the list, Python in VRTs, and the habit of leaving files beside a .gz.
+/// Takes from GDAL the drivers off the list, Python in VRTs, the habit of leaving files beside a .gz, and most of its
+/// cache, unless the user has set that.
 fn restrict_process() {
+    if config::get_config_option("GDAL_CACHEMAX", "").is_ok_and(|size| size.is_empty()) {
+        let _ = config::set_config_option("GDAL_CACHEMAX", CACHE_MIB);
+    }
     let _ = config::set_config_option("CPL_VSIL_GZIP_WRITE_PROPERTIES", "NO");
     let _ = config::set_config_option("GDAL_VRT_ENABLE_PYTHON", "NO");
     // From the end, so that the places of those not yet looked at stay the same.

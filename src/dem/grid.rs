@@ -186,6 +186,15 @@ impl Window {
             .collect()
     }
 
+    /// The same in blocks of at most `size` columns and rows, row by row of blocks.
+    pub fn blocks(self, size: [usize; 2]) -> impl Iterator<Item = Self> {
+        let starts = move |i: usize| (0..self.size[i]).step_by(size[i]);
+        starts(1).flat_map(move |r| starts(0).map(move |c| [c, r])).map(move |at| Self {
+            first: [0, 1].map(|i| self.first[i] + at[i]),
+            size: [0, 1].map(|i| size[i].min(self.size[i] - at[i])),
+        })
+    }
+
     /// How many samples.
     pub fn samples(self) -> u64 {
         self.size[0] as u64 * self.size[1] as u64

@@ -129,8 +129,9 @@ mod tests {
             let bend = ((c as f64 - 500.0) / 500.0).powi(2) * 30.0;
             (r as f64) >= 40.0 - bend && (r as f64) <= 760.0 - bend
         };
-        let (window, best) = (found(1000, 800, bowl), by_trial(1000, 800, bowl));
-        assert!(window.samples() as f64 > 0.99 * best as f64, "{window:?} of {best}");
+        // Narrower ones gain fewer rows than they lose columns: the largest is 1000 wide, from row 40 to row 730.
+        let window = found(1000, 800, bowl);
+        assert!(window.samples() as f64 > 0.99 * 691_000.0, "{window:?}");
     }
 
     #[test]

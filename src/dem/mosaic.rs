@@ -158,23 +158,21 @@ impl Placed {
         if low[0] >= end[0] || low[1] >= end[1] {
             return Ok(0);
         }
-        let (width, height) = ((end[0] - low[0]) as usize, (end[1] - low[1]) as usize);
-        let step = (BLOCK_SAMPLES / width).max(1);
-        let mut sentinels = 0;
-        for row in (0..height).step_by(step) {
-            let size = [width, step.min(height - row)];
-            let at = [low[0] as usize, low[1] as usize + row];
+        let window = Window { first: low.map(|v| v as usize), size: [0, 1].map(|i| (end[i] - low[i]) as usize) };
+        let (mut sentinels, mut done) = (0, 0);
+        for Window { first: at, size } in window.blocks(block_size(&band)) {
             // The first sample of the block in the file, counted backwards where flipped.
             let from = [0, 1].map(|i| {
                 let offset = (at[i] as i64 - first[i]) as usize;
                 if flip[i] { own[i] - offset - size[i] } else { offset }
             });
             let mut raw = self.numbers(&band, mask.as_ref(), from, size)?;
-            turn(&mut raw, width, flip);
+            turn(&mut raw, size[0], flip);
             let mut metres = raster.block(at, size)?;
             sentinels += self.cover(&mut metres, &raw);
             raster.put(at, size, metres)?;
-            progress((row + size[1]) as f64 / height as f64);
+            done += size[0] * size[1];
+            progress(done as f64 / window.samples() as f64);
         }
         Ok(sentinels)
     }
@@ -286,6 +284,16 @@ pub(super) fn reach(target: &Grid, source: &Grid) -> Option<Window> {
     let end = [0, 1].map(|i| end[i].clamp(0.0, sizes[i]));
     let meet = first[0] < end[0] && first[1] < end[1];
     meet.then(|| Window { first: first.map(|v| v as usize), size: [0, 1].map(|i| (end[i] - first[i]) as usize) })
+}
+
+/// Columns and rows to read at once: whole blocks of the file, about [`BLOCK_SAMPLES`] in all, so that none is unpacked
+/// twice.
+fn block_size(band: &RasterBand) -> [usize; 2] {
+    let (width, height) = band.block_size();
+    let height = height.clamp(1, BLOCK_SAMPLES / width.clamp(1, BLOCK_SAMPLES));
+    let across = (BLOCK_SAMPLES / height / width.max(1)).max(1) * width;
+    let across = across.min(band.x_size());
+    [across, (BLOCK_SAMPLES / height / across).max(1) * height]
 }
 
 /// Turns a block of rows of `width` numbers round, along the rows and down the columns.

@@ -170,7 +170,8 @@ fn argument(progress: &&dyn Fn(f64)) -> *mut c_void {
 extern "C" fn share(complete: f64, _: *const c_char, argument: *mut c_void) -> c_int {
     // SAFETY: `argument` is the pointer made above, to a borrow that lives while GDAL runs.
     let progress = unsafe { &*argument.cast::<&dyn Fn(f64)>() };
-    progress(complete);
+    // The warper ends at a little more than all.
+    progress(complete.min(1.0));
     1
 }
 
