@@ -83,7 +83,8 @@ pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Dem> {
 /// What was converted and what had to be assumed stands in [`Dem::history`]. A path may name one grid of a container as
 /// `NETCDF:file:grid`; `.gz` and `.zip` are read through. `progress` hears what is being done and the share done, 0 to 1.
 ///
-/// The first call installs a GDAL error handler that prints nothing, for the whole process.
+/// The first call changes GDAL for the whole process: an error handler that prints nothing, no drivers of rasters off
+/// the list of formats, no Python in VRTs, a small cache. No other thread should be inside GDAL at that moment.
 ///
 /// # Errors
 /// [`Error::Flag`] for options that make no sense, [`Error::Limit`] for more samples than fit, [`Error::Input`] for a
