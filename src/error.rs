@@ -69,12 +69,12 @@ pub enum Error {
 impl Error {
     /// A DEM problem: the file, what is wrong with it, what to do.
     pub fn input(path: &Path, what: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Self::Input { path: path.to_owned(), what: what.into(), remedy: remedy.into() }
+        Self::Input { path: path.to_owned(), what: plain(what.into()), remedy: plain(remedy.into()) }
     }
 
     /// A flag problem: the flag, what is wrong with its value, what to do.
     pub fn flag(flag: &'static str, what: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Self::Flag { flag, what: what.into(), remedy: remedy.into() }
+        Self::Flag { flag, what: plain(what.into()), remedy: plain(remedy.into()) }
     }
 
     /// The process exit code of this error: 1 failed, 2 wrong usage, 75 try again.
@@ -85,4 +85,9 @@ impl Error {
             _ => 1,
         }
     }
+}
+
+/// One line without control characters: files may hold names that would move the cursor of a terminal.
+pub(crate) fn plain(text: String) -> String {
+    if text.contains(char::is_control) { text.replace(char::is_control, " ") } else { text }
 }

@@ -163,6 +163,17 @@ fn a_dem_in_degrees_is_seen_from_degrees() {
 }
 
 #[test]
+fn a_missing_register_of_systems_is_told() {
+    let place = Place::new();
+    let mut command = place.command(&["draw", &sample(), "-o", "out.png", "--lonlat", "-122.5,37.8,900"]);
+    let output = command.env("PROJ_DATA", "/nonexistent").env("PROJ_LIB", "/nonexistent").output().expect("it runs");
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    let said = stderr(&output);
+    assert!(said.contains("PROJ cannot find its register") && said.contains("PROJ_DATA"), "{said}");
+    assert_eq!(place.written(), Vec::<String>::new());
+}
+
+#[test]
 fn wrong_viewpoints_exit_with_2() {
     let place = Place::new();
     let draw = ["draw", "hill.asc", "-o", "out.png"];

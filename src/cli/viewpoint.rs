@@ -121,7 +121,10 @@ impl ViewArguments {
         let georeference = surface.dem().georeference();
         let place = self.standpoint(georeference)?;
         let eye = match (place, self.eye.or(self.lonlat)) {
-            (Some((world, _)), Some(standpoint)) => Some(above(surface, level, world, standpoint.height, "--eye")?),
+            (Some((world, _)), Some(standpoint)) => {
+                let flag = if self.eye.is_some() { "--eye" } else { "--lonlat" };
+                Some(above(surface, level, world, standpoint.height, flag)?)
+            }
             _ => None,
         };
         let mut fixed = Fixed { eye, azimuth: self.azimuth, altitude: self.altitude };
@@ -219,19 +222,19 @@ fn world(georeference: &Georeference, crs: Option<&Crs>, place: DVec2, flag: &'s
             let what = "the DEM names no coordinate system, so other coordinates mean nothing in it";
             return Error::flag(flag, what, "give --eye E,N in the DEM's own coordinates, without --crs");
         }
-        let map = georeference.world().label();
-        Error::flag(
-            flag,
-            format!("there is no place {},{} on the map {map}", place.x, place.y),
-            "check its order: x first",
-        )
+        let given = crs.unwrap_or(georeference.file());
+        let what = format!("there is no place {},{} in {}, {}", place.x, place.y, given.label(), given.units());
+        Error::flag(flag, what, "check the order, x first, or name another system with --crs EPSG:N")
     })
 }
 
 /// A world place moved by less than a millimetre to where its coordinates in the file have few decimals, and these.
 fn settled(georeference: &Georeference, world: DVec2) -> Result<(DVec2, DVec2)> {
     let file = georeference.file();
-    let decimals = if file.is_geographic() { DEGREE_DECIMALS } else { METRE_DECIMALS };
+    let decimals = match file.metres_per_unit() {
+        None => DEGREE_DECIMALS,
+        Some(metres) => METRE_DECIMALS + metres.log10().ceil().max(0.0) as i32,
+    };
     let scale = 10f64.powi(decimals);
     let place = georeference.place_in(file, world).map(|place| (place * scale).round() / scale);
     let settled = place.and_then(|place| Some((georeference.world_place(file, place)?, place)));
@@ -258,9 +261,10 @@ fn no_ground(surface: &Surface, place: DVec2, flag: &'static str) -> Error {
     let [west, south, east, north] = surface.dem().extent();
     let corner = |x, y| georeference.place_in(georeference.file(), DVec2::new(x, y)).unwrap_or(DVec2::new(x, y));
     let (low, high, at) = (corner(west, south), corner(east, north), corner(place.x, place.y));
+    let height = if flag == "--look-at" { "add a height Z" } else { "give a height without +" };
     Error::flag(
         flag,
-        format!("there is no ground at {},{}", at.x, at.y),
-        format!("give a height without +, or a place with data between {},{} and {},{}", low.x, low.y, high.x, high.y),
+        format!("there is no ground at {},{} {} of the DEM", at.x, at.y, georeference.file().units()),
+        format!("{height}, or a place with data between {},{} and {},{}", low.x, low.y, high.x, high.y),
     )
 }

@@ -7,7 +7,7 @@ use gdal::spatial_ref::{AxisMappingStrategy, CoordTransform, SpatialRef};
 use glam::DVec2;
 
 use super::source::heard;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, plain};
 
 /// Relative difference of a linear unit to the metre that is still a metre.
 const METRE_EPSILON: f64 = 1e-9;
@@ -40,7 +40,7 @@ impl Crs {
     /// Longitude and latitude in degrees, WGS 84.
     ///
     /// # Errors
-    /// [`Error::Flag`] when PROJ cannot find its register of coordinate systems.
+    /// [`Error::Limit`] when PROJ cannot find its register of coordinate systems.
     pub fn lonlat() -> Result<Self> {
         Self::from_epsg(4326)
     }
@@ -48,7 +48,8 @@ impl Crs {
     /// The system that the register of EPSG gives this number.
     ///
     /// # Errors
-    /// [`Error::Flag`] when there is none, or none of places on a map or the globe.
+    /// [`Error::Flag`] when there is none, or none of places on a map or the globe; [`Error::Limit`] when PROJ cannot
+    /// find the register.
     pub fn from_epsg(code: u32) -> Result<Self> {
         let wrong = |what: String| {
             let remedy = "give the number of a system of map coordinates, for instance EPSG:32611 or EPSG:4326";
@@ -56,7 +57,10 @@ impl Crs {
         };
         let (found, words) = heard(|| SpatialRef::from_epsg(code));
         let found = found.map_err(|_| match words {
-            Some(words) if words.contains("proj.db") => wrong(format!("PROJ cannot find its register ({words})")),
+            Some(words) if words.contains("proj.db") => Error::Limit {
+                what: "PROJ cannot find its register of coordinate systems (proj.db)".into(),
+                remedy: "install PROJ's data (Debian: proj-data), or set PROJ_DATA and PROJ_LIB to their folder".into(),
+            },
             _ => wrong(format!("EPSG:{code} is unknown")),
         })?;
         Self::of(found).ok_or_else(|| wrong(format!("EPSG:{code} is no system of places on a map")))
@@ -73,11 +77,11 @@ impl Crs {
             Unit::Angle(reference.angular_units())
         } else {
             let metres = reference.linear_units();
-            Unit::Length(metres, reference.linear_units_name().unwrap_or_else(|| format!("{metres} m")))
+            Unit::Length(metres, plain(reference.linear_units_name().unwrap_or_else(|| format!("{metres} m"))))
         };
         let wkt = heard(|| reference.to_wkt()).0.ok()?;
         let (name, epsg) = identity(reference);
-        Some(Self { wkt, name, epsg, unit })
+        Some(Self { wkt, name: plain(name), epsg, unit })
     }
 
     /// Its name, empty when unknown.

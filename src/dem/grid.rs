@@ -46,14 +46,15 @@ pub(super) struct Window {
 }
 
 impl Grid {
-    /// Of `source`, placed by `cell` (metres) where the file does not say where it lies. Clauses on what had to be
+    /// Of `source`, placed by `cell` (metres) where the file does not say where it lies and is read `alone`. Clauses on what had to be
     /// assumed go to `history`.
-    pub fn of(source: &Source, cell: Option<f64>, history: &mut History) -> Result<Self> {
+    pub fn of(source: &Source, cell: Option<f64>, alone: bool, history: &mut History) -> Result<Self> {
         let Source { columns, rows, .. } = *source;
         let (reference, _) = heard(|| source.dataset.spatial_ref());
         let (to_crs, placed) = match (geotransform(source), cell) {
             (Some(_), Some(_)) => return Err(has_place(source)),
             (Some(to_crs), None) => (to_crs, true),
+            (None, _) if !alone => return Err(has_no_place_beside(source)),
             (None, Some(cell)) => (from_cell(rows, cell), false),
             (None, None) => return Err(has_no_place(source)),
         };
@@ -148,6 +149,12 @@ impl Grid {
     /// The samples that `crop` (west, south, east, north) holds, `None` when it holds none. In a turned grid, all
     /// samples of the smallest window around it.
     pub fn window(&self, [west, south, east, north]: [f64; 4]) -> Option<Window> {
+        // Longitudes may run round the globe.
+        let round = self
+            .crs
+            .turn()
+            .map_or(0.0, |turn| turn * ((self.centre(self.whole()).x - (west + east) / 2.0) / turn).round());
+        let (west, east) = (west + round, east + round);
         let back = self.to_crs.inverse();
         let corners = [(west, south), (east, south), (east, north), (west, north)];
         let corners = corners.map(|(x, y)| back.transform_point2(DVec2::new(x, y)));
@@ -256,6 +263,13 @@ fn has_no_place(source: &Source) -> Error {
         );
     }
     source.error("does not say where it lies (no geotransform)", "give the size of its cells in metres with --cell M")
+}
+
+fn has_no_place_beside(source: &Source) -> Error {
+    source.error(
+        "does not say where it lies (no geotransform), so it cannot be laid beside others",
+        "draw it alone with --cell M, or place it: `gdal_translate -a_ullr WEST NORTH EAST SOUTH IN OUT.tif`",
+    )
 }
 
 fn no_map(source: &Source, name: &str) -> Error {

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use crate::error::plain;
+
 /// Clauses on how a DEM came about, in the order in which things were done.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct History {
@@ -27,11 +29,11 @@ impl History {
     }
 
     pub(super) fn convert(&mut self, clause: String) {
-        self.converted.push(clause);
+        self.converted.push(plain(clause));
     }
 
     pub(super) fn assume(&mut self, clause: String) {
-        self.assumed.push(clause);
+        self.assumed.push(plain(clause));
     }
 
     pub(super) fn assume_as_usual(&mut self, clause: String) {

@@ -88,8 +88,9 @@ impl Display for Info {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let [west, south, east, north] = self.extent;
         let crs = name_of(&self.crs);
-        for path in &self.paths {
-            writeln!(f, "file       {} ({})", path.display(), self.driver)?;
+        for (i, path) in self.paths.iter().enumerate() {
+            let driver = if i == 0 { format!(" ({})", self.driver) } else { String::new() };
+            writeln!(f, "file       {}{driver}", path.display())?;
         }
         self.source.iter().try_for_each(|source| writeln!(f, "source     {source}"))?;
         writeln!(f, "size       {} columns x {} rows = {} samples", self.columns, self.rows, self.columns * self.rows)?;

@@ -55,7 +55,7 @@ impl Mosaic {
         let mut sources: Vec<Placed> = Vec::with_capacity(paths.len());
         for path in paths {
             let base = sources.first().map(|first| first.grid.north_up());
-            let placed = Placed::open(path, options, base.as_ref(), history)?;
+            let placed = Placed::open(path, options, base.as_ref(), paths.len() == 1, history)?;
             sources.push(placed);
         }
         let Some(first) = sources.first() else {
@@ -89,6 +89,15 @@ impl Mosaic {
         self.sources[0].source.dataset.driver().long_name()
     }
 
+    /// Samples to be read of each file that is warped, for `window` of the mosaic.
+    pub fn warped_parts(&self, window: Window) -> impl Iterator<Item = (&Path, u64)> {
+        let target = self.grid.part(window);
+        self.sources.iter().filter(|placed| matches!(placed.lie, Lie::Apart { .. })).map(move |placed| {
+            let samples = reach(&target, &placed.grid).map_or(0, Window::samples);
+            (placed.source.path.as_path(), samples)
+        })
+    }
+
     /// Reads the samples of `window`. `progress` hears the share done.
     pub fn read(&self, window: Window, history: &mut History, progress: &dyn Fn(f64)) -> Result<Raster> {
         let mut raster = Raster::void(self.grid.part(window))?;
@@ -110,14 +119,20 @@ impl Mosaic {
 
 impl Placed {
     /// `base` is the grid that the first file lays; the first itself has none before it.
-    fn open(path: &Path, options: &ReadOptions, base: Option<&Grid>, history: &mut History) -> Result<Self> {
+    fn open(
+        path: &Path,
+        options: &ReadOptions,
+        base: Option<&Grid>,
+        alone: bool,
+        history: &mut History,
+    ) -> Result<Self> {
         let mut own = History::default();
         let source = Source::open(path, options.band.unwrap_or(1), options.allow_remote)?;
         let bands = source.dataset.raster_count();
         if options.band.is_none() && bands > 1 {
             own.assume(format!("elevations are in band 1 of {bands} (choose another with --band N)"));
         }
-        let grid = Grid::of(&source, options.cell, &mut own)?;
+        let grid = Grid::of(&source, options.cell, alone, &mut own)?;
         let elevation = Elevation::of(&source, &grid.crs, options.elevation_unit, &mut own)?;
         let lie = Lie::of(&grid, base.unwrap_or(&grid.north_up()), path)?;
         if matches!(lie, Lie::Apart { .. }) {
@@ -244,7 +259,10 @@ impl Lie {
         if aligned {
             return Ok(Self::Aligned { first: [first.x as i64, first.y as i64], flip: [flip_x, flip_y] });
         }
-        let (low, high) = ((low - 0.5).floor(), (high + 0.5).ceil());
+        // Places of the base between the outermost samples; where there are none the mosaic need not grow.
+        let (low, high) = ((low - 0.5).ceil(), (high + 0.5).floor());
+        let grows = low.cmplt(high).all();
+        let (low, high) = if grows { (low, high) } else { (DVec2::ZERO, DVec2::ZERO) };
         Ok(Self::Apart { first: [low.x as i64, low.y as i64], end: [high.x as i64, high.y as i64] })
     }
 

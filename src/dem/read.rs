@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use super::elevation::ElevationUnit;
 use super::mosaic::Mosaic;
 use super::raster::{FILL_REACH, Raster};
-use super::target::Target;
+use super::target::{Target, check_read};
 use super::{Dem, Georeference, History};
 use crate::error::{Error, Result};
 
@@ -107,6 +107,8 @@ impl Reading {
         let mut history = History::default();
         let mosaic = Mosaic::open(paths, options, &mut history)?;
         let target = Target::of(&mosaic.grid, mosaic.path(), options, &mut history)?;
+        let held = target.window.samples();
+        mosaic.warped_parts(target.window).try_for_each(|(path, read)| check_read(path, read, held))?;
         Ok(Self { mosaic, target, history })
     }
 

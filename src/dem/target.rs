@@ -26,6 +26,8 @@ const READ_BYTES: u64 = 4;
 const DEM_BYTES: u64 = 13;
 /// Pixels from the border of the files to where cubic convolution has all its samples.
 const BORDER: f64 = 1.5;
+/// Samples along a side from which something is left when it is warped.
+const WARPED_SIDE: usize = 5;
 /// A map whose metres differ from those on the ground by more than this share gets a warning.
 const TRUE_SCALE: f64 = 0.01;
 /// Latitude where UTM ends in the north and in the south, degrees.
@@ -101,7 +103,7 @@ impl Target {
         let inside =
             |at: &[[usize; 2]]| region.holds(at.iter().map(|[c, r]| all.sample(*c as f64, *r as f64)).collect());
         check_extent(&all, cell * unit, path)?;
-        let part = largest(all.columns, all.rows, inside).ok_or_else(|| too_small(path, cell * unit))?;
+        let part = largest(all.columns, all.rows, inside).ok_or_else(|| too_small(files, path, cell * unit))?;
         let grid = all.part(part);
         let window = reach(&grid, files).ok_or_else(|| lost(path))?;
         history.convert(format!(
@@ -124,13 +126,10 @@ impl Target {
             return Err(too_many(path, [columns, rows], self.metres_to_fit(samples, MAX_SAMPLES as u64)));
         }
         let read = self.window.samples();
-        if self.warps && read > MAX_READ {
-            return Err(Error::Limit {
-                what: format!("{}: {read} samples would be read for this, at most {MAX_READ} fit", path.display()),
-                remedy: "use --crop to take a part".into(),
-            });
-        }
         let work = if self.warps { read * READ_BYTES } else { 0 };
+        if self.warps {
+            check_read(path, read, 0)?;
+        }
         check_memory(path, (work + samples * READ_BYTES).max(samples * DEM_BYTES), available_memory())
     }
 
@@ -273,11 +272,16 @@ fn lost(path: &Path) -> Error {
     Error::input(path, what, "check its coordinate system and extent with `gdalinfo`")
 }
 
-fn too_small(path: &Path, metres: f64) -> Error {
+fn too_small(files: &Grid, path: &Path, metres: f64) -> Error {
+    if files.columns < WARPED_SIDE || files.rows < WARPED_SIDE {
+        let what =
+            format!("is {} x {} samples; to be warped to metres it needs at least 5 x 5", files.columns, files.rows);
+        return Error::input(path, what, "give a larger grid");
+    }
     Error::input(
         path,
         format!("no 2 x 2 cells of {metres} m lie inside the data"),
-        "give smaller cells with --resample M, or widen --crop",
+        "give smaller cells with --resample M, or more of the DEM",
     )
 }
 
@@ -288,6 +292,18 @@ fn outside(files: &Grid, path: &Path) -> Error {
         "no sample lies inside --crop",
         format!("give E0,N0,E1,N1 within {west},{south},{east},{north} {units}"),
     )
+}
+
+/// As many samples of a file as may be read to be warped, beside `held` others.
+pub(super) fn check_read(path: &Path, read: u64, held: u64) -> Result<()> {
+    if read > MAX_READ {
+        return Err(Error::Limit {
+            what: format!("{}: {read} samples would be read to be warped, at most {MAX_READ} fit", path.display()),
+            remedy: "use --crop to take a part, or make it coarser with `gdalwarp -tr M M -r average IN OUT.tif`"
+                .into(),
+        });
+    }
+    check_memory(path, (read + held) * READ_BYTES, available_memory())
 }
 
 fn check_memory(path: &Path, needed: u64, available: Option<u64>) -> Result<()> {

@@ -75,6 +75,8 @@ fn other_grids_and_systems_are_warped_to_the_first() {
     let beside = beside.write("GTiff", &dir.path().join("beside.tif"));
     let dem = together(&[first.clone(), beside.clone()]);
     assert_eq!((dem.cell(), dem.position(0, 0).x), (DVec2::new(30.0, 20.0), 500_015.0), "the grid is the first's");
+    // The second ends at 502 358.5 m east and 4 198 991.5 m north, in the middle of its outermost samples.
+    assert_eq!((dem.columns(), dem.rows()), (79, 50), "no row or column beyond the data");
     let mut seen = 0;
     for (c, r) in (0..dem.rows()).flat_map(|r| (0..dem.columns()).map(move |c| (c, r))).filter(|(c, _)| *c < 76) {
         let Some(_) = dem.height(c, r) else { continue };
@@ -123,8 +125,32 @@ fn tiles_across_the_date_line_stand_side_by_side() {
     let dem = together(&[tile(179.8, 10.0, "west.tif"), tile(-180.0, 20.0, "east.tif")]);
     assert_eq!(dem.voids(), 0);
     assert!(dem.extent()[2] - dem.extent()[0] > 35_000.0, "{:?}", dem.extent());
+    for order in [["west.tif", "east.tif"], ["east.tif", "west.tif"]] {
+        let paths = order.map(|name| dir.path().join(name));
+        let part = read_all(&paths, &super::cropped([179.9, -16.15, 180.1, -16.05]), &|_, _| ()).unwrap();
+        assert_eq!(part.voids(), 0, "{order:?}");
+    }
     let r = dem.rows() / 2;
     assert_eq!((dem.height(3, r), dem.height(dem.columns() - 3, r)), (Some(10.0), Some(20.0)));
+}
+
+#[test]
+fn a_far_finer_file_is_refused_before_it_is_read() {
+    let dir = folder();
+    let first = hill().write("GTiff", &dir.path().join("first.tif"));
+    let fine = "<SRS>EPSG:32610</SRS><GeoTransform>500000, 0.001, 0, 4200000, 0, -0.001</GeoTransform>";
+    let fine = super::sized_vrt(&dir.path().join("fine.vrt"), 40_000, 40_000, fine, "<Scale>1</Scale>");
+    let error = read_all(&[first, fine.clone()], &ReadOptions::default(), &|_, _| ()).unwrap_err().to_string();
+    assert!(error.starts_with(&format!("{}: 1600000000 samples would be read", fine.display())), "{error}");
+}
+
+#[test]
+fn files_that_lie_nowhere_are_not_laid_together() {
+    let dir = folder();
+    let image = |name: &str| Raster { transform: None, epsg: None, ..hill() }.write("GTiff", &dir.path().join(name));
+    let paths = [image("a.tif"), image("b.tif")];
+    let error = read_all(&paths, &ReadOptions { cell: Some(5.0), ..Default::default() }, &|_, _| ()).unwrap_err();
+    assert!(error.to_string().contains("cannot be laid beside others; draw it alone with --cell"), "{error}");
 }
 
 #[test]

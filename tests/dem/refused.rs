@@ -142,7 +142,7 @@ fn too_many_samples_are_refused_before_they_are_read() {
     assert!(read(&most, &coarser).unwrap().columns() > 4000);
     let wide = sized_vrt(&dir.path().join("wide.vrt"), 40_000, 40_000, "", "<Scale>1</Scale>");
     let coarse = ReadOptions { resample: Some(1000.0), ..Default::default() };
-    refused_with(&wide, &coarse, &["1600000000 samples would be read", "--crop"]);
+    refused_with(&wide, &coarse, &["1600000000 samples would be read to be warped", "--crop"]);
     let degrees = "<SRS>EPSG:4326</SRS><GeoTransform>8, 1e-5, 0, 47, 0, -1e-5</GeoTransform>";
     let fine = sized_vrt(&dir.path().join("fine.vrt"), 1_000_000, 1_000_000, degrees, "<Scale>1</Scale>");
     refused(&fine, &["samples, at most", "--crop", "--resample"]);
@@ -174,6 +174,12 @@ fn places_that_make_no_sense_are_refused() {
 fn units_and_systems_nobody_knows_are_refused() {
     let dir = folder();
     refused(&vrt(&dir.path().join("odd.vrt"), "", "<UnitType>degC</UnitType>"), &["\"degC\"", "--elevation-unit"]);
+    // Names in files may break lines and move cursors.
+    let line =
+        refused(&vrt(&dir.path().join("esc.vrt"), "", "<UnitType>a&#10;b&#27;[31m</UnitType>"), &["\"a b [31m\""]);
+    assert!(!line.contains(char::is_control));
+    let tiny = Raster { transform: Some([8.0, 0.01, 0.0, 46.0, 0.0, -0.01]), epsg: Some(4326), ..hill() };
+    refused(&tiny.write("GTiff", &dir.path().join("tiny.tif")), &["4 x 3 samples", "at least 5 x 5", "larger grid"]);
     let globe = Raster { epsg: Some(4978), ..hill() }.write("GTiff", &dir.path().join("globe.tif"));
     refused(&globe, &["no map projection", "gdalwarp -t_srs"]);
     let whole = Raster { transform: Some([-180.0, 90.0, 0.0, 90.0, 0.0, -60.0]), epsg: Some(4326), ..hill() };
@@ -203,7 +209,7 @@ fn flags_against_what_the_file_says_are_wrong_usage() {
 #[test]
 fn a_cell_larger_than_the_dem_leaves_nothing() {
     let dir = folder();
-    let path = hill().write("GTiff", &dir.path().join("hill.tif"));
+    let path = Raster::new(10, vec![7.0f32; 100]).write("GTiff", &dir.path().join("hill.tif"));
     let coarse = ReadOptions { resample: Some(500.0), ..Default::default() };
     refused_with(&path, &coarse, &["no 2 x 2 cells of 500 m", "--resample"]);
 }
