@@ -130,7 +130,12 @@ impl Crs {
         }
     }
 
-    /// Steps of a full turn, for longitudes that run on beyond half of one.
+    /// `x` taken round the globe, where it is a longitude, to within half a turn of `middle`.
+    pub(super) fn near(&self, x: f64, middle: f64) -> f64 {
+        self.turn().map_or(x, |turn| x + turn * ((middle - x) / turn).round())
+    }
+
+    /// Steps of a full turn, for longitudes.
     pub(super) fn turn(&self) -> Option<f64> {
         match self.unit {
             Unit::Angle(radians) => Some(std::f64::consts::TAU / radians),

@@ -31,11 +31,6 @@ impl ElevationUnit {
     pub const FOOT: Self = Self(FOOT);
     /// The US survey foot, 1200 / 3937 m.
     pub const US_FOOT: Self = Self(US_FOOT);
-
-    /// By its name in a file: `m`, `ft`, `US survey foot`, `cm`…; `None` for others.
-    pub fn named(name: &str) -> Option<Self> {
-        metres_per(name).map(Self)
-    }
 }
 
 /// How the numbers of one band become metres.
@@ -61,7 +56,8 @@ pub(super) enum Reading {
 }
 
 impl Elevation {
-    /// The rules of the band of `source`, whose places are in `crs`; `unit` overrules what the file says. What was found goes to `history`.
+    /// The rules of the band of `source`, whose places are in `crs`; `unit` overrules what the file says. What was found
+    /// goes to `history`.
     pub fn of(source: &Source, crs: &Crs, unit: Option<ElevationUnit>, history: &mut History) -> Result<Self> {
         let band = source.band()?;
         let elevation = Self {

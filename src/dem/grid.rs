@@ -46,8 +46,8 @@ pub(super) struct Window {
 }
 
 impl Grid {
-    /// Of `source`, placed by `cell` (metres) where the file does not say where it lies and is read `alone`. Clauses on what had to be
-    /// assumed go to `history`.
+    /// Of `source`, placed by `cell` (metres) where the file does not say where it lies and is read `alone`. Clauses on
+    /// what had to be assumed go to `history`.
     pub fn of(source: &Source, cell: Option<f64>, alone: bool, history: &mut History) -> Result<Self> {
         let Source { columns, rows, .. } = *source;
         let (reference, _) = heard(|| source.dataset.spatial_ref());
@@ -116,11 +116,8 @@ impl Grid {
     pub fn pixels(&self, places: &mut [DVec2]) {
         let back = self.to_crs.inverse();
         let middle = self.centre(self.whole()).x;
-        let turn = self.crs.turn();
         for place in places {
-            if let Some(turn) = turn {
-                place.x += turn * ((middle - place.x) / turn).round();
-            }
+            place.x = self.crs.near(place.x, middle);
             *place = back.transform_point2(*place);
         }
     }
@@ -137,29 +134,29 @@ impl Grid {
         Self { to_crs, columns: window.size[0], rows: window.size[1], crs: self.crs.clone() }
     }
 
+    /// Places of a window's outline.
+    pub fn outline(&self, window: Window) -> Vec<DVec2> {
+        window.outline().into_iter().map(|pixel| self.to_crs.transform_point2(pixel)).collect()
+    }
+
     /// Least and largest places of the outermost samples: west, south, east, north in units of the CRS.
     pub fn extent(&self) -> [f64; 4] {
         let (c, r) = ((self.columns - 1) as f64, (self.rows - 1) as f64);
         let corners = [[0.0, 0.0], [c, 0.0], [0.0, r], [c, r]].map(|[c, r]| self.sample(c, r));
-        let low = corners.into_iter().fold(DVec2::INFINITY, DVec2::min);
-        let high = corners.into_iter().fold(DVec2::NEG_INFINITY, DVec2::max);
+        let [low, high] = span(&corners);
         [low.x, low.y, high.x, high.y]
     }
 
     /// The samples that `crop` (west, south, east, north) holds, `None` when it holds none. In a turned grid, all
     /// samples of the smallest window around it.
     pub fn window(&self, [west, south, east, north]: [f64; 4]) -> Option<Window> {
-        // Longitudes may run round the globe.
-        let round = self
-            .crs
-            .turn()
-            .map_or(0.0, |turn| turn * ((self.centre(self.whole()).x - (west + east) / 2.0) / turn).round());
+        let middle = (west + east) / 2.0;
+        let round = self.crs.near(middle, self.centre(self.whole()).x) - middle;
         let (west, east) = (west + round, east + round);
         let back = self.to_crs.inverse();
         let corners = [(west, south), (east, south), (east, north), (west, north)];
         let corners = corners.map(|(x, y)| back.transform_point2(DVec2::new(x, y)));
-        let low = corners.into_iter().fold(DVec2::INFINITY, DVec2::min);
-        let high = corners.into_iter().fold(DVec2::NEG_INFINITY, DVec2::max);
+        let [low, high] = span(&corners);
         let (c, width) = centres_within([low.x, high.x], self.columns)?;
         let (r, height) = centres_within([low.y, high.y], self.rows)?;
         Some(Window { first: [c, r], size: [width, height] })
@@ -206,6 +203,12 @@ impl Window {
     pub fn samples(self) -> u64 {
         self.size[0] as u64 * self.size[1] as u64
     }
+}
+
+/// Least and largest coordinates.
+pub(super) fn span(places: &[DVec2]) -> [DVec2; 2] {
+    let of = |start, pick: fn(DVec2, DVec2) -> DVec2| places.iter().copied().fold(start, pick);
+    [of(DVec2::INFINITY, DVec2::min), of(DVec2::NEG_INFINITY, DVec2::max)]
 }
 
 /// First and number of the pixel centres 0.5, 1.5 … below `count` inside `from..=to`.

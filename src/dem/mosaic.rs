@@ -12,7 +12,7 @@ use rayon::prelude::*;
 
 use super::crs::Way;
 use super::elevation::{Elevation, Reading};
-use super::grid::{Grid, Window};
+use super::grid::{Grid, Window, span};
 use super::raster::Raster;
 use super::source::{Source, heard};
 use super::{History, ReadOptions};
@@ -23,7 +23,7 @@ const ALIGNED_CELLS: f64 = 0.01;
 /// Samples read at once: 8 MiB of f64.
 const BLOCK_SAMPLES: usize = 1 << 20;
 /// Samples around a window that cubic convolution reaches, and one more.
-pub(super) const MARGIN: usize = 3;
+const MARGIN: usize = 3;
 
 /// Files on one grid.
 pub(super) struct Mosaic {
@@ -237,17 +237,15 @@ impl Placed {
 impl Lie {
     /// Of `grid`, that of the file `path`, to `base`.
     fn of(grid: &Grid, base: &Grid, path: &Path) -> Result<Self> {
-        let mut places = grid.whole().outline();
-        let own = places.clone();
-        places.iter_mut().for_each(|place| *place = grid.to_crs.transform_point2(*place));
+        let own = grid.whole().outline();
+        let mut places = grid.outline(grid.whole());
         let way = Way::between(&grid.crs, &base.crs).ok_or_else(|| no_way(path, grid, base))?;
         way.carry(&mut places);
         base.pixels(&mut places);
         if places.iter().any(|place| !place.is_finite()) {
             return Err(no_way(path, grid, base));
         }
-        let low = places.iter().copied().fold(DVec2::INFINITY, DVec2::min);
-        let high = places.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
+        let [low, high] = span(&places);
         let size = DVec2::new(grid.columns as f64, grid.rows as f64);
         let first = (low - 0.5).round();
         let [flip_x, flip_y] = [places[3].x < places[0].x, places[1].y < places[0].y];
@@ -286,13 +284,11 @@ impl Lie {
 
 /// The samples of `source` that cubic convolution needs for all of `target`; `None` where they do not meet.
 pub(super) fn reach(target: &Grid, source: &Grid) -> Option<Window> {
-    let mut places = target.whole().outline();
-    places.iter_mut().for_each(|place| *place = target.to_crs.transform_point2(*place));
+    let mut places = target.outline(target.whole());
     Way::between(&target.crs, &source.crs)?.carry(&mut places);
     source.pixels(&mut places);
     places.retain(|place| place.is_finite());
-    let low = places.iter().copied().fold(DVec2::INFINITY, DVec2::min);
-    let high = places.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
+    let [low, high] = span(&places);
     // Larger cells gather from as many more samples.
     let ratio = (high - low) / DVec2::new(target.columns as f64, target.rows as f64);
     let margin = MARGIN as f64 * ratio.max_element().max(1.0);

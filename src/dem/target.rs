@@ -10,7 +10,7 @@ use std::path::Path;
 use glam::DVec2;
 
 use super::crs::{Crs, Way};
-use super::grid::{Grid, Window};
+use super::grid::{Grid, Window, span};
 use super::inscribed::largest;
 use super::mosaic::reach;
 use super::source::MIN_SIDE;
@@ -152,10 +152,9 @@ impl Region<'_> {
     /// Which of `places` in the target's system lie where cubic convolution has all its samples, and inside the crop.
     fn holds(&self, mut places: Vec<DVec2>) -> Vec<bool> {
         self.back.carry(&mut places);
-        let turn = self.files.crs.turn();
         let cropped = |place: &DVec2| {
             self.crop.is_none_or(|[west, south, east, north]| {
-                let x = turn.map_or(place.x, |turn| place.x + turn * (((west + east) / 2.0 - place.x) / turn).round());
+                let x = self.files.crs.near(place.x, (west + east) / 2.0);
                 (west..=east).contains(&x) && (south..=north).contains(&place.y)
             })
         };
@@ -212,12 +211,10 @@ fn cell_like(files: &Grid, window: Window, way: &Way) -> Option<f64> {
 
 /// All places at whole multiples of `cell` around a window of the files.
 fn lattice_around(files: &Grid, window: Window, way: &Way, crs: &Crs, cell: f64) -> Option<Grid> {
-    let mut places = window.outline();
-    places.iter_mut().for_each(|place| *place = files.to_crs.transform_point2(*place));
+    let mut places = files.outline(window);
     way.carry(&mut places);
-    let low = places.iter().copied().fold(DVec2::INFINITY, DVec2::min) / cell;
-    let high = places.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max) / cell;
-    let (low, high) = (low.floor(), high.ceil());
+    let [low, high] = span(&places);
+    let (low, high) = ((low / cell).floor(), (high / cell).ceil());
     let size = high - low + 1.0;
     let matrix = glam::DMat2::from_diagonal(DVec2::new(cell, -cell));
     let corner = DVec2::new(low.x - 0.5, high.y + 0.5) * cell;
