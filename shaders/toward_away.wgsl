@@ -1,7 +1,8 @@
 // One invocation a block of 4 x 8 pixels: ink where the nearest toward surface is nearer than the nearest away surface,
-// and that is nearer than the toward surface of a neighbour. Mower 2015, algorithm 2. Wide: the nearest away depth that
-// touches the 3 x 3 block takes the place of the pixel's own.
-override wide_block: bool = false;
+// and that is nearer than the toward surface of a neighbour. Mower 2015, algorithm 2. Wide: the nearest away surface that
+// touches the pixel or that neighbour takes the place of the one at the pixel's centre; the line between them runs
+// through one of the two.
+override wide: bool = false;
 
 @group(0) @binding(20) var<storage, read> touched: array<u32>;
 @group(0) @binding(22) var<storage, read_write> out_ink: array<u32>;
@@ -10,17 +11,24 @@ override wide_block: bool = false;
 const COLUMNS: i32 = 4;
 const ROWS: i32 = 8;
 
-// Four pixels side by side, and of each and its two neighbours the farthest toward and the nearest touched away depth.
+const NONE: u32 = 0xffffffffu;
+
+// Four pixels side by side: their own depths, and of each and its two neighbours the farthest toward depth and the
+// farthest touched away depth that is nearer than the toward depth beside it.
 struct Row {
     own_toward: vec4<u32>,
     own_away: vec4<u32>,
     toward: vec4<u32>,
-    touched: vec4<u32>,
+    before: vec4<u32>,
 }
 
 // The pixel at a page place; off the page the nearest one.
 fn pixel_at(at: vec2<i32>) -> vec2<u32> {
     return pixels[pixel_index(clamp(at, vec2<i32>(0), vec2<i32>(camera.size) - 1))];
+}
+
+fn touched_at(at: vec2<i32>) -> u32 {
+    return touched[pixel_index(clamp(at, vec2<i32>(0), vec2<i32>(camera.size) - 1))];
 }
 
 fn row_at(at: vec2<i32>) -> Row {
@@ -34,22 +42,36 @@ fn row_at(at: vec2<i32>) -> Row {
     let away = vec4<u32>(b.x, c.x, d.x, e.x);
     // Toward depths are 0 where a pixel shows sky or an underside.
     let toward = select(vec4<u32>(0u), nearer, nearer > away);
-    let west = vec4<u32>(select(0u, a.y, a.y > a.x), toward.xyz);
-    let east = vec4<u32>(toward.yzw, select(0u, f.y, f.y > f.x));
-    return Row(nearer, away, min(toward, min(west, east)), nearest_touched(at));
+    let first = select(0u, a.y, a.y > a.x);
+    let last = select(0u, f.y, f.y > f.x);
+    let west = vec4<u32>(first, toward.xyz);
+    let east = vec4<u32>(toward.yzw, last);
+    return Row(nearer, away, min(toward, min(west, east)), before_toward(at, toward, first, last));
 }
 
-// Of four pixels side by side and their neighbours, the nearest depth of away facets that touch them.
-fn nearest_touched(at: vec2<i32>) -> vec4<u32> {
-    if !wide_block {
-        return vec4<u32>(0u);
+// Of four pixels side by side and their neighbours, the farthest depth at which away facets touch one of them before the
+// toward surface that it shows.
+fn before_toward(at: vec2<i32>, toward: vec4<u32>, first: u32, last: u32) -> vec4<u32> {
+    if !wide {
+        return vec4<u32>(NONE);
     }
-    var depths: array<u32, 6>;
-    for (var k = 0; k < 6; k++) {
-        depths[k] = touched[pixel_index(clamp(at + vec2<i32>(k - 1, 0), vec2<i32>(0), vec2<i32>(camera.size) - 1))];
-    }
-    let own = vec4<u32>(depths[1], depths[2], depths[3], depths[4]);
-    return max(own, max(vec4<u32>(depths[0], own.xyz), vec4<u32>(own.yzw, depths[5])));
+    let a = touched_at(at - vec2<i32>(1, 0));
+    let own = touched_of(at);
+    let f = touched_at(at + vec2<i32>(4, 0));
+    let middle = select(vec4<u32>(NONE), own, own > toward);
+    let west = vec4<u32>(select(NONE, a, a > first), middle.xyz);
+    let east = vec4<u32>(middle.yzw, select(NONE, f, f > last));
+    return min(middle, min(west, east));
+}
+
+// Nearest depths of away facets that touch four pixels side by side.
+fn touched_of(at: vec2<i32>) -> vec4<u32> {
+    return vec4<u32>(
+        touched_at(at),
+        touched_at(at + vec2<i32>(1, 0)),
+        touched_at(at + vec2<i32>(2, 0)),
+        touched_at(at + vec2<i32>(3, 0)),
+    );
 }
 
 @compute @workgroup_size(64)
@@ -63,10 +85,15 @@ fn toward_away(@builtin(global_invocation_id) invocation: vec3<u32>) {
     var here = row_at(at);
     for (; at.y < end.y; at.y++) {
         let south = row_at(at + vec2<i32>(0, 1));
-        let away = select(here.own_away, max(here.touched, max(north.touched, south.touched)), wide_block);
         // The pixel itself is among the nine: its toward depth is nearer than its away depth, so it inks nothing.
         let toward = min(here.toward, min(north.toward, south.toward));
-        let inked = (here.own_toward > away) & (away > toward);
+        var inked = (here.own_toward > here.own_away) & (here.own_away > toward);
+        if wide {
+            let away = touched_of(at);
+            let own = (here.own_toward > away) & (away > toward);
+            let beside = here.own_toward > min(here.before, min(north.before, south.before));
+            inked = (here.own_toward > here.own_away) & (own | beside);
+        }
         let marks = select(vec4<u32>(0u), vec4<u32>(SILHOUETTE), inked);
         let i = pixel_index(at);
         out_ink[i] = marks.x;

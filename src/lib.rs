@@ -60,5 +60,7 @@ pub mod gpu;
 pub mod ink;
 pub mod plan;
 pub mod render;
+pub mod report;
 pub mod surface;
+pub mod truth;
 pub mod view;

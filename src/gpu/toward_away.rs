@@ -13,7 +13,7 @@ pub const SOURCE: &str = crate::shader!("scene", "ink", "toward_away");
 /// See [`Pass::new`].
 pub fn pass(gpu: &Gpu, wide: bool, constants: &[(&str, f64)]) -> Result<Pass> {
     let wide = f64::from(u8::from(wide));
-    Pass::new(gpu, "toward_away", SOURCE, &[constants, &[("wide_block", wide)]].concat())
+    Pass::new(gpu, "toward_away", SOURCE, &[constants, &[("wide", wide)]].concat())
 }
 
 /// One invocation a block of pixels.

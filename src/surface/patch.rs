@@ -59,7 +59,7 @@ impl Surface {
             points[i] = self.dem.position(c, r);
             normals[i] = (-self.gradient(c, r)).extend(1.0).normalize();
         }
-        Some(pn_point(points, normals, weights))
+        Some(Patch::new(points, normals).point(weights))
     }
 
     /// How many patches exist.
@@ -103,20 +103,47 @@ fn height_in(place: DVec2, p: DVec3, q: DVec3, r: DVec3) -> Option<f64> {
     inside.then_some(p.z + (q.z - p.z) * b + (r.z - p.z) * c)
 }
 
-/// The point of the PN triangle with barycentric `weights`. A corner of weight 0 has no influence.
-pub fn pn_point(p: [DVec3; 3], n: [DVec3; 3], weights: [f64; 3]) -> DVec3 {
-    // The control point a third of the way from corner i to corner j, moved into i's tangent plane.
-    let edge = |i: usize, j: usize| p[i] + ((p[j] - p[i]) - n[i] * (p[j] - p[i]).dot(n[i])) / 3.0;
-    let pairs = [(0, 1), (1, 0), (1, 2), (2, 1), (2, 0), (0, 2)];
-    let mut sum = DVec3::ZERO;
-    for i in 0..3 {
-        sum += p[i] * weights[i].powi(3);
+/// A PN triangle as a cubic Bezier triangle.
+#[derive(Debug, Clone, Copy)]
+pub struct Patch {
+    /// b_ijk by [`Patch::index`]: b300 b210 b120 b030, b201 b111 b021, b102 b012, b003.
+    control: [DVec3; 10],
+}
+
+impl Patch {
+    /// Over three corners with unit normals.
+    pub fn new(p: [DVec3; 3], n: [DVec3; 3]) -> Self {
+        // The control point a third of the way from corner i to corner j, moved into i's tangent plane.
+        let edge = |i: usize, j: usize| p[i] + ((p[j] - p[i]) - n[i] * (p[j] - p[i]).dot(n[i])) / 3.0;
+        let [ab, ba, bc, cb, ca, ac] = [edge(0, 1), edge(1, 0), edge(1, 2), edge(2, 1), edge(2, 0), edge(0, 2)];
+        let mean = (ab + ba + bc + cb + ca + ac) / 6.0;
+        let centre = mean + (mean - (p[0] + p[1] + p[2]) / 3.0) / 2.0;
+        Self { control: [p[0], ab, ba, p[1], ac, centre, bc, ca, cb, p[2]] }
     }
-    let mut mean = DVec3::ZERO;
-    for (i, j) in pairs.into_iter().filter(|&(i, j)| weights[i] > 0.0 && weights[j] > 0.0) {
-        sum += edge(i, j) * (3.0 * weights[i] * weights[i] * weights[j]);
-        mean += edge(i, j) / 6.0;
+
+    /// Place of b_ijk in [`Self::control`], i = 3 - j - k.
+    pub fn index(j: usize, k: usize) -> usize {
+        [0, 4, 7, 9][k] + j
     }
-    let product = 6.0 * weights[0] * weights[1] * weights[2];
-    if product > 0.0 { sum + (mean * 1.5 - (p[0] + p[1] + p[2]) / 6.0) * product } else { sum }
+
+    /// The control points, whose hull holds the patch.
+    pub fn control(&self) -> &[DVec3; 10] {
+        &self.control
+    }
+
+    /// The point with barycentric weights `[a, b, c]`. A corner of weight 0 has no influence.
+    pub fn point(&self, [a, b, c]: [f64; 3]) -> DVec3 {
+        let p = &self.control;
+        let (a3, b3, c3) = (3.0 * a, 3.0 * b, 3.0 * c);
+        p[0] * (a * a * a)
+            + p[3] * (b * b * b)
+            + p[9] * (c * c * c)
+            + p[1] * (a3 * a * b)
+            + p[2] * (b3 * b * a)
+            + p[6] * (b3 * b * c)
+            + p[8] * (c3 * c * b)
+            + p[7] * (c3 * c * a)
+            + p[4] * (a3 * a * c)
+            + p[5] * (2.0 * a3 * b * c)
+    }
 }

@@ -1,0 +1,5 @@
+//! Reports of comparisons: JSON, CSV, a plot, pictures, and a page to read.
+
+pub mod results;
+
+pub use results::Results;
