@@ -18,6 +18,7 @@ mod hardware;
 mod ink;
 mod kernels;
 mod left_out;
+mod memory;
 mod mesh;
 mod metrics;
 mod reflection;

@@ -1,0 +1,3 @@
+//! What a run took.
+
+pub mod memory;
