@@ -26,6 +26,7 @@ mod same_bytes;
 mod scenes;
 mod shell;
 mod silhouettes;
+mod times;
 mod tolerances;
 mod vertices;
 mod viewpoints;
