@@ -49,6 +49,7 @@
 //! | [`gpu`] | device, buffers, one adapter a pass; the mathematics stands in `shaders/` |
 //! | [`ink`] | mask to chains to strokes to pictures |
 //! | [`render`] | the whole algorithm on one screen |
+//! | [`report`] | what a run cost and how it went |
 //! | [`cli`] | flags as typed become options checked |
 
 #![deny(missing_docs)]

@@ -3,15 +3,18 @@
 use std::time::Instant;
 
 use crate::error::{Error, Result};
-use crate::gpu::sizes::LIST_HEADER;
+use crate::gpu::clock::Timer;
 use crate::gpu::uniforms::{Counts, near_plane};
-use crate::gpu::{Buffers, CameraUniform, Extent, Gpu, Pass};
+use crate::gpu::work::{Stage, Work};
+use crate::gpu::{Buffers, CameraUniform, Clock, Extent, Gpu, Pass};
 use crate::gpu::{border, compose, facing, rasterize, rasterize_large, silhouette, tessellate};
 use crate::ink::InkRaster;
 use crate::plan::{Batch, Border, Method, Plan, Thrift, batches};
 use crate::surface::rim::rim;
 use crate::surface::{Lattice, Surface};
 use crate::view::Camera;
+
+pub use crate::gpu::clock::{FrameTime, PassTime};
 
 /// What a frame leaves to read, and what was counted on the way.
 #[derive(Debug, Clone)]
@@ -27,21 +30,6 @@ impl Frame {
     pub fn inked(&self) -> usize {
         self.raster.pixels.iter().filter(|p| p.is_ink()).count()
     }
-}
-
-/// Wall-clock milliseconds of one pass.
-#[derive(Debug, Clone, serde::Serialize)]
-pub struct PassTime {
-    /// The pass.
-    pub name: &'static str,
-    /// Milliseconds from submitting to done, on an otherwise idle device.
-    pub ms: f64,
-}
-
-/// A compiled pass with what it binds: once for the page, or for each round of each batch.
-struct Stage {
-    pass: Pass,
-    groups: Vec<wgpu::BindGroup>,
 }
 
 /// A scene on a device, ready to be seen from any eye.
@@ -144,7 +132,7 @@ impl<'a> Renderer<'a> {
     /// # Errors
     /// Whatever the driver reports; [`Error::Flag`] for an eye out of reach or a camera of another page size.
     pub fn frame(&self, camera: &Camera) -> Result<()> {
-        self.run(camera, &mut Clock::Whole)
+        self.run(camera, None)
     }
 
     /// Draws a frame and brings it back: [`Self::frame`], then [`Self::read`].
@@ -156,17 +144,29 @@ impl<'a> Renderer<'a> {
         self.read()
     }
 
-    /// Draws a frame pass by pass and says how long each took.
+    /// Draws a frame and says how long each pass took, by the [`Clock`] of the device. By the wall clock the whole is
+    /// more than an undisturbed frame takes: see [`Self::time_of_frame`].
     ///
     /// # Errors
-    /// As [`Self::frame`].
-    pub fn timed_frame(&self, camera: &Camera) -> Result<Vec<PassTime>> {
-        let mut clock = Clock::ByPass(Vec::new());
-        self.run(camera, &mut clock)?;
-        Ok(match clock {
-            Clock::ByPass(times) => times,
-            Clock::Whole => Vec::new(),
-        })
+    /// As [`Self::frame`]; [`Error::Gpu`] when the driver's timestamps make no sense.
+    pub fn timed_frame(&self, camera: &Camera) -> Result<FrameTime> {
+        let mut timer = Timer::new(self.gpu);
+        self.run(camera, Some(&mut timer))?;
+        timer.read(self.gpu)
+    }
+
+    /// Draws a frame and says how long it took, ms: by the wall clock around [`Self::frame`], or by the device's
+    /// timestamps from its first command to its last pass.
+    ///
+    /// # Errors
+    /// As [`Self::timed_frame`].
+    pub fn time_of_frame(&self, camera: &Camera) -> Result<f64> {
+        if self.gpu.clock == Clock::Timestamps {
+            return Ok(self.timed_frame(camera)?.ms);
+        }
+        let start = Instant::now();
+        self.frame(camera)?;
+        Ok(start.elapsed().as_secs_f64() * 1e3)
     }
 
     /// Uploads the camera and records the vertices of the scene's only batch, for callers that draw them by other
@@ -194,8 +194,7 @@ impl<'a> Renderer<'a> {
     /// Whatever the driver reports; [`Error::Gpu`] when a pixel has a depth and no ID or a walk was cut short.
     pub fn read(&self) -> Result<Frame> {
         let [width, height] = self.size;
-        let mut clock = Clock::Whole;
-        let mut work = Work::new(self.gpu, &self.buffers, &mut clock);
+        let mut work = Work::new(self.gpu, &self.buffers, None);
         work.record(&self.compose, 0, self.size)?;
         work.finish()?;
         let bytes = self.gpu.read(self.buffers.get("page")?, u64::from(width) * u64::from(height) * 8)?;
@@ -211,7 +210,7 @@ impl<'a> Renderer<'a> {
         Ok(Frame { raster, longest_walk: counts.longest_walk })
     }
 
-    fn run(&self, camera: &Camera, clock: &mut Clock) -> Result<()> {
+    fn run(&self, camera: &Camera, timer: Option<&mut Timer>) -> Result<()> {
         if [camera.width, camera.height] != self.size {
             let [width, height] = self.size;
             let what =
@@ -219,7 +218,7 @@ impl<'a> Renderer<'a> {
             return Err(Error::flag("--size", what, "make a renderer for this size"));
         }
         self.buffers.write_camera(self.gpu, &CameraUniform::new(self.surface.dem(), camera)?)?;
-        let mut work = Work::new(self.gpu, &self.buffers, clock);
+        let mut work = Work::new(self.gpu, &self.buffers, timer);
         work.clear(&["pixels", "ink", "summaries", "counts"])?;
         if self.plan.method == (Method::TowardAway { wide: true }) {
             work.clear(&["touched"])?;
@@ -258,83 +257,5 @@ impl<'a> Renderer<'a> {
             work.submit()?;
         }
         Ok(())
-    }
-}
-
-/// Whether a frame is timed as one or pass by pass.
-enum Clock {
-    Whole,
-    ByPass(Vec<PassTime>),
-}
-
-/// The commands of a frame on their way to the queue.
-struct Work<'a> {
-    gpu: &'a Gpu,
-    buffers: &'a Buffers,
-    clock: &'a mut Clock,
-    encoder: wgpu::CommandEncoder,
-}
-
-impl<'a> Work<'a> {
-    fn new(gpu: &'a Gpu, buffers: &'a Buffers, clock: &'a mut Clock) -> Self {
-        Self { encoder: gpu.device.create_command_encoder(&Default::default()), gpu, buffers, clock }
-    }
-
-    /// Zeroes buffers.
-    fn clear(&mut self, names: &[&str]) -> Result<()> {
-        for name in names {
-            self.encoder.clear_buffer(self.buffers.get(name)?, 0, None);
-        }
-        self.timed("clear")
-    }
-
-    /// Empties a list by the header of an empty one.
-    fn empty(&mut self, list: &str, header: &str) -> Result<()> {
-        let (list, header) = (self.buffers.get(list)?, self.buffers.get(header)?);
-        self.encoder.copy_buffer_to_buffer(header, 0, list, 0, LIST_HEADER);
-        self.timed("clear")
-    }
-
-    fn record(&mut self, stage: &Stage, group: usize, extent: impl Into<Extent>) -> Result<()> {
-        let mut pass = self
-            .encoder
-            .begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(stage.pass.name), timestamp_writes: None });
-        if let Some(group) = stage.groups.get(group) {
-            match extent.into() {
-                Extent::Invocations(wanted) => stage.pass.record(&mut pass, group, wanted),
-                Extent::List(name) => stage.pass.record_over(&mut pass, group, self.buffers.get(name)?),
-            }
-        }
-        drop(pass);
-        self.timed(stage.pass.name)
-    }
-
-    /// Pass by pass: submits what is recorded, waits, and adds the time to the pass's own.
-    fn timed(&mut self, name: &'static str) -> Result<()> {
-        if matches!(self.clock, Clock::Whole) {
-            return Ok(());
-        }
-        let start = Instant::now();
-        self.submit()?;
-        self.gpu.wait()?;
-        let ms = start.elapsed().as_secs_f64() * 1e3;
-        if let Clock::ByPass(times) = self.clock {
-            match times.iter_mut().find(|t| t.name == name) {
-                Some(time) => time.ms += ms,
-                None => times.push(PassTime { name, ms }),
-            }
-        }
-        Ok(())
-    }
-
-    fn submit(&mut self) -> Result<()> {
-        let next = self.gpu.device.create_command_encoder(&Default::default());
-        self.gpu.queue.submit([std::mem::replace(&mut self.encoder, next).finish()]);
-        self.gpu.check()
-    }
-
-    fn finish(mut self) -> Result<()> {
-        self.submit()?;
-        self.gpu.wait()
     }
 }

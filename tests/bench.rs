@@ -83,6 +83,7 @@ fn run(filters: &[String]) -> Result<usize> {
     let without_int64 = Gpu::open(&AdapterChoice::Best, Int64::Never)?;
     println!("{} on {}", path.display(), gpu.info.name);
     println!("{camera:?}");
+    println!("pass by pass: {}", gpu.clock.describe());
     println!("baseline: tessellate and one indexed draw, facet ID from {}", baseline::id_source(&gpu));
     let mut rows = 0;
     for (n, column) in [(4, 0), (8, 1)] {
@@ -154,7 +155,7 @@ fn measure(
             inked = frame.inked();
         }
     }
-    let passes = (0..REPETITIONS).map(|k| ours.timed_frame(&at(k))).collect::<Result<Vec<_>>>()?;
+    let passes = (0..REPETITIONS).map(|k| Ok(ours.timed_frame(&at(k))?.passes)).collect::<Result<Vec<_>>>()?;
     let hash = fnv(masks.iter().flat_map(|m| m.to_le_bytes()));
     let distinct = masks.iter().collect::<HashSet<_>>().len();
     let promise = target.map_or(String::new(), |t| format!(" (target {t:.2})"));

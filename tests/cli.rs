@@ -7,6 +7,8 @@ use std::process::{Command, Output};
 use serde_json::Value;
 use tempfile::TempDir;
 
+use crate::common::gpu;
+
 /// A folder with `hill.asc`: 40 x 40 samples, 10 m, a hill of 60 m and a hole.
 pub struct Place {
     folder: TempDir,
@@ -92,6 +94,7 @@ fn draw_writes_picture_mask_and_report() {
     for key in ["eye", "azimuth", "altitude", "fov", "projection", "crs"] {
         assert!(!report["view"][key].is_null(), "view.{key} is missing: {report}");
     }
+    assert_eq!(report["timing"], gpu().clock.describe());
     assert!(report["passes"][0]["name"].is_string() && report["passes"][0]["ms"].is_number());
     // Patches of 39 x 39 cells less those around 3 x 3 voids, times 4 x 4.
     assert_eq!(report["facets"], (2 * 39 * 39 - (2 * 16 - 2)) * 16);

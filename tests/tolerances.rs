@@ -147,3 +147,8 @@ pub const SAME_TERRAIN_SHARE: f64 = 0.98;
 ///
 /// Example: of 20 000 inked pixels 20 may have no partner, where heights round to another f32.
 pub const SAME_GRID_SHARE: f64 = 0.999;
+
+/// How far the kernel's count of resident memory may lag, bytes: each CPU keeps a few hundred pages to itself.
+///
+/// Example: of 128 MiB taken on a machine of 64 CPUs, up to 128 pages of 4 KiB on each may not be counted yet.
+pub const RESIDENT_BYTES: u64 = 32 << 20;

@@ -210,13 +210,7 @@ impl DrawArguments {
         frame: &Frame,
     ) -> Result<Report> {
         let camera = &view.camera;
-        let mut times = (0..WARM_FRAMES)
-            .map(|_| {
-                let start = Instant::now();
-                renderer.frame(camera)?;
-                Ok(start.elapsed().as_secs_f64() * 1e3)
-            })
-            .collect::<Result<Vec<_>>>()?;
+        let mut times = (0..WARM_FRAMES).map(|_| renderer.time_of_frame(camera)).collect::<Result<Vec<_>>>()?;
         times.sort_by(f64::total_cmp);
         Ok(Report {
             version: env!("CARGO_PKG_VERSION"),
@@ -227,8 +221,8 @@ impl DrawArguments {
             inked: frame.inked(),
             longest_walk: frame.longest_walk,
             frame_ms: times[WARM_FRAMES / 2],
-            timing: "wall clock around submit and wait, camera to mask, without compose and readback; passes one by one",
-            passes: renderer.timed_frame(camera)?,
+            timing: gpu.clock.describe(),
+            passes: renderer.timed_frame(camera)?.passes,
             adapter: format!("{} ({})", gpu.info.name, gpu.info.driver_info),
             int64: gpu.int64,
             view: view.report(surface.dem().georeference(), self.exaggeration),

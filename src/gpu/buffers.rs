@@ -81,6 +81,11 @@ impl Buffers {
         self.named.get(name).ok_or_else(|| Error::Gpu { what: format!("no buffer is named {name}") })
     }
 
+    /// Bytes of all of them on the device.
+    pub fn bytes(&self) -> u64 {
+        self.named.values().chain([&self.batches]).map(wgpu::Buffer::size).sum()
+    }
+
     /// What a pass over batch `index` in round `round` binds under `name`.
     pub fn resource(&self, name: &str, index: usize, round: u32, batch: Batch) -> Option<wgpu::BindingResource<'_>> {
         match name {

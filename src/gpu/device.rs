@@ -3,6 +3,7 @@
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
+use super::clock::Clock;
 use crate::error::{Error, Result};
 
 /// Waiting longer than this for one submission means the device hangs.
@@ -44,6 +45,8 @@ pub struct Gpu {
     pub info: wgpu::AdapterInfo,
     /// Whether 64-bit atomics are in use.
     pub int64: bool,
+    /// What measures the time of frames: timestamps on a GPU that has them.
+    pub clock: Clock,
     failure: Arc<Mutex<Option<String>>>,
     lost: Arc<Mutex<Option<String>>>,
 }
@@ -57,7 +60,8 @@ impl Gpu {
         Self::open_with(choice, int64, wgpu::Features::empty())
     }
 
-    /// Opens an adapter with those of the `extra` features it has: for callers that add passes of their own.
+    /// Opens an adapter with those of the `extra` features it has: for callers that add passes of their own, or want
+    /// the timestamps of a software driver.
     ///
     /// # Errors
     /// As [`Self::open`].
@@ -65,20 +69,29 @@ impl Gpu {
         let adapter = find(choice)?;
         let wanted = wgpu::Features::SHADER_INT64 | wgpu::Features::SHADER_INT64_ATOMIC_MIN_MAX;
         let int64 = int64 == Int64::IfPresent && adapter.features().contains(wanted);
+        let mut features = extra;
+        if int64 {
+            features |= wanted;
+        }
+        if adapter.get_info().device_type != wgpu::DeviceType::Cpu {
+            features |= wgpu::Features::TIMESTAMP_QUERY;
+        }
         let limits = wgpu::Limits { max_storage_buffers_per_shader_stage: STORAGE_BUFFERS, ..wgpu::Limits::default() };
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("hachure"),
-            required_features: if int64 { wanted } else { wgpu::Features::empty() } | extra & adapter.features(),
+            required_features: features & adapter.features(),
             required_limits: limits,
             ..Default::default()
         }))
         .map_err(|e| Error::Gpu { what: one_line(&e) })?;
+        let stamps = device.features().contains(wgpu::Features::TIMESTAMP_QUERY);
+        let clock = if stamps { Clock::Timestamps } else { Clock::Wall };
         let (failure, lost) = (Arc::new(Mutex::new(None)), Arc::new(Mutex::new(None)));
         let slot = failure.clone();
         device.on_uncaptured_error(Arc::new(move |e: wgpu::Error| note(&slot, one_line(&e))));
         let slot = lost.clone();
         device.set_device_lost_callback(move |_, message| note(&slot, message));
-        Ok(Self { device, queue, info: adapter.get_info(), int64, failure, lost })
+        Ok(Self { device, queue, info: adapter.get_info(), int64, clock, failure, lost })
     }
 
     /// Waits until all submitted work is done.

@@ -4,6 +4,7 @@ pub mod adjacency;
 pub mod border;
 pub mod buffers;
 pub mod candidates;
+pub mod clock;
 pub mod compose;
 pub mod device;
 pub mod facing;
@@ -17,8 +18,10 @@ pub mod tessellate;
 pub mod toward_away;
 pub mod uniforms;
 pub mod walk;
+pub mod work;
 
 pub use buffers::Buffers;
+pub use clock::Clock;
 pub use device::{AdapterChoice, Gpu, Int64};
 pub use pass::{Extent, Pass};
 pub use uniforms::CameraUniform;

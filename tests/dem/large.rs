@@ -4,6 +4,7 @@ use std::process::Command;
 use std::time::Instant;
 
 use hachure::dem::{ReadOptions, read};
+use hachure::report::memory::peak;
 use hachure::surface::Surface;
 
 use crate::common::shared_dems;
@@ -35,23 +36,15 @@ fn korea_is_read_in_little_memory() {
 #[cfg(target_os = "linux")]
 fn child_reads_korea() {
     let shared = shared_dems().unwrap();
-    let before = peak();
+    let before = peak().unwrap();
     let start = Instant::now();
     let dem = read(shared.join("korea_srtm3_4400.tif"), &ReadOptions::default()).unwrap();
     let read_s = start.elapsed().as_secs_f64();
     let surface = Surface::new(dem);
     let seconds = start.elapsed().as_secs_f64();
     let samples = (surface.dem().columns() * surface.dem().rows()) as f64;
-    let beside = (peak() - before) / samples - DEM_BYTES;
+    let beside = (peak().unwrap() - before) as f64 / samples - DEM_BYTES;
     println!(
         "korea: {samples} samples, {seconds:.2} s to normals ({read_s:.2} s to heights), {beside:.2} bytes a sample beside grid and normals"
     );
-}
-
-/// Most memory this process has held, bytes.
-#[cfg(target_os = "linux")]
-fn peak() -> f64 {
-    let status = std::fs::read_to_string("/proc/self/status").unwrap();
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).unwrap();
-    line.trim().trim_end_matches(" kB").parse::<f64>().unwrap() * 1024.0
 }

@@ -1,0 +1,68 @@
+//! What scenes take on the device, and what a process takes on the machine.
+
+use hachure::gpu::sizes::written;
+use hachure::plan::{Border, Method};
+use hachure::surface::Surface;
+
+use crate::scenes::{gpu, level, look, renderer, rough};
+
+/// Bytes of a scene's buffers on a page of this size.
+fn bytes(surface: &Surface, n: u32, size: [u32; 2]) -> u64 {
+    let view = look(glam::DVec3::ZERO, glam::DVec3::Y, 60.0, size);
+    renderer(gpu(), surface, &view, level(n), Method::Walk, Border::On).buffers().bytes()
+}
+
+#[test]
+fn bytes_on_the_device_grow_with_page_level_and_grid() {
+    let surface = Surface::new(rough(33, 33, 1.0, 1.0, false));
+    let small = bytes(&surface, 1, [64, 64]);
+    // Key, touched, ink, candidate, pair and page of a pixel: 8 + 4 + 4 + 4 + 4 + 8.
+    assert_eq!(bytes(&surface, 1, [64, 65]) - small, 64 * 32);
+    // All that passes write of one chunk, and the samples, are among them.
+    let least: u64 = written(1, [64, 64]).expect("a page").iter().map(|(_, bytes)| bytes).sum();
+    let samples = 33 * 33 * 3 * 4;
+    assert!(small > least + samples && small < least + 2 * samples, "{small}, at least {least} and {samples}");
+    // Level 2 has four chunks instead of one: 1089 vertices of 32 bytes and 2048 facets queued and faced.
+    assert!(bytes(&surface, 2, [64, 64]) - small > 3 * (1089 * 32 + 2048 * 4));
+    let wider = Surface::new(rough(34, 33, 1.0, 1.0, false));
+    assert!(bytes(&wider, 1, [64, 64]) > small + 33 * 3 * 4);
+}
+
+#[cfg(target_os = "linux")]
+mod process {
+    use std::hint::black_box;
+    use std::process::Command;
+
+    use hachure::report::memory::{peak, reset_peak};
+
+    use crate::tolerances::RESIDENT_BYTES;
+
+    const MANY: u64 = 128 << 20;
+
+    #[test]
+    fn the_peak_rises_with_what_is_held_and_falls_when_reset() {
+        // Alone in a process, for the peak is the process's.
+        let test = std::env::current_exe().unwrap();
+        let child = "memory::process::child_holds_and_drops";
+        let ran = Command::new(test).args(["--exact", child, "--ignored", "--nocapture"]).output().unwrap();
+        let said = String::from_utf8_lossy(&ran.stdout).into_owned();
+        assert!(ran.status.success() && said.contains("peaks: "), "{said}");
+    }
+
+    #[test]
+    #[ignore = "run by the_peak_rises_with_what_is_held_and_falls_when_reset in a process of its own"]
+    fn child_holds_and_drops() {
+        let before = peak().unwrap();
+        drop(black_box(vec![1_u8; MANY as usize]));
+        let held = peak().unwrap();
+        reset_peak();
+        let after = peak().unwrap();
+        println!("peaks: {before}, {held}, {after} bytes");
+        assert!(held >= before + MANY - RESIDENT_BYTES, "what is dropped again is still the peak");
+        let refused = std::fs::OpenOptions::new().write(true).open("/proc/self/clear_refs").is_err();
+        assert!(
+            if refused { after == held } else { after <= held - MANY + RESIDENT_BYTES },
+            "reset refused: {refused}"
+        );
+    }
+}
