@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use rstar::primitives::Line as Segment;
 use rstar::{PointDistance, RTree};
 
-use super::{Inked, Mask, Piece, Truth};
+use super::{Mask, Piece, Truth};
 
 /// Distances k at which [`Scores::at`] holds figures, px.
 pub const DISTANCES: [f64; 4] = [0.5, 1.0, 2.0, 3.0];
@@ -87,6 +87,8 @@ pub struct BandScore {
 pub struct Offsets {
     /// Mean.
     pub mean: f64,
+    /// Half are no farther.
+    pub median: f64,
     /// 95 % are no farther.
     pub p95: f64,
 }
@@ -120,86 +122,122 @@ impl<'a> Judge<'a> {
     /// Distances of places from truth; `None` without places.
     pub fn offsets(&self, places: &[DVec2]) -> Option<Offsets> {
         let distances: Vec<_> = places.par_iter().map(|place| (self.distance(*place), 1.0)).collect();
-        summary(distances).map(|[mean, p95]| Offsets { mean, p95 })
+        summary(distances)
     }
 
     /// Distances of the pieces of another truth from this one, by length; `None` where it has none on the page.
     pub fn offsets_of(&self, other: &Truth) -> Option<Offsets> {
         let pieces: Vec<_> = other.on_page().collect();
         let distances = pieces.par_iter().map(|piece| (self.distance(piece.middle()), piece.length()));
-        summary(distances.collect()).map(|[mean, p95]| Offsets { mean, p95 })
+        summary(distances.collect())
     }
 
-    /// How far a mask of the same page is from truth.
-    pub fn score(&self, mask: &Mask) -> Scores {
-        let inks: Vec<f64> = mask.inked.par_iter().map(|p| self.distance(p.centre())).collect();
+    /// Measures a mask of the same page against truth, and truth against the mask.
+    pub fn measure<'m>(&'m self, mask: &'m Mask) -> Measured<'m> {
         let centres = RTree::bulk_load(mask.inked.iter().map(|p| p.centre().to_array()).collect());
-        let pieces: Vec<&Piece> = self.truth.on_page().collect();
         let to_ink = |piece: &&Piece| {
             let middle = piece.middle().to_array();
             centres.nearest_neighbor(middle).map_or(f64::INFINITY, |centre| centre.distance_2(&middle).sqrt())
         };
-        let misses: Vec<f64> = pieces.par_iter().map(to_ink).collect();
-        let agreement = |within: f64, ink: &dyn Fn(&Inked) -> bool, line: &dyn Fn(&Piece) -> bool| {
-            let inked = mask.inked.iter().zip(&inks).filter(|(p, _)| ink(p)).map(|(_, d)| (*d, 1.0));
-            let lines = pieces.iter().zip(&misses).filter(|(p, _)| line(p)).map(|(p, d)| (*d, p.length()));
-            Agreement { precision: share_within(within, inked), recall: share_within(within, lines) }
-        };
-        let at = DISTANCES.map(|k| agreement(k + HALF, &|_| true, &|_| true));
-        let bands = [0, 1, 2].map(|band| {
-            let holds = |distance: f64| self.bands.iter().filter(|end| distance > **end).count() == band;
-            BandScore {
-                to: self.bands.get(band).copied().unwrap_or(f64::INFINITY),
-                length: pieces.iter().filter(|p| holds(p.distance)).map(|p| p.length()).sum(),
-                inked: mask.inked.iter().filter(|p| holds(p.distance)).count(),
-                agreement: agreement(WITHIN, &|p| holds(p.distance), &|p| holds(p.distance)),
-            }
-        });
-        let directed = [
-            summary(inks.iter().map(|d| (*d, 1.0)).collect()),
-            summary(misses.iter().zip(&pieces).map(|(d, p)| (*d, p.length())).collect()),
-        ];
-        let (chamfer, h95) = match directed {
-            [Some(ink), Some(line)] => (Some((ink[0] + line[0]) / 2.0), Some(ink[1].max(line[1]))),
+        let pieces: Vec<&Piece> = self.truth.on_page().collect();
+        Measured {
+            judge: self,
+            mask,
+            to_truth: mask.inked.par_iter().map(|p| self.distance(p.centre())).collect(),
+            to_ink: pieces.par_iter().map(to_ink).collect(),
+            pieces,
+        }
+    }
+}
+
+/// A mask and truth with their distances from each other.
+pub struct Measured<'a> {
+    judge: &'a Judge<'a>,
+    mask: &'a Mask,
+    /// Of each inked pixel, px.
+    to_truth: Vec<f64>,
+    pieces: Vec<&'a Piece>,
+    /// Of each piece, px; infinite without ink.
+    to_ink: Vec<f64>,
+}
+
+impl Measured<'_> {
+    /// Every figure.
+    pub fn scores(&self) -> Scores {
+        let (chamfer, h95) = match (summary(self.ink(|_| true)), summary(self.lines(|_| true))) {
+            (Some(ink), Some(line)) => (Some((ink.mean + line.mean) / 2.0), Some(ink.p95.max(line.p95))),
             _ => (None, None),
         };
-        let far = |component: &&Vec<usize>| component.iter().all(|&i| inks[i] > SPURIOUS);
-        let components = mask.components();
+        let far = |component: &&Vec<usize>| component.iter().all(|&i| self.to_truth[i] > SPURIOUS);
+        let gaps = self.missed().components();
         Scores {
-            at,
-            bands,
-            gaps: self.gaps(&pieces, &misses),
-            spurious: components.iter().filter(far).count(),
+            at: DISTANCES.map(|k| self.agreement(k + HALF, |_| true)),
+            bands: [0, 1, 2].map(|band| self.band(band)),
+            gaps: gaps.iter().filter(|component| component.len() >= GAP).count(),
+            spurious: self.mask.components().iter().filter(far).count(),
             chamfer,
             h95,
-            fragments: mask.fragments(FRAGMENT),
+            fragments: self.mask.fragments(FRAGMENT),
         }
     }
 
-    /// Stretches of truth that ink misses.
-    fn gaps(&self, pieces: &[&Piece], misses: &[f64]) -> usize {
-        let missed = pieces.iter().zip(misses).filter(|(_, d)| **d > WITHIN).map(|(p, _)| *p);
-        let missed = Mask::of_pieces(self.truth.size, missed);
-        missed.components().iter().filter(|component| component.len() >= GAP).count()
+    /// Whether each inked pixel lies within 1 px of truth, in the order of the mask.
+    pub fn agrees(&self) -> impl Iterator<Item = bool> {
+        self.to_truth.iter().map(|distance| *distance <= WITHIN)
+    }
+
+    /// The pixels of truth, drawn one pixel wide, that have no ink within 1 px.
+    pub fn missed(&self) -> Mask {
+        let missed = self.pieces.iter().zip(&self.to_ink).filter(|(_, distance)| **distance > WITHIN);
+        Mask::of_pieces(self.mask.size, missed.map(|(piece, _)| *piece))
+    }
+
+    fn band(&self, band: usize) -> BandScore {
+        let ends = &self.judge.bands;
+        let holds = |distance: f64| ends.iter().filter(|end| distance > **end).count() == band;
+        BandScore {
+            to: ends.get(band).copied().unwrap_or(f64::INFINITY),
+            length: self.lines(holds).iter().map(|(_, length)| length).sum(),
+            inked: self.ink(holds).len(),
+            agreement: self.agreement(WITHIN, holds),
+        }
+    }
+
+    /// Within so many px, of ink and lines at depths that `holds`.
+    fn agreement(&self, within: f64, holds: impl Fn(f64) -> bool) -> Agreement {
+        Agreement {
+            precision: share_within(within, &self.ink(&holds)),
+            recall: share_within(within, &self.lines(&holds)),
+        }
+    }
+
+    /// Distances of inked pixels at depths that `holds`, each of weight 1.
+    fn ink(&self, holds: impl Fn(f64) -> bool) -> Vec<(f64, f64)> {
+        let inked = self.mask.inked.iter().zip(&self.to_truth).filter(|(p, _)| holds(p.distance));
+        inked.map(|(_, distance)| (*distance, 1.0)).collect()
+    }
+
+    /// Distances of pieces at depths that `holds`, each of the weight of its length.
+    fn lines(&self, holds: impl Fn(f64) -> bool) -> Vec<(f64, f64)> {
+        let pieces = self.pieces.iter().zip(&self.to_ink).filter(|(p, _)| holds(p.distance));
+        pieces.map(|(piece, distance)| (*distance, piece.length())).collect()
     }
 }
 
 /// Share of the weights whose distance is at most `within`; 1 of nothing.
-fn share_within(within: f64, weighted: impl Iterator<Item = (f64, f64)>) -> f64 {
-    let (mut near, mut all) = (0.0, 0.0);
-    for (distance, weight) in weighted {
-        all += weight;
-        near += if distance <= within { weight } else { 0.0 };
-    }
+fn share_within(within: f64, weighted: &[(f64, f64)]) -> f64 {
+    let all: f64 = weighted.iter().map(|(_, weight)| weight).sum();
+    let near: f64 = weighted.iter().filter(|(distance, _)| *distance <= within).map(|(_, weight)| weight).sum();
     if all > 0.0 { near / all } else { 1.0 }
 }
 
-/// Mean and 95 % quantile of weighted distances; `None` of nothing.
-fn summary(mut weighted: Vec<(f64, f64)>) -> Option<[f64; 2]> {
+/// Of weighted distances; `None` of nothing.
+fn summary(mut weighted: Vec<(f64, f64)>) -> Option<Offsets> {
     let all: f64 = weighted.iter().map(|(_, weight)| weight).sum();
     let mean = weighted.iter().map(|(distance, weight)| distance * weight).sum::<f64>() / all;
     weighted.sort_by(|a, b| a.0.total_cmp(&b.0));
-    (all > 0.0).then(|| [mean, quantile(&weighted, 0.95 * all)])
+    let [median, p95] = [0.5, 0.95].map(|share| quantile(&weighted, share * all));
+    (all > 0.0).then_some(Offsets { mean, median, p95 })
 }
 
 /// The least value up to which the weights of sorted values add up to `weight`; 0 of nothing.
