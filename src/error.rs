@@ -44,6 +44,14 @@ pub enum Error {
         /// What the user can do.
         remedy: String,
     },
+    /// A view in which there is nothing to do.
+    #[error("{what}; {remedy}")]
+    Scene {
+        /// Which view, and what it lacks.
+        what: String,
+        /// What the user can do.
+        remedy: String,
+    },
     /// No GPU and no software driver either, or none of the asked name.
     #[error("no GPU adapter: {what}; {remedy}")]
     NoAdapter {

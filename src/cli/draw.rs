@@ -7,6 +7,7 @@ use clap::ValueEnum;
 use glam::DVec2;
 use serde::Serialize;
 
+use super::device::DeviceArguments;
 use super::outputs::OutputArguments;
 use super::talk::Talk;
 use super::terrain::TerrainArguments;
@@ -15,7 +16,7 @@ use super::viewpoint::{View, ViewArguments, ViewReport};
 use crate::dem::Dem;
 use crate::error::{Error, Result};
 use crate::gpu::sizes::page_fits;
-use crate::gpu::{AdapterChoice, Gpu, Int64};
+use crate::gpu::Gpu;
 use crate::ink::{self, Style};
 use crate::plan::{Border, Method, Plan, Share};
 use crate::render::{Frame, PassTime, Renderer};
@@ -74,12 +75,8 @@ pub struct DrawArguments {
     #[arg(long, default_value = "on", help_heading = "Method")]
     border: Border,
 
-    /// Adapter: cpu, gpu, or words of its name [default: the best one]
-    #[arg(long, value_name = "NAME|cpu|gpu", value_parser = values::adapter, help_heading = "Device")]
-    adapter: Option<AdapterChoice>,
-    /// Draw as on a device without 64-bit atomics
-    #[arg(long, hide = true)]
-    no_int64: bool,
+    #[command(flatten)]
+    device: DeviceArguments,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -142,7 +139,7 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     arguments.view.check()?;
     let mut outputs = arguments.outputs.open(&arguments.terrain.dems)?;
     let started = Instant::now();
-    let dem = arguments.terrain.read(arguments.exaggeration, talk)?;
+    let dem = arguments.terrain.read(&arguments.terrain.dems, arguments.exaggeration, talk)?;
     talk.progress("computing normals", 0.1);
     let surface = Surface::new(dem);
     let view = arguments.view.view(&surface, arguments.level)?;
@@ -150,10 +147,7 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     talk.say(&format!("view: {}", view.flags()))?;
     view.lonlat_flag().map_or(Ok(()), |flag| talk.say(&format!("or with: {flag}")))?;
     talk.progress("opening the adapter", 0.2);
-    let int64 = if arguments.no_int64 { Int64::Never } else { Int64::IfPresent };
-    let gpu = Gpu::open(&arguments.adapter.clone().unwrap_or_default(), int64)?;
-    talk.say(&format!("adapter: {}", gpu.info.name))?;
-    talk.detail(&format!("driver: {} {}", gpu.info.driver, gpu.info.driver_info))?;
+    let gpu = arguments.device.open(talk)?;
     talk.progress("drawing", 0.4);
     let renderer = Renderer::new(&gpu, &surface, Plan::new(arguments.level, method, arguments.border), size)?;
     let frame = renderer.draw(&view.camera)?;

@@ -1,5 +1,7 @@
 //! The command line, one file a subcommand: flags as typed become options checked.
 
+pub mod compare;
+pub mod device;
 pub mod draw;
 pub mod generate;
 pub mod info;
@@ -8,6 +10,7 @@ pub mod talk;
 pub mod terrain;
 pub mod values;
 pub mod viewpoint;
+pub mod views;
 
 use clap::{Parser, Subcommand};
 
@@ -19,6 +22,7 @@ const EXAMPLES: &str = "\
 Examples:
   hachure info dem/golden-gate.tif
   hachure draw dem/golden-gate.tif -o golden-gate.png
+  hachure compare dem/golden-gate.tif -o report
 
 `hachure draw --help` has more.";
 
@@ -36,6 +40,8 @@ pub struct Arguments {
 enum Command {
     /// Draw a DEM as seen from an eye
     Draw(Box<draw::DrawArguments>),
+    /// Compare silhouette methods: their errors and their times, as a report
+    Compare(Box<compare::CompareArguments>),
     /// Say what a DEM holds
     Info(info::InfoArguments),
     /// Make completions and man pages
@@ -60,6 +66,7 @@ impl Arguments {
     pub fn run(&self, talk: &Talk) -> Result<()> {
         match &self.command {
             Command::Draw(arguments) => draw::run(arguments, talk),
+            Command::Compare(arguments) => compare::run(arguments, talk),
             Command::Info(arguments) => info::run(arguments, talk),
             Command::Generate(arguments) => generate::run(arguments),
         }

@@ -52,13 +52,13 @@ impl TerrainArguments {
         }
     }
 
-    /// Reads the DEM, with progress, and says what was converted and assumed.
+    /// Reads `files` as one DEM, with progress, and says what was converted and assumed.
     ///
     /// # Errors
     /// As [`dem::read_all`].
-    pub fn read(&self, exaggeration: f64, talk: &Talk) -> Result<Dem> {
+    pub fn read(&self, files: &[PathBuf], exaggeration: f64, talk: &Talk) -> Result<Dem> {
         let progress = |stage, share| talk.progress(words(stage), share);
-        let dem = dem::read_all(&self.dems, &self.options(exaggeration), &progress)?;
+        let dem = dem::read_all(files, &self.options(exaggeration), &progress)?;
         dem.history().assumed().iter().for_each(|clause| talk.warn(&format!("assumed that {clause}")));
         dem.history().converted().iter().try_for_each(|clause| talk.say(&format!("converted: {clause}")))?;
         dem.history().usual().iter().try_for_each(|clause| talk.detail(&format!("assumed: {clause}")))?;

@@ -5,6 +5,8 @@ use glam::DVec2;
 use crate::dem::ElevationUnit;
 use crate::gpu::AdapterChoice;
 use crate::gpu::sizes::LARGEST_SIDE;
+use crate::plan::Method;
+use crate::report::compare::{LEAST_TRUTH_LEVEL, METHODS};
 use crate::surface::Level;
 
 /// No place on Earth has coordinates beyond this, in any unit.
@@ -127,6 +129,22 @@ pub fn size(text: &str) -> Result<Size, String> {
 /// A level: subdivisions of a cell's edge.
 pub fn level(text: &str) -> Result<Level, String> {
     text.parse().ok().and_then(Level::new).ok_or_else(|| "want 1, 2, 4, 8, 16, 32 or 64".into())
+}
+
+/// A level of truth.
+pub fn truth_level(text: &str) -> Result<Level, String> {
+    level(text).ok().filter(|level| *level >= LEAST_TRUTH_LEVEL).ok_or_else(|| "want 8, 16, 32 or 64".into())
+}
+
+/// Frames behind a median.
+pub fn repeat(text: &str) -> Result<usize, String> {
+    text.parse().ok().filter(|n| (9..=10_000).contains(n)).ok_or_else(|| "want 9 to 10000 frames".into())
+}
+
+/// A method with all it takes, by the name that reports have for it.
+pub fn method(text: &str) -> Result<(&'static str, Method), String> {
+    let names = METHODS.map(|(name, _)| name).join(", ");
+    METHODS.into_iter().find(|(name, _)| *name == text).ok_or_else(|| format!("want some of {names}"))
 }
 
 /// `cpu`, `gpu` or words of an adapter's name.

@@ -17,7 +17,7 @@ const DEGREE_DECIMALS: i32 = 8;
 const METRE_DECIMALS: i32 = 3;
 
 /// The flags, as typed.
-#[derive(Debug, clap::Args)]
+#[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "View")]
 pub struct ViewArguments {
     /// Eye: easting, northing in the CRS of the DEM; exaggerated height in metres, or +H above the ground
@@ -98,6 +98,27 @@ struct FileReport {
 }
 
 impl ViewArguments {
+    /// The flags of a view that a file gives.
+    pub fn of_file(eye: Option<Standpoint>, lonlat: Option<Standpoint>, [azimuth, altitude]: [Option<f64>; 2], fov: f64, size: Size) -> Self {
+        Self { eye, lonlat, look_at: None, crs: None, azimuth, altitude, fov, size }
+    }
+
+    /// The flag that says where the eye is or looks, if one is given.
+    pub fn flag(&self) -> Option<&'static str> {
+        let given = [
+            ("--eye", self.eye.is_some()),
+            ("--lonlat", self.lonlat.is_some()),
+            ("--azimuth", self.azimuth.is_some()),
+            ("--altitude", self.altitude.is_some()),
+        ];
+        given.into_iter().find(|(_, given)| *given).map(|(flag, _)| flag)
+    }
+
+    /// Horizontal field of view, degrees.
+    pub fn fov(&self) -> f64 {
+        self.fov
+    }
+
     /// Checks what can be checked before the DEM is read.
     ///
     /// # Errors

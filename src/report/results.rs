@@ -89,7 +89,7 @@ pub struct Scene {
     pub border: bool,
     /// What the runs are measured against.
     pub truth: TruthReport,
-    /// How the places of the walk close in on truth, where it ran at two levels or more.
+    /// How coarser levels close in on truth.
     pub convergence: Option<Convergence>,
     /// File name of truth drawn one pixel wide.
     pub picture: String,
@@ -118,19 +118,33 @@ pub struct TruthReport {
     pub self_recall: f64,
     /// Harmonic mean of the two.
     pub self_f: f64,
-    /// Mean distance of the curves of half the level from these, no pixels between.
+    /// Median distance of the curves of half the level from these, no pixels between.
     pub self_offset_px: f64,
 }
 
-/// Mean distance of the walk's sub-pixel places from truth, level by level, and the straight line through it.
+/// How coarser levels close in on truth: the distances of their flip edges, and the straight line through the logarithms
+/// of the medians.
 #[derive(Debug, Clone, Serialize)]
 pub struct Convergence {
-    /// Level and mean distance in px.
-    pub offsets_px: Vec<(u32, f64)>,
+    /// Levels below truth's.
+    pub levels: Vec<LevelOffset>,
     /// Levels the line was fitted to: those above truth's own error.
     pub fitted_levels: Vec<u32>,
-    /// d log2(offset) / d log2(level): -2 is second order; `None` with fewer than two levels to fit.
+    /// d log2(median) / d log2(level): -2 is second order; `None` with fewer than two levels to fit.
     pub slope: Option<f64>,
+}
+
+/// Distances of the visible flip edges of a level from truth, by length, no pixels between.
+#[derive(Debug, Clone, Serialize)]
+pub struct LevelOffset {
+    /// Subdivisions of a cell's edge.
+    pub level: u32,
+    /// Half the line is no farther.
+    pub median_px: f64,
+    /// Mean.
+    pub mean_px: f64,
+    /// 95 % of the line is no farther.
+    pub p95_px: f64,
 }
 
 /// A method at a level in a scene.

@@ -46,6 +46,9 @@ impl Default for Level {
 }
 
 impl Level {
+    /// Eight subdivisions of a cell's edge.
+    pub const EIGHT: Self = Self(8);
+
     /// The level with `n` subdivisions, `None` unless `n` is 1, 2, 4, 8, 16, 32 or 64.
     pub fn new(n: u32) -> Option<Self> {
         (n.is_power_of_two() && n <= CELL_STEPS).then_some(Self(n))

@@ -26,7 +26,8 @@ impl Bounds {
 
 /// A surface with a quadtree of bounds: 12 bytes a cell, and a third of that for the nodes above.
 pub struct Terrain<'a> {
-    pub(super) surface: &'a Surface,
+    /// What it bounds.
+    pub surface: &'a Surface,
     /// Cells first, then nodes of 2 x 2, 4 x 4 ... of them, up to one.
     layers: Vec<Layer>,
 }

@@ -1,0 +1,269 @@
+//! `hachure compare`: methods at levels, their errors against truth and their times, as a report.
+
+use std::cell::Cell;
+use std::path::{Path, PathBuf};
+use std::thread::available_parallelism;
+
+use super::device::DeviceArguments;
+use super::talk::Talk;
+use super::terrain::TerrainArguments;
+use super::values::{self, Size};
+use super::viewpoint::{View, ViewArguments};
+use super::views::{self, NamedView};
+use crate::error::{Error, Result};
+use crate::gpu::Gpu;
+use crate::gpu::sizes::page_fits;
+use crate::plan::{Border, Method};
+use crate::report::cache::Cache;
+use crate::report::compare::{Compared, Comparison, Hearing, METHODS};
+use crate::report::folder::{Contents, Folder};
+use crate::report::pictures::Picture;
+use crate::report::results::{Machine, Results, SCHEMA, Scene, TruthSummary};
+use crate::report::{error_time_svg, report_html, write_csv};
+use crate::surface::{Level, Surface};
+use crate::truth::Terrain;
+
+/// The end of `hachure compare --help`.
+const EXAMPLES: &str = "\
+Methods: walk, toward-away, toward-away-wide, adjacency (facets that share an edge), adjacency-corner.
+
+Times are medians of warm frames; each moves the eye 1 m along the view, the first frame stands apart. Truth is found on
+the CPU and kept in the user's folder for caches.
+
+A file of views is JSON: {\"views\": [{\"name\": \"crater\", \"dem\": \"st-helens.tif\", \"eye\": [560374, 5124979, 1223],
+\"azimuth\": 170, \"altitude\": -3, \"fov\": 60}, ...]}; \"lonlat\": [LON, LAT, HEIGHT] may stand for \"eye\", \"+200\" for a
+height of 200 m above the ground. Its views of the DEMs given are drawn.
+
+Examples:
+  hachure compare dem/golden-gate.tif -o report --size 1280x720
+
+  Two methods at three levels, without border lines:
+  hachure compare dem/golden-gate.tif -o report --methods walk,toward-away --levels 2,4,8 --border off
+
+  Every view of two DEMs that a file holds, on pages of two sizes:
+  hachure compare west-temple.tif st-helens.tif -o report --views views.json --sizes 640x360,1280x720";
+
+/// Flags of `hachure compare`, as typed.
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub struct CompareArguments {
+    #[command(flatten)]
+    terrain: TerrainArguments,
+
+    /// The folder for the report: report.html, results.json, results.csv, error-time.svg, and every picture
+    #[arg(short, long, value_name = "DIR")]
+    output: PathBuf,
+
+    #[command(flatten)]
+    view: ViewArguments,
+    /// Pages, pixels across and down [default: --size]
+    #[arg(long, value_name = "WxH,...", value_parser = values::size, value_delimiter = ',', help_heading = "View")]
+    sizes: Vec<Size>,
+    /// A file of views, drawn instead of the one that flags give
+    #[arg(long, value_name = "FILE", help_heading = "View")]
+    views: Option<PathBuf>,
+
+    /// Factor on every elevation
+    #[arg(long, value_name = "X", value_parser = values::exaggeration, allow_hyphen_values = true, default_value = "1", help_heading = "Surface")]
+    exaggeration: f64,
+    /// Subdivisions of a cell's edge: 1, 2, 4, 8, 16, 32 or 64
+    #[arg(long, value_name = "N,...", value_parser = values::level, value_delimiter = ',', default_value = "1,2,4,8", help_heading = "Surface")]
+    levels: Vec<Level>,
+
+    /// Methods to compare [default: all]
+    #[arg(long, value_name = "NAME,...", value_parser = values::method, value_delimiter = ',', help_heading = "Method")]
+    methods: Vec<(&'static str, Method)>,
+    /// Whether the visible border of the DEM and of its voids is drawn and judged
+    #[arg(long, default_value = "on", help_heading = "Method")]
+    border: Border,
+
+    /// Subdivisions of a cell's edge for truth: 8, 16, 32 or 64 [default: no visible cell's edge longer than a pixel]
+    #[arg(long, value_name = "N", value_parser = values::truth_level, help_heading = "Measure")]
+    truth_level: Option<Level>,
+    /// Warm frames behind each time, at least 9
+    #[arg(long, value_name = "N", value_parser = values::repeat, default_value = "9", help_heading = "Measure")]
+    repeat: usize,
+    /// Find truth anew and keep it nowhere
+    #[arg(long, help_heading = "Measure")]
+    no_cache: bool,
+
+    #[command(flatten)]
+    device: DeviceArguments,
+}
+
+/// Views of one DEM.
+struct Job {
+    files: Vec<PathBuf>,
+    views: Vec<NamedView>,
+}
+
+/// Compares.
+///
+/// # Errors
+/// Whatever went wrong; no page stands in the folder then.
+pub fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
+    let sizes = arguments.sizes();
+    sizes.iter().try_for_each(|size| page_fits([size.width, size.height]))?;
+    arguments.view.check()?;
+    let jobs = arguments.jobs(talk)?;
+    let folder = Folder::open(&arguments.output)?;
+    let comparison = arguments.comparison();
+    let runs = comparison.methods.len() * comparison.levels.len();
+    let stages = jobs.iter().map(|job| job.views.len()).sum::<usize>() * sizes.len() * (runs + 1);
+    let (done, gpu) = (Cell::new(0), arguments.device.open(talk)?);
+    let hearing = Hearing {
+        stage: &|stage| {
+            talk.progress(stage, done.get() as f64 / stages as f64);
+            done.set(done.get() + 1);
+        },
+        warn: &|words| talk.warn(words),
+        say: &|line| talk.say(line),
+        detail: &|line| talk.detail(line),
+    };
+    let (mut scenes, mut runs, mut pictures) = (Vec::new(), Vec::new(), Vec::new());
+    for job in &jobs {
+        let surface = Surface::new(arguments.terrain.read(&job.files, arguments.exaggeration, talk)?);
+        let terrain = Terrain::new(&surface);
+        for (named, size) in job.views.iter().flat_map(|view| sizes.iter().map(move |size| (view, *size))) {
+            // Heights above ground are above the level of `hachure draw`.
+            let mut view = named.view.view(&surface, Level::default())?;
+            (view.camera.width, view.camera.height) = (size.width, size.height);
+            let name = scene_name(&named.name, size, &sizes);
+            let found = comparison.scene(&gpu, &name, &terrain, &view.camera, &hearing)?;
+            let (scene, of_scene, drawn) = arguments.scene(name, &job.files, &surface, &view, found);
+            scenes.push(scene);
+            runs.extend(of_scene);
+            pictures.extend(drawn);
+        }
+    }
+    talk.progress("writing", 1.0);
+    let results = Results {
+        version: SCHEMA,
+        hachure: env!("CARGO_PKG_VERSION"),
+        command: std::env::args().collect::<Vec<_>>().join(" "),
+        machine: machine(&gpu),
+        truth: least_sure(&scenes),
+        scenes,
+        runs,
+    };
+    let page = folder.page();
+    folder.publish(&contents(&results, &pictures)?, &pictures)?;
+    talk.say(&format!("report: {}", page.display()))
+}
+
+impl CompareArguments {
+    fn sizes(&self) -> Vec<Size> {
+        if self.sizes.is_empty() { vec![self.view.size] } else { self.sizes.clone() }
+    }
+
+    fn comparison(&self) -> Comparison {
+        Comparison {
+            methods: if self.methods.is_empty() { METHODS.to_vec() } else { self.methods.clone() },
+            levels: self.levels.clone(),
+            repeat: self.repeat,
+            border: self.border,
+            truth_level: self.truth_level,
+            cache: if self.no_cache { Cache::none() } else { Cache::of_user() },
+        }
+    }
+
+    /// The view that flags give, of all files as one DEM; or the views of a file, of each DEM by itself.
+    fn jobs(&self, talk: &Talk) -> Result<Vec<Job>> {
+        let dems = &self.terrain.dems;
+        let Some(path) = &self.views else {
+            let name = dems.first().and_then(|dem| dem.file_stem()).unwrap_or_default();
+            let name = views::file_name(&name.to_string_lossy());
+            let view = NamedView { name, dem: PathBuf::new(), view: self.view.clone() };
+            return Ok(vec![Job { files: dems.clone(), views: vec![view] }]);
+        };
+        if let Some(flag) = self.view.flag() {
+            return Err(Error::flag("--views", format!("the file gives the views, so does {flag}"), "leave out one of the two"));
+        }
+        let mut views = views::read(path, self.view.fov(), self.view.size)?;
+        let mut jobs = Vec::new();
+        for dem in dems {
+            let (of_dem, others) = views.into_iter().partition(|view| Some(view.dem.as_os_str()) == dem.file_name());
+            views = others;
+            jobs.push(Job { files: vec![dem.clone()], views: of_dem });
+        }
+        views.iter().try_for_each(|view| {
+            talk.say(&format!("view {} passed over: {} is not among the DEMs given", view.name, view.dem.display()))
+        })?;
+        jobs.retain(|job| !job.views.is_empty());
+        if jobs.is_empty() {
+            return Err(Error::input(path, "none of its views is of a DEM given", "give the DEMs its views name"));
+        }
+        Ok(jobs)
+    }
+
+    fn scene(
+        &self,
+        name: String,
+        files: &[PathBuf],
+        surface: &Surface,
+        view: &View,
+        found: Compared,
+    ) -> (Scene, Vec<crate::report::results::Run>, Vec<Picture>) {
+        let (dem, camera) = (surface.dem(), &view.camera);
+        let scene = Scene {
+            name,
+            dem: files.iter().map(|file| file.display().to_string()).collect(),
+            columns: dem.columns(),
+            rows: dem.rows(),
+            cell_m: dem.cell().to_array(),
+            patches: surface.patches(),
+            eye_m: camera.eye.to_array(),
+            azimuth: camera.azimuth,
+            altitude: camera.altitude,
+            fov: camera.fov,
+            flags: view.flags(),
+            width: camera.width,
+            height: camera.height,
+            border: self.border == Border::On,
+            truth: found.truth,
+            convergence: found.convergence,
+            picture: found.picture,
+        };
+        (scene, found.runs, found.pictures)
+    }
+}
+
+fn scene_name(view: &str, size: Size, sizes: &[Size]) -> String {
+    if sizes.len() > 1 { format!("{view}_{}x{}", size.width, size.height) } else { view.to_owned() }
+}
+
+fn contents(results: &Results, pictures: &[Picture]) -> Result<Contents> {
+    let plot = error_time_svg(results)?;
+    let failed = |e: std::io::Error| Error::Report { what: e.to_string() };
+    let mut csv = Vec::new();
+    write_csv(results, &mut csv).map_err(failed)?;
+    let mut json = serde_json::to_vec_pretty(results).map_err(|e| failed(e.into()))?;
+    json.push(b'\n');
+    Ok(Contents { page: report_html(results, &plot, pictures)?, json, csv, plot })
+}
+
+fn least_sure(scenes: &[Scene]) -> TruthSummary {
+    let least = scenes.iter().map(|scene| &scene.truth).min_by(|a, b| a.self_f.total_cmp(&b.self_f));
+    let (level, self_f) = least.map_or((0, 0.0), |truth| (truth.level, truth.self_f));
+    TruthSummary { level, self_f }
+}
+
+fn machine(gpu: &Gpu) -> Machine {
+    let info = &gpu.info;
+    Machine {
+        system: format!("{} {}{}", std::env::consts::OS, std::env::consts::ARCH, processor()),
+        cores: available_parallelism().map_or(1, usize::from),
+        adapter: info.name.clone(),
+        adapter_kind: format!("{:?}", info.device_type).to_lowercase(),
+        driver: format!("{} {}", info.driver, info.driver_info),
+        int64: gpu.int64,
+        timing: gpu.clock.describe().to_owned(),
+    }
+}
+
+/// The processor's name where Linux tells it.
+fn processor() -> String {
+    let about = std::fs::read_to_string(Path::new("/proc/cpuinfo")).unwrap_or_default();
+    let name = about.lines().find_map(|line| line.strip_prefix("model name")?.split_once(':'));
+    name.map_or(String::new(), |(_, name)| format!(", {}", name.trim()))
+}

@@ -1,0 +1,32 @@
+//! Flags of every subcommand that draws: which device.
+
+use super::talk::Talk;
+use super::values;
+use crate::error::Result;
+use crate::gpu::{AdapterChoice, Gpu, Int64};
+
+/// The flags, as typed.
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Device")]
+pub struct DeviceArguments {
+    /// Adapter: cpu, gpu, or words of its name [default: the best one]
+    #[arg(long, value_name = "NAME|cpu|gpu", value_parser = values::adapter)]
+    adapter: Option<AdapterChoice>,
+    /// Draw as on a device without 64-bit atomics
+    #[arg(long, hide = true)]
+    no_int64: bool,
+}
+
+impl DeviceArguments {
+    /// Opens the device and says which it is.
+    ///
+    /// # Errors
+    /// As [`Gpu::open`].
+    pub fn open(&self, talk: &Talk) -> Result<Gpu> {
+        let int64 = if self.no_int64 { Int64::Never } else { Int64::IfPresent };
+        let gpu = Gpu::open(&self.adapter.clone().unwrap_or_default(), int64)?;
+        talk.say(&format!("adapter: {}", gpu.info.name))?;
+        talk.detail(&format!("driver: {} {}", gpu.info.driver, gpu.info.driver_info))?;
+        Ok(gpu)
+    }
+}

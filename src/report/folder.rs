@@ -1,0 +1,100 @@
+//! The folder of a report: four files opened before the work starts, pictures beside them at its end.
+//!
+//! Files get their names when all are written, the page last: a folder with a page holds a whole report. A folder that
+//! was made for a report that failed goes again.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::pictures::Picture;
+use crate::error::{Error, Result};
+use crate::ink::Output;
+
+/// A folder for a report.
+#[derive(Debug)]
+pub struct Folder {
+    path: PathBuf,
+    made: bool,
+    files: Option<Files>,
+}
+
+#[derive(Debug)]
+struct Files {
+    page: Output,
+    json: Output,
+    csv: Output,
+    plot: Output,
+}
+
+/// What goes into the four files.
+#[derive(Debug)]
+pub struct Contents {
+    /// `report.html`.
+    pub page: String,
+    /// `results.json`.
+    pub json: Vec<u8>,
+    /// `results.csv`.
+    pub csv: Vec<u8>,
+    /// `error-time.svg`.
+    pub plot: String,
+}
+
+impl Folder {
+    /// Makes the folder where there is none, and opens the files in it.
+    ///
+    /// # Errors
+    /// [`Error::Output`] where it is a file or cannot be written.
+    pub fn open(path: &Path) -> Result<Self> {
+        let failed = |what: String| Error::Output { path: path.to_owned(), what };
+        if path.exists() && !path.is_dir() {
+            return Err(failed("it is a file, and a report is a folder".into()));
+        }
+        let made = !path.exists();
+        fs::create_dir_all(path).map_err(|e| failed(e.to_string()))?;
+        // From here on a failure takes the folder along.
+        let mut folder = Self { path: path.to_owned(), made, files: None };
+        let open = |name: &str| Output::create(&path.join(name));
+        folder.files = Some(Files {
+            page: open("report.html")?,
+            json: open("results.json")?,
+            csv: open("results.csv")?,
+            plot: open("error-time.svg")?,
+        });
+        Ok(folder)
+    }
+
+    /// Where the page will be.
+    pub fn page(&self) -> PathBuf {
+        self.path.join("report.html")
+    }
+
+    /// Writes everything, then gives it its names.
+    ///
+    /// # Errors
+    /// [`Error::Output`] where something cannot be written.
+    pub fn publish(mut self, contents: &Contents, pictures: &[Picture]) -> Result<()> {
+        let Some(mut files) = self.files.take() else { return Ok(()) };
+        files.page.write(|file| file.write_all(contents.page.as_bytes()))?;
+        files.json.write(|file| file.write_all(&contents.json))?;
+        files.csv.write(|file| file.write_all(&contents.csv))?;
+        files.plot.write(|file| file.write_all(contents.plot.as_bytes()))?;
+        for picture in pictures {
+            let mut output = Output::create(&self.path.join(&picture.name))?;
+            output.write(|file| file.write_all(&picture.png))?;
+            output.publish()?;
+        }
+        [files.plot, files.csv, files.json, files.page].into_iter().try_for_each(Output::publish)?;
+        self.made = false;
+        Ok(())
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        self.files = None;
+        if self.made {
+            // Stays where something was published in it, or somebody else has put something there.
+            let _ = fs::remove_dir(&self.path);
+        }
+    }
+}
