@@ -1,0 +1,248 @@
+//! What a comparison found, as `results.json` holds it. Schema version 1.
+//!
+//! Lengths on the page are pixels (`_px`), on the ground metres (`_m`), times milliseconds (`_ms`), memory mebibytes
+//! (`_mib`). Shares run from 0 to 1. What is measured anew in every run and so differs between two runs of the same
+//! comparison has one of the last two endings or is called `passes`; all else is the same to the last digit.
+
+use serde::Serialize;
+
+/// Version of the schema: raised when a key changes its meaning or goes.
+pub const SCHEMA: u32 = 1;
+
+/// The whole comparison.
+#[derive(Debug, Clone, Serialize)]
+pub struct Results {
+    /// [`SCHEMA`].
+    pub version: u32,
+    /// Version of hachure.
+    pub hachure: &'static str,
+    /// The command, with its flags as typed.
+    pub command: String,
+    /// Where it ran.
+    pub machine: Machine,
+    /// Of the scene whose truth is surest of itself the least: the limit of every figure here.
+    pub truth: TruthSummary,
+    /// What was drawn: views times sizes.
+    pub scenes: Vec<Scene>,
+    /// Methods times levels, scene by scene.
+    pub runs: Vec<Run>,
+}
+
+/// Processor, adapter and driver.
+#[derive(Debug, Clone, Serialize)]
+pub struct Machine {
+    /// Operating system and processor architecture.
+    pub system: String,
+    /// Cores this process may use.
+    pub cores: usize,
+    /// Name of the adapter.
+    pub adapter: String,
+    /// `cpu` for a software driver, else the kind of GPU.
+    pub adapter_kind: String,
+    /// Name and version of the driver.
+    pub driver: String,
+    /// Whether 64-bit atomics were in use.
+    pub int64: bool,
+    /// How times were taken, in words.
+    pub timing: String,
+}
+
+/// How sure truth is of itself.
+#[derive(Debug, Clone, Serialize)]
+pub struct TruthSummary {
+    /// Subdivisions of a cell's edge.
+    pub level: u32,
+    /// F of the truth of half the level, drawn one pixel wide, against it; 1 px.
+    pub self_f: f64,
+}
+
+/// A view on a page, and its truth.
+#[derive(Debug, Clone, Serialize)]
+pub struct Scene {
+    /// Unique in the report; file names begin with it.
+    pub name: String,
+    /// Files of the DEM as named.
+    pub dem: Vec<String>,
+    /// Samples from west to east.
+    pub columns: usize,
+    /// Samples from north to south.
+    pub rows: usize,
+    /// Metres between columns and rows.
+    pub cell_m: [f64; 2],
+    /// PN triangles.
+    pub patches: u64,
+    /// Eye: easting, northing, exaggerated height.
+    pub eye_m: [f64; 3],
+    /// Degrees clockwise from grid north.
+    pub azimuth: f64,
+    /// Degrees above the horizon.
+    pub altitude: f64,
+    /// Horizontal field of view, degrees.
+    pub fov: f64,
+    /// Flags of `hachure draw` that repeat the view.
+    pub flags: String,
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// Whether border lines are drawn and judged.
+    pub border: bool,
+    /// What the runs are measured against.
+    pub truth: TruthReport,
+    /// How the places of the walk close in on truth, where it ran at two levels or more.
+    pub convergence: Option<Convergence>,
+    /// File name of truth drawn one pixel wide.
+    pub picture: String,
+}
+
+/// How truth was made and how sure it is of itself.
+#[derive(Debug, Clone, Serialize)]
+pub struct TruthReport {
+    /// Subdivisions of a cell's edge.
+    pub level: u32,
+    /// Visible line on the page.
+    pub length_px: f64,
+    /// Of it, border lines.
+    pub border_px: f64,
+    /// Of 8-connected pixel sets of truth drawn one pixel wide, the share with fewer than 6 px.
+    pub fragments: f64,
+    /// Facets whose facing was computed one by one; all others were proven to face one way by bounds.
+    pub facets: u64,
+    /// Rays cast.
+    pub rays: u64,
+    /// Time it took, or took when it was made.
+    pub truth_ms: f64,
+    /// Truth of half the level, drawn one pixel wide, against it: figures at 1 px.
+    pub self_precision: f64,
+    /// Share of the line found by the truth of half the level.
+    pub self_recall: f64,
+    /// Harmonic mean of the two.
+    pub self_f: f64,
+    /// Mean distance of the curves of half the level from these, no pixels between.
+    pub self_offset_px: f64,
+}
+
+/// Mean distance of the walk's sub-pixel places from truth, level by level, and the straight line through it.
+#[derive(Debug, Clone, Serialize)]
+pub struct Convergence {
+    /// Level and mean distance in px.
+    pub offsets_px: Vec<(u32, f64)>,
+    /// Levels the line was fitted to: those above truth's own error.
+    pub fitted_levels: Vec<u32>,
+    /// d log2(offset) / d log2(level): -2 is second order; `None` with fewer than two levels to fit.
+    pub slope: Option<f64>,
+}
+
+/// A method at a level in a scene.
+#[derive(Debug, Clone, Serialize)]
+pub struct Run {
+    /// Name of its scene.
+    pub scene: String,
+    /// `walk`, `toward-away`, `toward-away-wide`, `adjacency`, `adjacency-corner`.
+    pub method: &'static str,
+    /// Subdivisions of a cell's edge.
+    pub level: u32,
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// Share of inked pixels within 1 px of truth.
+    pub precision: f64,
+    /// Share of truth within 1 px of ink.
+    pub recall: f64,
+    /// Harmonic mean of precision and recall.
+    pub f: f64,
+    /// Missed stretches of truth of at least 3 px.
+    pub gaps: usize,
+    /// 8-connected sets of ink wholly farther than 2 px from truth.
+    pub spurious: usize,
+    /// Mean of the mean distances from ink to truth and from truth to ink; `None` without ink.
+    pub chamfer_px: Option<f64>,
+    /// Larger of the two directed 95 % distances; `None` without ink.
+    pub h95_px: Option<f64>,
+    /// Share of 8-connected sets of ink with fewer than 6 px.
+    pub fragments: f64,
+    /// Chains traced from the mask, and the share of them shorter than 6 px.
+    pub chains: usize,
+    /// Share of chains shorter than 6 px.
+    pub short_chains: f64,
+    /// Share of ink without ink of the next frame (the eye 1 m on) within 1 px, less the same for truth.
+    pub excess_pop: f64,
+    /// The same figures at other distances.
+    pub at: Vec<AtDistance>,
+    /// The same figures in bands of depth, a third of truth's length each.
+    pub bands: Vec<Band>,
+    /// Distance of the walk's sub-pixel places from truth.
+    pub place: Option<Place>,
+    /// Facets of the whole DEM.
+    pub facets: u64,
+    /// Inked pixels.
+    pub inked: usize,
+    /// Median of the warm frames, camera to mask.
+    pub frame_ms: f64,
+    /// Shortest and longest warm frame.
+    pub frame_range_ms: [f64; 2],
+    /// The first frame after the scene was uploaded and the passes compiled.
+    pub first_frame_ms: f64,
+    /// Uploading the scene and compiling the passes.
+    pub setup_ms: f64,
+    /// Times of the passes of one more frame.
+    pub passes: Vec<PassTime>,
+    /// Most memory the process held while this run was made; `None` where the system does not tell.
+    pub peak_mib: Option<f64>,
+    /// Bytes of the run's buffers on the device, in MiB; a number of the scene, not a measurement.
+    pub buffers_mebibytes: f64,
+    /// Whether no run of the scene is both faster and better.
+    #[serde(skip)]
+    pub pareto: bool,
+    /// Hash of the mask of each frame, the eye 1 m farther on each time.
+    pub mask_hashes: Vec<String>,
+    /// File name of the mask.
+    pub mask: String,
+    /// File name of the difference picture.
+    pub difference: String,
+}
+
+/// Milliseconds of a pass.
+pub type PassTime = crate::render::PassTime;
+
+/// Precision and recall at a distance.
+#[derive(Debug, Clone, Serialize)]
+pub struct AtDistance {
+    /// The distance in px, to which half a pixel is added.
+    pub px: f64,
+    /// Share of ink that near truth.
+    pub precision: f64,
+    /// Share of truth that near ink.
+    pub recall: f64,
+    /// Harmonic mean.
+    pub f: f64,
+}
+
+/// Precision and recall of a band of depth, at 1 px.
+#[derive(Debug, Clone, Serialize)]
+pub struct Band {
+    /// `near`, `middle` or `far`.
+    pub name: &'static str,
+    /// Where it ends, metres along the view axis; `None` for the last one.
+    pub to_m: Option<f64>,
+    /// Length of truth in it.
+    pub truth_px: f64,
+    /// Inked pixels in it.
+    pub inked: usize,
+    /// Share of its ink near any truth.
+    pub precision: f64,
+    /// Share of its truth near any ink.
+    pub recall: f64,
+    /// Harmonic mean.
+    pub f: f64,
+}
+
+/// Distances of sub-pixel places from truth's curve.
+#[derive(Debug, Clone, Serialize)]
+pub struct Place {
+    /// Mean.
+    pub mean_px: f64,
+    /// 95 % are no farther.
+    pub p95_px: f64,
+}
