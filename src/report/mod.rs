@@ -2,6 +2,24 @@
 //!
 //! [`Results`] is what a comparison found; the writers turn it into text and know nothing else.
 
+pub mod csv;
 pub mod results;
 
+pub use csv::write_csv;
 pub use results::Results;
+
+/// Every name once, a new one behind the one it follows: lists that share an order become one in that order.
+fn merge<'a, T: PartialEq + ?Sized>(lists: impl Iterator<Item = Vec<&'a T>>) -> Vec<&'a T> {
+    let mut names: Vec<&T> = Vec::new();
+    for list in lists {
+        let mut next = 0;
+        for name in list {
+            let known = names.iter().position(|other| *other == name);
+            if known.is_none() {
+                names.insert(next, name);
+            }
+            next = known.unwrap_or(next) + 1;
+        }
+    }
+    names
+}
