@@ -3,9 +3,12 @@
 //! [`Results`] is what a comparison found; the writers turn it into text and know nothing else.
 
 pub mod csv;
+mod labels;
+pub mod plot;
 pub mod results;
 
 pub use csv::write_csv;
+pub use plot::error_time_svg;
 pub use results::Results;
 
 /// Every name once, a new one behind the one it follows: lists that share an order become one in that order.
