@@ -3,11 +3,14 @@
 //! [`Results`] is what a comparison found; the writers turn it into text and know nothing else.
 
 pub mod csv;
+pub mod html;
 mod labels;
 pub mod plot;
 pub mod results;
+mod words;
 
 pub use csv::write_csv;
+pub use html::{Picture, report_html};
 pub use plot::error_time_svg;
 pub use results::Results;
 
