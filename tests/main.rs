@@ -21,6 +21,7 @@ mod left_out;
 mod mesh;
 mod metrics;
 mod reflection;
+mod report;
 mod same_bytes;
 mod scenes;
 mod shell;
