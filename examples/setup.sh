@@ -18,13 +18,17 @@ need() {
         echo "macOS:  brew install gdal pkgconf"
         exit 1
     fi
-    as_root=""
-    [ "$(id -u)" = 0 ] || as_root=sudo
-    echo "installing$missing"
     # shellcheck disable=SC2086 # a list of packages
-    $as_root apt-get update -qq && $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq $missing >/dev/null || {
+    install_packages $missing || {
         echo "could not install$missing: install them and run this again"
         exit 1
     }
+}
+# Installs packages of Debian and its kin.
+install_packages() {
+    as_root=""
+    [ "$(id -u)" = 0 ] || as_root=sudo
+    echo "installing $*"
+    $as_root apt-get update -qq && $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq "$@" >/dev/null
 }
 need

@@ -66,6 +66,12 @@ pub enum Error {
         /// The driver's words.
         what: String,
     },
+    /// A report that cannot be laid out, whatever was compared.
+    #[error("the report cannot be made: {what}; that is hachure's mistake, please report it with the command")]
+    Report {
+        /// Which part, and the library's words.
+        what: String,
+    },
     /// The device was lost or hung; trying again may help.
     #[error("the GPU was lost: {what}; try again, or use `--adapter cpu`")]
     DeviceLost {

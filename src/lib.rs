@@ -48,6 +48,7 @@
 //! | [`plan`] | what a frame needs: method, batches |
 //! | [`gpu`] | device, buffers, one adapter a pass; the mathematics stands in `shaders/` |
 //! | [`ink`] | mask to chains to strokes to pictures |
+//! | [`report`] | comparisons as JSON, CSV, a plot and a page to read |
 //! | [`render`] | the whole algorithm on one screen |
 //! | [`report`] | what a run cost and how it went |
 //! | [`cli`] | flags as typed become options checked |

@@ -22,6 +22,7 @@ mod memory;
 mod mesh;
 mod metrics;
 mod reflection;
+mod report;
 mod same_bytes;
 mod scenes;
 mod shell;

@@ -177,7 +177,11 @@ impl CompareArguments {
             return Ok(vec![Job { files: dems.clone(), views: vec![view] }]);
         };
         if let Some(flag) = self.view.flag() {
-            return Err(Error::flag("--views", format!("the file gives the views, so does {flag}"), "leave out one of the two"));
+            return Err(Error::flag(
+                "--views",
+                format!("the file gives the views, so does {flag}"),
+                "leave out one of the two",
+            ));
         }
         let mut views = views::read(path, self.view.fov(), self.view.size)?;
         let mut jobs = Vec::new();

@@ -99,7 +99,13 @@ struct FileReport {
 
 impl ViewArguments {
     /// The flags of a view that a file gives.
-    pub fn of_file(eye: Option<Standpoint>, lonlat: Option<Standpoint>, [azimuth, altitude]: [Option<f64>; 2], fov: f64, size: Size) -> Self {
+    pub fn of_file(
+        eye: Option<Standpoint>,
+        lonlat: Option<Standpoint>,
+        [azimuth, altitude]: [Option<f64>; 2],
+        fov: f64,
+        size: Size,
+    ) -> Self {
         Self { eye, lonlat, look_at: None, crs: None, azimuth, altitude, fov, size }
     }
 

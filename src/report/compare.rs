@@ -94,7 +94,14 @@ impl Comparison {
     ///
     /// # Errors
     /// [`Error::Scene`] where there is nothing to compare; those of [`Renderer`].
-    pub fn scene(&self, gpu: &Gpu, name: &str, terrain: &Terrain<'_>, camera: &Camera, to: &Hearing<'_>) -> Result<Compared> {
+    pub fn scene(
+        &self,
+        gpu: &Gpu,
+        name: &str,
+        terrain: &Terrain<'_>,
+        camera: &Camera,
+        to: &Hearing<'_>,
+    ) -> Result<Compared> {
         let Truths { truth, report, convergence, pop } = self.truths(name, terrain, camera, to)?;
         (to.say)(&truth_line(name, &report))?;
         let Some(judge) = Judge::new(&truth) else { return Err(no_line(name)) };
@@ -105,7 +112,8 @@ impl Comparison {
             for &(method_name, method) in &self.methods {
                 (to.stage)(&format!("{name}: {method_name} at level {}", level.subdivisions()));
                 let stem = format!("{name}_{method_name}_{}", level.subdivisions());
-                let trial = Trial { gpu, surface: terrain.surface, plan: Plan::new(level, method, self.border), camera };
+                let trial =
+                    Trial { gpu, surface: terrain.surface, plan: Plan::new(level, method, self.border), camera };
                 let (run, drawn) = trial.run(name, method_name, &stem, self.repeat, &judge, pop)?;
                 (to.say)(&line(&run))?;
                 (to.detail)(&format!("  masks of the warm frames: {}", run.mask_hashes.join(" ")))?;

@@ -1,0 +1,139 @@
+//! The report as a page: one file that needs no network and no script to be read.
+//!
+//! `report.html` is the template, `report.css` and `report.js` go into it whole. Every text of the results is escaped
+//! by the template engine; pictures become data URIs, each written once (the script takes them from where they stand).
+//! A content security policy in the page forbids it to fetch anything.
+//!
+//! Does not handle: comparisons whose pictures do not fit in memory together.
+
+use std::collections::BTreeMap;
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use minijinja::syntax::SyntaxConfig;
+use minijinja::value::Serde;
+use minijinja::{AutoEscape, Environment, HtmlEscape, UndefinedBehavior, Value};
+use serde::Serialize;
+
+use super::pictures::Picture;
+use super::results::Run;
+use super::words::{Words, milliseconds, words};
+use super::{Results, merge};
+use crate::error::{Error, Result};
+
+/// What the template sees.
+#[derive(Serialize)]
+struct Page<'a> {
+    results: &'a Results,
+    words: Words,
+    runs: Vec<Row<'a>>,
+    /// Passes of all runs in the order of a frame.
+    pass_names: Vec<&'static str>,
+    /// Data URIs by file name.
+    pictures: BTreeMap<&'a str, String>,
+    plot: &'a str,
+    style: &'static str,
+    script: &'static str,
+}
+
+/// A run with what the page says beside it.
+#[derive(Serialize)]
+struct Row<'a> {
+    #[serde(flatten)]
+    run: &'a Run,
+    front: bool,
+    /// The first run of its scene that has the best F.
+    best: bool,
+    /// Fragments of the scene's truth.
+    truth_fragments: Option<f64>,
+    /// Times in the order of [`Page::pass_names`].
+    pass_ms: Vec<Option<f64>>,
+}
+
+/// The page. `plot_svg` is the plot as [`error_time_svg`](super::error_time_svg) made it and goes in as it is.
+///
+/// # Errors
+/// [`Error::Report`] where a picture is missing that the results name, or the template fails.
+pub fn report_html(results: &Results, plot_svg: &str, pictures: &[Picture]) -> Result<String> {
+    let pass_names = merge(results.runs.iter().map(|run| run.passes.iter().map(|pass| pass.name).collect()));
+    let page = Page {
+        runs: results.runs.iter().map(|run| row(run, results, &pass_names)).collect(),
+        words: words(results),
+        pictures: data_uris(results, pictures)?,
+        plot: plot_svg,
+        style: include_str!("report.css"),
+        script: include_str!("report.js"),
+        results,
+        pass_names,
+    };
+    render(&page).map_err(|e| Error::Report { what: format!("the page: {e:#}") })
+}
+
+fn render(page: &Page) -> std::result::Result<String, minijinja::Error> {
+    let mut engine = Environment::new();
+    engine.set_auto_escape_callback(|_| AutoEscape::Html);
+    // A key that is not there is a mistake in the template, never an empty place on the page.
+    engine.set_undefined_behavior(UndefinedBehavior::Strict);
+    engine.set_syntax(SyntaxConfig::builder().trim_blocks(true).lstrip_blocks(true).build()?);
+    engine.add_filter("fixed", fixed);
+    engine.add_filter("plain", |value: f64| value.to_string());
+    engine.add_filter("count", count);
+    engine.add_filter("ms", |ms: f64| milliseconds(ms));
+    engine.add_filter("cell", |v: Option<f64>, digits: usize| cell(v, |v| fixed(v, digits)));
+    engine.add_filter("count_cell", |v: Option<f64>| cell(v, |v| count(v as u64)));
+    engine.add_filter("ms_cell", |v: Option<f64>| cell(v, milliseconds));
+    engine.add_filter("quoted", quoted);
+    engine.render_named_str("report.html", include_str!("report.html"), Serde(page))
+}
+
+/// The pictures the results name, ready to stand in a `src`.
+fn data_uris<'a>(results: &'a Results, pictures: &[Picture]) -> Result<BTreeMap<&'a str, String>> {
+    let of_runs = results.runs.iter().flat_map(|run| [&run.mask, &run.difference]);
+    let names = results.scenes.iter().map(|scene| &scene.picture).chain(of_runs);
+    let data_uri = |name: &'a String| {
+        let picture = pictures.iter().find(|picture| picture.name == *name);
+        let picture = picture.ok_or_else(|| Error::Report { what: format!("there is no picture {name}") })?;
+        Ok((name.as_str(), format!("data:image/png;base64,{}", STANDARD.encode(&picture.png))))
+    };
+    names.map(data_uri).collect()
+}
+
+fn row<'a>(run: &'a Run, results: &'a Results, pass_names: &[&str]) -> Row<'a> {
+    let of_scene = || results.runs.iter().filter(|other| other.scene == run.scene);
+    let best = of_scene().reduce(|a, b| if b.f > a.f { b } else { a });
+    let scene = results.scenes.iter().find(|scene| scene.name == run.scene);
+    let ms = |name: &&str| run.passes.iter().find(|pass| pass.name == *name).map(|pass| pass.ms);
+    Row {
+        run,
+        front: run.pareto,
+        best: best.is_some_and(|best| std::ptr::eq(best, run)),
+        truth_fragments: scene.map(|scene| scene.truth.fragments),
+        pass_ms: pass_names.iter().map(ms).collect(),
+    }
+}
+
+/// So many digits behind the point, and a minus as long as a plus.
+fn fixed(value: f64, digits: usize) -> String {
+    format!("{value:.digits$}").replace('-', "\u{2212}")
+}
+
+/// A whole number in groups of three digits.
+fn count(value: u64) -> String {
+    let digits = value.to_string();
+    let groups: Vec<&str> =
+        digits.as_bytes().rchunks(3).rev().filter_map(|group| std::str::from_utf8(group).ok()).collect();
+    // Narrow spaces that do not break.
+    groups.join("\u{202f}")
+}
+
+/// A cell of a table: what is read, and the value by which it is sorted.
+fn cell(value: Option<f64>, show: impl Fn(f64) -> String) -> Value {
+    let (sorted, shown) = value.map_or_else(|| (String::new(), "–".into()), |v| (v.to_string(), show(v)));
+    Value::from_safe_string(format!("<td data-v=\"{sorted}\">{}</td>", HtmlEscape(&shown)))
+}
+
+/// A file name as a shell takes it.
+fn quoted(name: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "._-/:+=@,".contains(c);
+    if !name.is_empty() && name.chars().all(plain) { name.into() } else { format!("'{}'", name.replace('\'', r"'\''")) }
+}

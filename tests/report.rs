@@ -1,0 +1,113 @@
+//! Reports of comparisons: the plot, the CSV, and the page with its words.
+
+mod browser;
+mod page;
+mod sample;
+
+use hachure::report::results::Results;
+use hachure::report::{error_time_svg, write_csv};
+use sample::AWKWARD;
+
+/// A page of the sample, px.
+const SIZE: [u32; 2] = [300, 200];
+
+fn sample() -> Results {
+    sample::results(SIZE[0], SIZE[1])
+}
+
+#[test]
+fn the_plot_is_the_same_file_every_time_and_shows_every_run() {
+    let results = sample();
+    let svg = error_time_svg(&results).expect("a plot");
+    assert_eq!(svg, error_time_svg(&results).expect("a plot"));
+    assert!(svg.starts_with("<svg role=\"img\"") && svg.ends_with("</svg>\n"), "{svg}");
+    for words in ["<title id=", "<desc id=", ">\n≤ 0.0001\n<", "time of a frame, camera to mask, ms", "1 − F"] {
+        assert!(svg.contains(words), "{words}");
+    }
+    // Each method is named once in each of two panels, and described run by run.
+    for method in ["walk", "toward-away", "toward-away-wide", "adjacency", "adjacency-corner"] {
+        assert_eq!(svg.matches(&format!("\n{method}, level ")).count(), 2, "{method}");
+    }
+    assert!(svg.contains("walk, level 8: F 1.0000 in 114.0 ms, on the Pareto front."));
+    assert!(svg.contains("a&lt;b &amp; c") && !svg.contains("a<b"), "names are escaped");
+    // 1 - F of 0 and of 1 have places.
+    assert!(!svg.contains("NaN") && !svg.contains("inf") && !svg.contains("2147483647"));
+}
+
+#[test]
+fn the_plot_follows_the_results() {
+    let (mut results, first) = (sample(), error_time_svg(&sample()).expect("a plot"));
+    results.runs[0].frame_ms *= 1.5;
+    assert_ne!(error_time_svg(&results).expect("a plot"), first);
+    // As fast as a clock can tell, as slow as patience allows, and nothing at all.
+    (results.runs[0].frame_ms, results.runs[1].frame_ms) = (0.0, 3.6e6);
+    assert!(error_time_svg(&results).expect("a plot").contains("1000000"));
+    results.runs.clear();
+    assert!(error_time_svg(&results).expect("a plot").contains("west-temple"));
+    results.scenes.clear();
+    assert!(error_time_svg(&results).expect("a plot").contains("</svg>"));
+}
+
+/// Names of the columns, and rows by name.
+fn table(results: &Results) -> (Vec<String>, Vec<Vec<String>>) {
+    let mut bytes = Vec::new();
+    write_csv(results, &mut bytes).expect("CSV");
+    let mut reader = csv::Reader::from_reader(&bytes[..]);
+    let names = reader.headers().expect("names").iter().map(str::to_owned).collect();
+    let row = |row: csv::Result<csv::StringRecord>| row.expect("a row").iter().map(str::to_owned).collect();
+    (names, reader.records().map(row).collect())
+}
+
+#[test]
+fn the_csv_holds_what_the_json_holds() {
+    let results = sample();
+    let (names, rows) = table(&results);
+    assert_eq!(rows.len(), results.runs.len());
+    let mut once = names.clone();
+    once.sort();
+    once.dedup();
+    assert_eq!(once.len(), names.len(), "no name twice: {names:?}");
+    let json = serde_json::to_value(&results).expect("JSON");
+    for (row, run) in rows.iter().zip(json["runs"].as_array().expect("runs")) {
+        let cell = |name: &str| &row[names.iter().position(|n| n == name).unwrap_or_else(|| panic!("no {name}"))];
+        for (key, value) in run.as_object().expect("a run") {
+            match value {
+                serde_json::Value::Number(number) => assert_eq!(cell(key), &number.to_string(), "{key}"),
+                serde_json::Value::String(text) => assert_eq!(cell(key), text, "{key}"),
+                serde_json::Value::Null if key != "place" => assert_eq!(cell(key), "", "{key}"),
+                _ => {}
+            }
+        }
+        assert_eq!(cell("precision_0.5px"), &run["at"][0]["precision"].to_string());
+        assert_eq!(cell("f_3px"), &run["at"][3]["f"].to_string());
+        assert_eq!(cell("far_recall"), &run["bands"][2]["recall"].to_string());
+        assert_eq!(cell("far_to_m"), "");
+        assert_eq!(cell("min_frame_range_ms"), &run["frame_range_ms"][0].to_string());
+        assert_eq!(cell("mask_hashes"), "9f86d081 60303ae2");
+        let walk = run["method"] == "walk";
+        assert_eq!(cell("place_mean_px").is_empty(), !walk);
+        assert_eq!(cell("walk_ms").is_empty(), !walk);
+        assert_eq!(cell("silhouette_ms").is_empty(), walk);
+    }
+    assert!(rows.iter().any(|row| row[0] == AWKWARD));
+}
+
+#[test]
+fn the_columns_of_the_csv_stand_in_the_order_of_the_fields() {
+    let (names, _) = table(&sample());
+    let place = |name: &str| names.iter().position(|n| n == name).unwrap_or_else(|| panic!("no {name}"));
+    assert_eq!(names[..3], ["scene", "method", "level"]);
+    let order =
+        ["f", "gaps", "precision_0.5px", "near_to_m", "place_mean_px", "facets", "tessellate_ms", "rasterize_ms"];
+    assert!(order.windows(2).all(|two| place(two[0]) < place(two[1])), "{names:?}");
+    // A walk's passes came first; another method's stand among them, not at the end.
+    assert!(place("silhouette_ms") < place("peak_mib"));
+    assert!(!names.iter().any(|name| name == "place" || name == "pareto"), "{names:?}");
+    // Columns do not depend on what a machine can tell.
+    let mut poorer = sample();
+    poorer.runs.iter_mut().for_each(|run| (run.peak_mib, run.chamfer_px, run.place) = (None, None, None));
+    assert_eq!(table(&poorer).0, names);
+    let mut nothing = Vec::new();
+    write_csv(&Results { runs: Vec::new(), ..sample() }, &mut nothing).expect("CSV");
+    assert!(nothing.is_empty());
+}
