@@ -5,6 +5,7 @@ mod chosen_view;
 mod cli;
 mod closed_forms;
 mod common;
+mod compare;
 mod cover;
 mod coverage;
 mod dem;

@@ -1,6 +1,7 @@
 //! `hachure compare`: methods at levels, their errors against truth and their times, as a report.
 
 use std::cell::Cell;
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::thread::available_parallelism;
 
@@ -103,6 +104,9 @@ struct Job {
 /// Whatever went wrong; no page stands in the folder then.
 pub fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
     let sizes = arguments.sizes();
+    each_once("--sizes", sizes.iter().map(|size| format!("{}x{}", size.width, size.height)))?;
+    each_once("--levels", arguments.levels.iter().map(|level| level.subdivisions().to_string()))?;
+    each_once("--methods", arguments.methods.iter().map(|(name, _)| (*name).to_owned()))?;
     sizes.iter().try_for_each(|size| page_fits([size.width, size.height]))?;
     arguments.view.check()?;
     let jobs = arguments.jobs(talk)?;
@@ -230,6 +234,17 @@ impl CompareArguments {
         };
         (scene, found.runs, found.pictures)
     }
+}
+
+/// Files are named after what is compared.
+fn each_once(flag: &'static str, names: impl Iterator<Item = String>) -> Result<()> {
+    let mut seen = HashSet::new();
+    for name in names {
+        if !seen.insert(name.clone()) {
+            return Err(Error::flag(flag, format!("{name} is there twice"), "name each once"));
+        }
+    }
+    Ok(())
 }
 
 fn scene_name(view: &str, size: Size, sizes: &[Size]) -> String {
