@@ -108,7 +108,8 @@ fn advice(results: &Results, candidates: &[Candidate], best: Option<&Candidate>)
     // What truth at half the level gets wrong cannot be told from what a method gets wrong.
     let doubt = 1.0 - results.truth.self_f;
     if let Some(equal) = fastest(best.f() - doubt).filter(|equal| equal.ms() < best.ms()) {
-        let why = format!("Truth may be off by {doubt:.4} of F itself, so that the best line cannot be told from this one.");
+        let why =
+            format!("Truth may be off by {doubt:.4} of F itself, so that the best line cannot be told from this one.");
         advice.push(("As good, as far as truth can tell", format!("{} {why}", named(equal))));
     }
     let speed = match fastest(GOOD_F) {

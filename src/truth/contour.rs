@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::Truth;
 use super::cell::{Cell, point, vertices};
-use super::facing::{Facing, is_toward, of_patch};
+use super::facing::{Facing, halves_toward, is_toward, of_patch};
 use super::page::{Line, Page, Piece};
 use super::sight::{Blocker, Sight};
 use super::terrain::Terrain;
@@ -97,14 +97,16 @@ impl Facings {
     }
 }
 
-/// The facets of a cell at a level, and of its neighbours along its east and south sides.
+/// The facets of a cell at a level, and those of its neighbours along its east and south sides.
 struct Facets<'a> {
     level: u32,
     own: &'a Cell,
     east: &'a Cell,
     south: &'a Cell,
-    /// Vertices of each half, (level + 1)^2, row by row; those beyond the diagonal are not used.
+    /// Vertices of each patch, (level + 1)^2, row by row; those beyond the diagonal are not used.
     vertices: [Vec<DVec3>; 2],
+    /// Of both halves of (level + 1)^2 quads, row by row: `None` where there is no facet, else whether it is toward.
+    toward: Vec<[Option<bool>; 2]>,
 }
 
 impl<'a> Facets<'a> {
@@ -118,7 +120,32 @@ impl<'a> Facets<'a> {
                 (0..side * side).map(|i| vertex(place(i))).collect()
             })
         });
-        Self { level, own, east, south, vertices }
+        let toward = vec![[None; 2]; (side * side) as usize];
+        let mut facets = Self { level, own, east, south, vertices, toward };
+        facets.face();
+        facets
+    }
+
+    /// Decides facing, once for each facet.
+    fn face(&mut self) {
+        let (n, side) = (self.level as usize, self.level as usize + 1);
+        for j in 0..n {
+            for (patch, columns) in [(0, 0..j), (1, j + 1..n)] {
+                let vertices = &self.vertices[patch];
+                for i in if vertices.is_empty() { 0..0 } else { columns } {
+                    let [nw, sw] = [j * side + i, (j + 1) * side + i];
+                    let quad = [vertices[nw], vertices[sw], vertices[sw + 1], vertices[nw + 1]];
+                    self.toward[nw] = halves_toward(quad).map(Some);
+                }
+            }
+        }
+        for k in 0..self.level {
+            let ends = [(0, k, k), (1, k, k), (0, self.level, k), (1, k, self.level)];
+            for (half, i, j) in ends {
+                let toward = self.facet(half, i, j).map(|facet| is_toward(half, facet));
+                self.toward[j as usize * side + i as usize][half] = toward;
+            }
+        }
     }
 
     /// Facet of half `half` in quad (i, j); quads run on by one into the neighbours to the east and south.
@@ -140,18 +167,30 @@ impl<'a> Facets<'a> {
         Some(vertices.map(|at| point(patch_there, patch, place(at))))
     }
 
-    /// Calls `visit` with the two sides of every edge the cell owns.
-    fn each_edge(&self, mut visit: impl FnMut([Option<Side>; 2])) {
-        let side = |facet: Option<Facet>, opposite| facet.map(|facet| Side { facet, opposite });
+    /// Calls `visit` with the two sides of every edge the cell owns where facing flips or one facet is missing.
+    fn each_line(&self, mut visit: impl FnMut([Option<Side>; 2])) {
+        let side = |half, i, j, opposite| {
+            let toward = self.toward(half, i, j)?;
+            self.facet(half, i, j).map(|facet| Side { facet, opposite, toward })
+        };
         for j in 0..self.level {
             for i in 0..self.level {
-                let [below, above] = [0, 1].map(|half| self.facet(half, i, j));
-                // The diagonal, the east side, the south side.
-                visit([side(below, 1), side(above, 2)]);
-                visit([side(above, 0), side(self.facet(0, i + 1, j), 2)]);
-                visit([side(below, 0), side(self.facet(1, i, j + 1), 1)]);
+                let [below, above] = [0, 1].map(|half| self.toward(half, i, j));
+                if below != above {
+                    visit([side(0, i, j, 1), side(1, i, j, 2)]);
+                }
+                if above != self.toward(0, i + 1, j) {
+                    visit([side(1, i, j, 0), side(0, i + 1, j, 2)]);
+                }
+                if below != self.toward(1, i, j + 1) {
+                    visit([side(0, i, j, 0), side(1, i, j + 1, 1)]);
+                }
             }
         }
+    }
+
+    fn toward(&self, half: usize, i: u32, j: u32) -> Option<bool> {
+        self.toward[(j * (self.level + 1) + i) as usize][half]
     }
 }
 
@@ -159,6 +198,7 @@ impl<'a> Facets<'a> {
 struct Side {
     facet: Facet,
     opposite: usize,
+    toward: bool,
 }
 
 impl Side {
@@ -183,20 +223,16 @@ impl Sight<'_> {
             let (own, east, south) = (cell(0, 0), cell(1, 0), cell(0, 1));
             let facets = Facets::new(self.level, [&own, &east, &south]);
             found.facets += 2 * u64::from(self.level).pow(2);
-            facets.each_edge(|sides| self.edge(sides, page, &mut found));
+            facets.each_line(|sides| self.line(sides, page, &mut found));
         }
         found
     }
 
-    /// The visible pieces of an edge, if it is a line.
-    fn edge(&self, sides: [Option<Side>; 2], page: &Page, found: &mut Found) {
+    /// The visible pieces of an edge where facing flips or one facet is missing.
+    fn line(&self, sides: [Option<Side>; 2], page: &Page, found: &mut Found) {
         let (edge, up, line) = match sides {
             [Some(a), Some(b)] => {
-                let (toward, away) = match (is_toward(a.facet), is_toward(b.facet)) {
-                    (true, false) => (a, b),
-                    (false, true) => (b, a),
-                    _ => return,
-                };
+                let (toward, away) = if a.toward { (a, b) } else { (b, a) };
                 let edge = toward.edge();
                 // A concave edge is hidden by the facet that faces the eye.
                 if toward.normal().dot(away.facet[away.opposite] - edge[0]) >= 0.0 {
@@ -204,9 +240,7 @@ impl Sight<'_> {
                 }
                 (edge, toward.normal().normalize_or_zero() + away.normal().normalize_or_zero(), Line::Contour)
             }
-            [Some(only), None] | [None, Some(only)] if is_toward(only.facet) => {
-                (only.edge(), only.normal(), Line::Border)
-            }
+            [Some(only), None] | [None, Some(only)] if only.toward => (only.edge(), only.normal(), Line::Border),
             _ => return,
         };
         let nudge = up.normalize_or_zero() * (NUDGE * edge[0].distance(edge[1]));

@@ -23,9 +23,16 @@ pub(super) enum Facing {
     Mixed,
 }
 
-/// Whether the plane of a facet, vertices in metres from the eye, faces the eye; zero is away.
-pub(super) fn is_toward([a, b, c]: [DVec3; 3]) -> bool {
-    (b - a).cross(c - a).dot(a) < 0.0
+/// Whether both halves of a quad, vertices NW, SW, SE, NE in metres from the eye, face the eye; zero is away.
+pub(super) fn halves_toward([nw, sw, se, ne]: [DVec3; 4]) -> [bool; 2] {
+    // Both normals, times nw, hold the diagonal times nw.
+    let diagonal = (se - nw).cross(nw);
+    [(sw - nw).dot(diagonal) < 0.0, (ne - nw).dot(diagonal) > 0.0]
+}
+
+/// The same for one half alone, vertices as the lattice orders them: the same operations, so the same answer.
+pub(super) fn is_toward(half: usize, [a, b, c]: [DVec3; 3]) -> bool {
+    halves_toward(if half == 0 { [a, b, c, a] } else { [a, a, b, c] })[half]
 }
 
 /// What bounds prove of a patch in metres from the eye.
