@@ -30,6 +30,9 @@
 //! | read back | the mask | [`Frame`](render::Frame): ink, kind, sub-pixel place and depth a pixel | [`Renderer::read`](render::Renderer::read) |
 //! | ink | the frame | [`Drawing`](ink::Drawing): layers of smoothed strokes | [`ink::draw`], CPU |
 //! | write | the drawing | a PNG | [`ink::write_png`] |
+//! | truth | surface and camera | [`Truth`](truth::Truth): where the lines really are | [`Terrain::truth`](truth::Terrain::truth), CPU |
+//! | judge | ink and truth | [`Scores`](truth::metrics::Scores): how far apart they are | [`Judge`](truth::metrics::Judge) |
+//! | compare | methods and levels | [`Results`](report::Results): errors and times | [`Comparison`](report::Comparison) |
 //!
 //! World coordinates are metres, x east, y north, z up and exaggerated; angles are degrees, azimuth clockwise from grid
 //! north; pages are pixels from the top left corner. [`Georeference`](dem::Georeference) leads from there to the
@@ -49,6 +52,7 @@
 //! | [`gpu`] | device, buffers, one adapter a pass; the mathematics stands in `shaders/` |
 //! | [`ink`] | mask to chains to strokes to pictures |
 //! | [`report`] | comparisons as JSON, CSV, a plot and a page to read |
+//! | [`truth`] | where the lines really are, in f64, and how far ink is from them; knows nothing of the GPU |
 //! | [`render`] | the whole algorithm on one screen |
 //! | [`report`] | what a run cost and how it went |
 //! | [`cli`] | flags as typed become options checked |
