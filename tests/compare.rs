@@ -223,6 +223,22 @@ fn an_older_report_stands_until_the_new_one_is_whole() {
     assert_eq!(fs::read(place.path("report/report.html")).expect("a page"), page);
 }
 
+#[test]
+#[cfg(unix)]
+fn a_signal_leaves_nothing_behind() {
+    let place = Place::new();
+    let mut command = place.command(&[&COMPARE[..], &EYE, &OUT, &["--repeat", "10000", "--no-cache"]].concat());
+    let mut child = command.stdout(std::process::Stdio::null()).spawn().expect("hachure runs");
+    while !place.path("report").exists() || files(&place.path("report")).is_empty() {
+        assert!(child.try_wait().expect("a status").is_none(), "it ended before it could be stopped");
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    let stopped = std::process::Command::new("kill").args(["-TERM", &child.id().to_string()]).status();
+    assert!(stopped.expect("kill runs").success());
+    assert_eq!(child.wait().expect("a status").code(), Some(75));
+    assert_eq!(place.written(), Vec::<String>::new());
+}
+
 /// A file of views beside the hill.
 fn views(place: &Place, text: &str) {
     fs::write(place.path("views.json"), text).expect("views.json");

@@ -58,9 +58,7 @@ impl Output {
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
         let file = builder.tempfile_in(folder).map_err(|e| failed(e.to_string()))?;
-        if let Ok(mut list) = UNDER_WAY.lock() {
-            list.push(file.path().to_owned());
-        }
+        remember(file.path());
         Ok(Self { path: path.to_owned(), place: Place::File { target, file } })
     }
 
@@ -115,18 +113,28 @@ fn print(bytes: &[u8]) -> io::Result<()> {
     }
 }
 
-/// Temporary files of outputs under way.
+/// Temporary files of outputs under way, and folders made for them, in the order in which they were made.
 static UNDER_WAY: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-fn forget(path: &Path) {
+/// Notes a file or a folder that goes again if the process is ended by a signal.
+pub fn remember(path: &Path) {
+    if let Ok(mut list) = UNDER_WAY.lock() {
+        list.push(path.to_owned());
+    }
+}
+
+/// The opposite of [`remember`].
+pub fn forget(path: &Path) {
     if let Ok(mut list) = UNDER_WAY.lock() {
         list.retain(|p| p != path);
     }
 }
 
-/// Removes the temporary files of all outputs under way: for a process about to be ended by a signal.
+/// Removes the temporary files of all outputs under way, and folders made for them where they are empty then: for a
+/// process about to be ended by a signal.
 pub fn discard_all() {
     if let Ok(mut list) = UNDER_WAY.lock() {
-        list.drain(..).for_each(|path| drop(fs::remove_file(path)));
+        let remove = |path: &PathBuf| fs::remove_file(path).or_else(|_| fs::remove_dir(path));
+        list.drain(..).rev().for_each(|path| drop(remove(&path)));
     }
 }

@@ -104,6 +104,9 @@ impl Comparison {
     ) -> Result<Compared> {
         let Truths { truth, report, convergence, pop } = self.truths(name, terrain, camera, to)?;
         (to.say)(&truth_line(name, &report))?;
+        if let Some(Convergence { slope: Some(slope), fitted_levels, .. }) = &convergence {
+            (to.say)(&format!("{name} flip edges close in on truth: slope {slope:.2} over levels {fitted_levels:?}"))?;
+        }
         let Some(judge) = Judge::new(&truth) else { return Err(no_line(name)) };
         let picture = format!("{name}_truth.png");
         let mut pictures = vec![truth_picture(picture.clone(), &Mask::of_truth(&truth))?];

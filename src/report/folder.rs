@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use super::pictures::Picture;
 use crate::error::{Error, Result};
-use crate::ink::Output;
+use crate::ink::{Output, output};
 
 /// A folder for a report.
 #[derive(Debug)]
@@ -51,6 +51,9 @@ impl Folder {
         }
         let made = !path.exists();
         fs::create_dir_all(path).map_err(|e| failed(e.to_string()))?;
+        if made {
+            output::remember(path);
+        }
         // From here on a failure takes the folder along.
         let mut folder = Self { path: path.to_owned(), made, files: None };
         let open = |name: &str| Output::create(&path.join(name));
@@ -83,9 +86,7 @@ impl Folder {
             output.write(|file| file.write_all(&picture.png))?;
             output.publish()?;
         }
-        [files.plot, files.csv, files.json, files.page].into_iter().try_for_each(Output::publish)?;
-        self.made = false;
-        Ok(())
+        [files.plot, files.csv, files.json, files.page].into_iter().try_for_each(Output::publish)
     }
 }
 
@@ -93,7 +94,8 @@ impl Drop for Folder {
     fn drop(&mut self) {
         self.files = None;
         if self.made {
-            // Stays where something was published in it, or somebody else has put something there.
+            output::forget(&self.path);
+            // Refused where something is in it: it stays then.
             let _ = fs::remove_dir(&self.path);
         }
     }
