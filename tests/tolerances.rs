@@ -36,16 +36,16 @@ pub const GRADIENT: f64 = 1.2e-7;
 /// Example: on a sphere of 400 m radius 1e-6 are 0.4 mm.
 pub const CLOSED_FORM: f64 = 1e-6;
 
-/// The same distance for wide toward-away, which looks at the nearest away depth of the 3 x 3 block and so lengthens a
-/// line's ends by a pixel, 1.5 + sqrt 2 px.
+/// The same distance for wide toward-away: the line runs through the pixel or through the neighbour that away surface
+/// touches, 1.5 sqrt 2 px away at most.
 ///
-/// Example: a line ends in the middle of a pixel. The next but one along the diagonal (2.83 px) may be ink, no other.
-pub const WIDE_REACH_PX: f64 = 2.915;
+/// Example: a line ends in the far corner of a pixel. The neighbour across from that corner (2.12 px) may be ink.
+pub const WIDE_REACH_PX: f64 = 2.122;
 
 /// Least share of ink within [`REACH_PX`] for wide toward-away; the other methods have no ink beyond.
 ///
-/// Example: of 460 inked pixels two at either end of a line may be its lengthening.
-pub const WIDE_PRECISION: f64 = 0.99;
+/// Example: of 460 inked pixels one at either end of a line may be its lengthening.
+pub const WIDE_PRECISION: f64 = 0.995;
 
 /// Least precision and recall of adjacency by corners on coarse facets.
 ///
