@@ -15,6 +15,7 @@ mod facets;
 mod forms;
 mod gpu_errors;
 mod hardware;
+mod house;
 mod ink;
 mod judged;
 mod kernels;
