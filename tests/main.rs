@@ -29,6 +29,7 @@ mod shell;
 mod silhouettes;
 mod times;
 mod tolerances;
+mod truth;
 mod vertices;
 mod viewpoints;
 mod watertight;
