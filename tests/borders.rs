@@ -11,12 +11,13 @@ use hachure::ink::Kind;
 use hachure::plan::{Border, Method};
 use hachure::render::Renderer;
 use hachure::surface::Surface;
+use hachure::truth::{Inked, Mask, Piece, Truth};
 use hachure::view::Camera;
 
 use crate::closed_forms::GAUSSIAN;
 use crate::forms::{Form, about_middle, from_middle};
-use crate::metrics::{Truth, centres, score};
-use crate::scenes::{METHODS, count_ink, draw, gpu, level, look, renderer};
+use crate::judged::{centres, moved, piece, score, truth};
+use crate::scenes::{METHODS, count_ink, draw, draw_mask, gpu, level, look, renderer};
 use crate::tolerances::{HIDDEN_SHARE, REACH_PX, RECALL, TRUTH_PIECE_PX};
 
 const PAGE: [u32; 2] = [384, 288];
@@ -84,7 +85,7 @@ fn rim(form: &Form, shape: &Shape, camera: &Camera, part: Part) -> Truth {
     let eye = about_middle(camera.eye);
     let place = |g: DVec2| DVec2::new(g.x, -g.y) * form.cell + DVec2::new(-form.half(), form.half());
     let grid = |p: DVec2| (p - DVec2::new(-form.half(), form.half())) * DVec2::new(1.0, -1.0) / form.cell;
-    let mut truth = Truth::default();
+    let mut seen: Vec<Piece> = Vec::new();
     for corners in shape.rims {
         for (i, &a) in corners.iter().enumerate() {
             let (a, b) = (DVec2::from(a), DVec2::from(corners[(i + 1) % corners.len()]));
@@ -103,12 +104,12 @@ fn rim(form: &Form, shape: &Shape, camera: &Camera, part: Part) -> Truth {
             for (middle, ends) in found {
                 let lit = form.facing(middle, eye) > 0.0;
                 if part == Part::Whole || lit && form.sees(eye, form.point(middle), &|p| (shape.land)(grid(p))) {
-                    truth.pieces.push(ends);
+                    seen.push(piece(ends, 0.0));
                 }
             }
         }
     }
-    truth
+    truth(PAGE, seen)
 }
 
 /// Which pixels a border line touches.
@@ -119,10 +120,11 @@ fn border_bits(gpu: &Gpu, renderer: &Renderer<'_>, camera: &Camera) -> Vec<bool>
     bytes.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]) & BORDER != 0).collect()
 }
 
-fn centres_of(bits: &[bool], camera: &Camera) -> Vec<DVec2> {
-    let w = camera.width as usize;
-    let at = |i: usize| DVec2::new((i % w) as f64, (i / w) as f64) + 0.5;
-    bits.iter().enumerate().filter(|(_, b)| **b).map(|(i, _)| at(i)).collect()
+/// The mask of pixels of [`PAGE`]; no depth is asked of it.
+fn mask_of(bits: &[bool]) -> Mask {
+    let inked = (0..).zip(bits).filter(|(_, bit)| **bit);
+    let inked = inked.map(|(i, _): (u32, _)| Inked { column: i % PAGE[0], row: i / PAGE[0], distance: 0.0 });
+    Mask { size: PAGE, inked: inked.collect() }
 }
 
 /// A gentle Gaussian hill on the same grid.
@@ -146,9 +148,9 @@ fn the_rim_is_drawn_where_it_is_seen_by_every_method() {
             let mut first: Option<Vec<bool>> = None;
             for ((name, _), renderer) in METHODS.iter().zip(&renderers) {
                 let bits = border_bits(gpu(), renderer, &camera);
-                let ink = centres_of(&bits, &camera);
-                let s = score(&ink, &truth, PAGE);
-                let off = score(&ink, &whole, PAGE).farthest;
+                let ink = mask_of(&bits);
+                let s = score(&ink, &truth);
+                let off = score(&ink, &whole).farthest;
                 if first.is_none() {
                     println!(
                         "{} {}: P {:.4} R {:.4}, {} px of ink, {:.0} px of rim, farthest {:.2} px",
@@ -187,7 +189,7 @@ fn a_tilted_plane_draws_only_its_border() {
             for &(name, method) in methods {
                 let raster = draw(&surface, &camera, level(1), method, Border::On).raster;
                 assert_eq!(centres(&raster, Kind::Silhouette).len(), 0, "{name} finds a silhouette on a plane");
-                let s = score(&centres(&raster, Kind::Border), &truth, PAGE);
+                let s = score(&draw_mask(&surface, &camera, level(1), method, Border::On), &truth);
                 assert!(s.precision == 1.0 && s.recall >= RECALL, "{name}: P {} R {}", s.precision, s.recall);
                 let bare = draw(&surface, &camera, level(1), method, Border::Off).raster;
                 assert_eq!(count_ink(&bare), 0, "{name}: ink without border lines");
@@ -201,12 +203,11 @@ fn another_rim_is_noticed() {
     let surface = Surface::new(PLANE.dem(HOLE.exists));
     let camera = look(from_middle(EYES[0]), from_middle(DVec3::ZERO), 60.0, PAGE);
     let renderer = renderer(gpu(), &surface, &camera, level(4), Method::Walk, Border::On);
-    let ink = centres_of(&border_bits(gpu(), &renderer, &camera), &camera);
-    let without_hole = score(&ink, &rim(&PLANE, &WHOLE, &camera, Part::Seen), PAGE);
+    let ink = mask_of(&border_bits(gpu(), &renderer, &camera));
+    let without_hole = score(&ink, &rim(&PLANE, &WHOLE, &camera, Part::Seen));
     assert!(without_hole.precision < 0.9 && without_hole.recall >= RECALL);
-    let island = score(&ink, &rim(&PLANE, &ISLAND, &camera, Part::Seen), PAGE);
+    let island = score(&ink, &rim(&PLANE, &ISLAND, &camera, Part::Seen));
     assert!(island.recall < 0.9);
-    let moved: Vec<DVec2> = ink.iter().map(|p| *p + DVec2::new(2.0, 3.0)).collect();
-    let moved = score(&moved, &rim(&PLANE, &HOLE, &camera, Part::Seen), PAGE);
+    let moved = score(&moved(&ink, [2, 3]), &rim(&PLANE, &HOLE, &camera, Part::Seen));
     assert!(moved.precision < 0.9 && moved.recall < 0.9);
 }

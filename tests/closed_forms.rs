@@ -8,11 +8,13 @@ use glam::{DVec2, DVec3};
 use hachure::ink::Kind;
 use hachure::plan::{Border, Method, Share};
 use hachure::surface::Surface;
+use hachure::truth::Truth;
+use hachure::truth::metrics::Judge;
 use hachure::view::Camera;
 
 use crate::forms::{Form, from_middle};
-use crate::metrics::{Score, Truth, centres, inked, score};
-use crate::scenes::{METHODS, draw, level, look};
+use crate::judged::{Score, inked, moved, score};
+use crate::scenes::{METHODS, draw, draw_mask, level, look};
 use crate::tolerances::{
     ADJACENCY_CORNER, CLOSED_FORM, GRID_ERROR_PX, PLACE_GAIN, PLACE_MEAN_PX, REACH_PX, RECALL, RECALL_TOWARD_AWAY,
     WIDE_PRECISION, WIDE_REACH_PX,
@@ -96,8 +98,8 @@ fn cone_residual(p: DVec3, eye: DVec3, apex: f64, slope: f64) -> f64 {
 }
 
 /// A form with the eyes it is seen from, metres about its middle, and the level it is drawn at.
-struct Case {
-    form: &'static Form,
+pub struct Case {
+    pub form: &'static Form,
     eyes: &'static [DVec3],
     target: DVec3,
     level: u32,
@@ -131,7 +133,7 @@ const CASES: [Case; 4] = [
 ];
 
 /// Calls `check` with each form from each eye: surface, camera, truth.
-fn each_view(check: impl Fn(&Case, &Surface, &Camera, &Truth)) {
+pub fn each_view(check: impl Fn(&Case, &Surface, &Camera, &Truth)) {
     for case in &CASES {
         let surface = Surface::new(case.form.dem(|_, _| true));
         for &eye in case.eyes {
@@ -184,8 +186,7 @@ fn all_ink_is_silhouette_and_the_silhouette_is_ink() {
     each_view(|case, surface, camera, truth| {
         for (name, method) in METHODS {
             let Some(recall) = recall_of(method) else { continue };
-            let frame = draw(surface, camera, level(case.level), method, Border::Off);
-            let s = score(&centres(&frame.raster, Kind::Silhouette), truth, PAGE);
+            let s = score(&draw_mask(surface, camera, level(case.level), method, Border::Off), truth);
             report(case, name, &s);
             let reach = if method == (Method::TowardAway { wide: true }) { WIDE_REACH_PX } else { REACH_PX };
             assert!(s.farthest <= reach, "{} {name}: ink {:.2} px from the line", case.form.name, s.farthest);
@@ -207,13 +208,11 @@ fn recall_of(method: Method) -> Option<f64> {
 #[test]
 fn a_moved_mask_and_a_moved_eye_are_noticed() {
     each_view(|case, surface, camera, truth| {
-        let frame = draw(surface, camera, level(case.level), Method::Walk, Border::Off);
-        let ink = centres(&frame.raster, Kind::Silhouette);
-        let moved: Vec<DVec2> = ink.iter().map(|p| *p + DVec2::new(0.0, 3.0)).collect();
-        let s = score(&moved, truth, PAGE);
+        let ink = draw_mask(surface, camera, level(case.level), Method::Walk, Border::Off);
+        let s = score(&moved(&ink, [0, 3]), truth);
         assert!(s.precision < 0.9 && s.recall < 0.9, "{}: 3 px down is not noticed", case.form.name);
         let other = Camera { eye: camera.eye + DVec3::new(80.0, -60.0, 40.0), ..*camera };
-        let s = score(&ink, &case.form.contours(&other).0, PAGE);
+        let s = score(&ink, &case.form.contours(&other).0);
         assert!(s.precision < 1.0 && s.recall < RECALL, "{}: a moved eye is not noticed", case.form.name);
     });
 }
@@ -223,10 +222,12 @@ fn places_of_the_walk_are_truer_than_pixel_centres() {
     each_view(|case, surface, camera, truth| {
         let frame = draw(surface, camera, level(case.level), Method::Walk, Border::Off);
         let (centres, places): (Vec<DVec2>, Vec<DVec2>) = inked(&frame.raster, Kind::Silhouette).into_iter().unzip();
-        let (centres, places) = (score(&centres, truth, PAGE), score(&places, truth, PAGE));
+        let judge = Judge::new(truth).expect("a line on the page");
+        let farthest = places.iter().map(|p| judge.distance(*p)).fold(0.0, f64::max);
+        let [centres, places] = [centres, places].map(|places| judge.offsets(&places).expect("ink"));
         println!(
-            "{}: centres {:.3} px, places {:.3} px off on average, {:.2} px at most",
-            case.form.name, centres.mean, places.mean, places.farthest
+            "{}: centres {:.3} px, places {:.3} px off on average, {farthest:.2} px at most",
+            case.form.name, centres.mean, places.mean
         );
         assert!(places.mean <= PLACE_MEAN_PX, "{}: {} px", case.form.name, places.mean);
         assert!(centres.mean >= PLACE_GAIN * places.mean, "{}: no gain", case.form.name);
@@ -242,8 +243,7 @@ fn adjacency_finds_the_line_and_floods_beside_it() {
     let camera = look(from_middle(CASES[0].eyes[0]), from_middle(CASES[0].target), 60.0, PAGE);
     let (truth, _) = coarse.contours(&camera);
     let [edge, corner] = [Share::Edge, Share::Corner].map(|share| {
-        let frame = draw(&surface, &camera, level(1), Method::Adjacency { share }, Border::Off);
-        let s = score(&centres(&frame.raster, Kind::Silhouette), &truth, PAGE);
+        let s = score(&draw_mask(&surface, &camera, level(1), Method::Adjacency { share }, Border::Off), &truth);
         report(&CASES[0], &format!("adjacency {share:?}"), &s);
         s
     });

@@ -9,9 +9,10 @@
 use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
 use hachure::surface::{LatticePoint, Level, Surface};
+use hachure::truth::{Piece, Truth};
 use hachure::view::Camera;
 
-use crate::metrics::Truth;
+use crate::judged::{piece, truth};
 use crate::tolerances::TRUTH_PIECE_PX;
 
 /// Easting and northing of the middle of every form: large, as in any CRS, so that lost digits show.
@@ -82,7 +83,7 @@ impl Form {
         let on_map = |p: DVec2| p.abs().max_element() <= half;
         let sign: Vec<Vec<bool>> =
             (0..MAP_CELLS).map(|j| (0..MAP_CELLS).map(|i| self.facing(at(i, j), eye) > 0.0).collect()).collect();
-        let mut truth = Truth::default();
+        let mut pieces: Vec<Piece> = Vec::new();
         let mut points = Vec::new();
         for (j, i) in (0..MAP_CELLS - 1).flat_map(|j| (0..MAP_CELLS - 1).map(move |i| (j, i))) {
             let corners = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)];
@@ -94,13 +95,13 @@ impl Form {
             for pair in crossings.chunks_exact(2) {
                 self.pieces(pair[0], pair[1], camera, &mut |a, b, middle| {
                     if on_map(middle.truncate()) && self.sees(eye, middle, &on_map) {
-                        truth.pieces.push([a, b]);
+                        pieces.push(piece([a, b], camera.project(from_middle(middle)).1));
                         points.push(middle);
                     }
                 });
             }
         }
-        (truth, points)
+        (truth([camera.width, camera.height], pieces), points)
     }
 
     /// Where F changes its sign between two places, by bisection.

@@ -9,9 +9,11 @@ use hachure::ink::InkRaster;
 use hachure::plan::{Border, Method, Plan, Share};
 use hachure::render::{Frame, Renderer};
 use hachure::surface::{Level, Surface};
+use hachure::truth::Mask;
 use hachure::view::Camera;
 
 pub use crate::common::gpu;
+use crate::judged::mask;
 
 /// Every method with the name messages give it.
 pub const METHODS: [(&str, Method); 5] = [
@@ -51,6 +53,12 @@ pub fn draw(surface: &Surface, camera: &Camera, level: Level, method: Method, bo
     renderer.read().expect("its pixels")
 }
 
+/// The ink of one frame.
+pub fn draw_mask(surface: &Surface, camera: &Camera, level: Level, method: Method, border: Border) -> Mask {
+    let renderer = renderer(gpu(), surface, camera, level, method, border);
+    mask(&renderer.draw(camera).expect("a frame").raster, renderer.near())
+}
+
 /// A renderer for pages of the camera's size.
 pub fn renderer<'a>(
     gpu: &'a Gpu,
@@ -88,6 +96,11 @@ impl Random {
     /// A whole number from 0 to `end - 1`.
     pub fn below(&mut self, end: u32) -> u32 {
         ((u64::from(self.bits()) * u64::from(end)) >> 32) as u32
+    }
+
+    /// A number from `low` to `high`.
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * f64::from(self.bits()) / f64::from(u32::MAX)
     }
 }
 

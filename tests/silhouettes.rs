@@ -13,7 +13,7 @@ use hachure::view::Camera;
 use crate::closed_forms::GAUSSIAN;
 use crate::common::shared_dems;
 use crate::forms::{MIDDLE, from_middle};
-use crate::metrics::{centres, inked};
+use crate::judged::{centres, inked};
 use crate::scenes::{METHODS, count_ink, draw, gpu, level, look, renderer, rough};
 use crate::tolerances::{COUNT_SHARE, FACETS_A_LEAP, LEVEL_STRAYS, REACH_PX};
 

@@ -36,16 +36,16 @@ pub const GRADIENT: f64 = 1.2e-7;
 /// Example: on a sphere of 400 m radius 1e-6 are 0.4 mm.
 pub const CLOSED_FORM: f64 = 1e-6;
 
-/// The same distance for wide toward-away, which looks at the nearest away depth of the 3 x 3 block and so lengthens a
-/// line's ends by a pixel, 1.5 + sqrt 2 px.
+/// The same distance for wide toward-away: the line runs through the pixel or through the neighbour that away surface
+/// touches, 1.5 sqrt 2 px away at most.
 ///
-/// Example: a line ends in the middle of a pixel. The next but one along the diagonal (2.83 px) may be ink, no other.
-pub const WIDE_REACH_PX: f64 = 2.915;
+/// Example: a line ends in the far corner of a pixel. The neighbour across from that corner (2.12 px) may be ink.
+pub const WIDE_REACH_PX: f64 = 2.122;
 
 /// Least share of ink within [`REACH_PX`] for wide toward-away; the other methods have no ink beyond.
 ///
-/// Example: of 460 inked pixels two at either end of a line may be its lengthening.
-pub const WIDE_PRECISION: f64 = 0.99;
+/// Example: of 460 inked pixels one at either end of a line may be its lengthening.
+pub const WIDE_PRECISION: f64 = 0.995;
 
 /// Least precision and recall of adjacency by corners on coarse facets.
 ///
@@ -152,3 +152,84 @@ pub const SAME_GRID_SHARE: f64 = 0.999;
 ///
 /// Example: of 128 MiB taken on a machine of 64 CPUs, up to 128 pages of 4 KiB on each may not be counted yet.
 pub const RESIDENT_BYTES: u64 = 32 << 20;
+
+/// Sines, shares of a ray and of a facet that are decided by less are doubtful: rounding may decide otherwise.
+///
+/// Example: on a facet of 5 m a ray that passes its side at 5 nm may be held up or not.
+pub const DOUBT: f64 = 1e-9;
+
+/// Share of pieces that may be doubtful: those are not compared.
+///
+/// Example: of 100 000 pieces at most 100.
+pub const DOUBTFUL_SHARE: f64 = 0.001;
+
+/// How far the ends of a piece may lie from those that the slow program finds, px; and relative difference of depths.
+///
+/// Example: two orders of the same sums, seen from 1 m, differ by 1e-12 m, which are 1e-10 px on a page 48 px wide.
+pub const SAME_PIECE_PX: f64 = 1e-6;
+
+/// How far sums and shares may be from the same ones in another order.
+///
+/// Example: 400 pieces of a quarter pixel add up to 100 px within 1e-13.
+pub const SUM: f64 = 1e-9;
+
+/// How far offsets of a circle of 200 px moved by up to 4 px may lie from d |cos|, px.
+///
+/// Example: its top lies 200.04 px from where the middle was, 0.04 px off, but as many points lie nearer as farther: the
+/// mean is off by the square of that.
+pub const CIRCLE_PX: f64 = 0.005;
+
+/// The same for shares of its pixels, which lie up to 0.7 px beside the circle, as often outside as inside.
+///
+/// Example: moved by 4 px, 0.224 of its pixels lie within 1.5 px; 0.204 to 0.244 pass.
+pub const CIRCLE_SHARE: f64 = 0.02;
+
+/// How far distances between a line and pixels may lie from those between two lines, px: half a pixel.
+///
+/// Example: a line 4 px away is drawn in pixels whose centres lie 3.5 to 4.5 px away.
+pub const PIXEL_PX: f64 = 0.5;
+
+/// How far precision, recall and F of toward-away and walk may be from those of an independent study of the same view.
+///
+/// Example: precision .998 and recall .942: .932 to .952 pass as recall.
+pub const STUDY: f64 = 0.01;
+
+/// The same for adjacency, whose ink depends on which of two facets wins a pixel.
+///
+/// Example: precision .206: .176 to .236 pass.
+pub const STUDY_ADJACENCY: f64 = 0.03;
+
+/// The same for the length of the true line, as a share of it.
+///
+/// Example: of 3 785 px, 3 748 to 3 822 pass.
+pub const STUDY_LENGTH: f64 = 0.01;
+
+/// Least F of truth of half the level, drawn one pixel wide, against truth.
+///
+/// Example: of 3 785 px of line and as many pixels, 4 px may lie more than a pixel off.
+pub const SELF_F: f64 = 0.999;
+
+/// Seconds that truth of the seed scene at level 16 may take on two cores, and that of three million cells at level 8.
+///
+/// Example: 400 000 rays of 10 us each take 2 s on two cores.
+pub const TRUTH_SECONDS: [f64; 2] = [20.0, 120.0];
+
+/// Bytes that a process may take that finds the truth of three million cells.
+///
+/// Example: grid, normals and bounds take 29 bytes a sample, 87 MB; what is found another 50 MB.
+pub const TRUTH_BYTES: u64 = 2 << 30;
+
+/// How far 95 % of truth at level 16 may lie from the contour of mathematics, and of that from truth, px.
+///
+/// Example: samples 10 m apart hold a sphere of 400 m to 2 cm; seen edge-on from 1 000 m they are 0.007 px, most less.
+pub const CONTOUR_H95_PX: f64 = 0.005;
+
+/// Share by which the pixels of the two, drawn one pixel wide, may differ.
+///
+/// Example: a line along a diagonal of 500 px crosses the corners of up to 25 more, which the middle of a piece may miss.
+pub const CONTOUR_PIXELS: f64 = 0.05;
+
+/// How far the slope of offsets over levels, both as logarithms, may be from -2.
+///
+/// Example: level 1 lies 0.0027 px off, level 4 a sixteenth of that, 0.00017 px; 0.00013 to 0.00022 px pass.
+pub const SECOND_ORDER: f64 = 0.2;

@@ -65,7 +65,7 @@ pub struct DrawArguments {
     /// How silhouettes are found
     #[arg(long, default_value = "walk", help_heading = "Method")]
     method: MethodName,
-    /// toward-away only: conservative away coverage, nearest away depth of the 3 x 3 block
+    /// toward-away only: away surface counts wherever it touches the pixel or the neighbour it is compared with
     #[arg(long, help_heading = "Method")]
     wide: bool,
     /// adjacency only: what neighbouring facets share [default: edge]

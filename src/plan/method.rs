@@ -7,7 +7,7 @@ pub enum Method {
     Walk,
     /// Compare the nearest toward with the nearest away depth (Mower 2015, algorithm 2).
     TowardAway {
-        /// Away coverage conservative, nearest away depth of the 3 x 3 block.
+        /// Away surface counts wherever it touches the pixel or the neighbour that it is compared with.
         wide: bool,
     },
     /// Compare the facets of neighbouring pixels (Mower 2015, algorithm 1).
