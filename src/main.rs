@@ -13,7 +13,8 @@ fn main() -> ExitCode {
     let talk = arguments.talk();
     let handled = ctrlc::set_handler(|| {
         hachure::ink::discard_all();
-        std::process::exit(TRY_AGAIN);
+        // SAFETY: it ends the process and touches nothing. Destructors of drivers would run while their threads draw.
+        unsafe { libc::_exit(TRY_AGAIN) }
     });
     if let Err(error) = handled {
         talk.warn(&format!("a signal may leave temporary files behind ({error})"));

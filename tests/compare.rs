@@ -202,13 +202,34 @@ fn where_nothing_can_be_compared_one_line_says_so() {
         (["--methods", "walk,walk"], "walk is there twice"),
         (["--sizes", "64x48,64x48"], "64x48 is there twice"),
         (["--sizes", "64"], "want WxH"),
-        (["--repeat", "8"], "want 9"),
+        (["--repeat", "8"], "want 9 to 100"),
         (["--truth-level", "4"], "want 8, 16, 32 or 64"),
     ] {
         refuses(&place, &[&base[..], &flags].concat(), 2, words);
     }
+    refuses(&place, &[&base[..], &["--size", "64x48", "--sizes", "32x32"]].concat(), 2, "--sizes");
+    refuses(&place, &[&base[..3], &["nest/a/b"], &away[..], &["--size", "64x48"]].concat(), 1, "nothing of the DEM");
     refuses(&place, &[&base[..], &["--adapter", "no such adapter"]].concat(), 1, "no such adapter");
     refuses(&place, &[&base[..], &["--sizes", "64x48,16384x16384"]].concat(), 1, "--size");
+}
+
+#[test]
+fn a_picture_that_cannot_be_written_is_noticed_before_the_work() {
+    let place = Place::new();
+    fs::create_dir_all(place.path("report/hill_walk_2_mask.png")).expect("a folder in the way");
+    refuses(&place, &[&COMPARE[..], &EYE, &OUT].concat(), 1, "hill_walk_2_mask.png");
+    assert_eq!(files(&place.path("report")), ["hill_walk_2_mask.png"], "nothing of a report stands");
+}
+
+#[test]
+#[cfg(unix)]
+fn names_that_are_no_text_are_taken() {
+    use std::os::unix::ffi::OsStringExt;
+    let place = Place::new();
+    let mut command = place.command(&[&COMPARE[..], &EYE, &["--no-cache", "-o"]].concat());
+    let odd = std::ffi::OsString::from_vec(b"odd\xff".to_vec());
+    assert!(command.arg(&odd).output().expect("hachure runs").status.success());
+    assert!(place.path("").join(odd).join("report.html").exists());
 }
 
 #[test]
@@ -227,9 +248,11 @@ fn an_older_report_stands_until_the_new_one_is_whole() {
 #[cfg(unix)]
 fn a_signal_leaves_nothing_behind() {
     let place = Place::new();
-    let mut command = place.command(&[&COMPARE[..], &EYE, &OUT, &["--repeat", "10000", "--no-cache"]].concat());
+    let arguments = ["compare", "hill.asc", "--size", "1280x720", "--repeat", "100", "--no-cache", "-o", "nest/report"];
+    let mut command = place.command(&[&arguments[..], &EYE].concat());
     let mut child = command.stdout(std::process::Stdio::null()).spawn().expect("hachure runs");
-    while !place.path("report").exists() || files(&place.path("report")).is_empty() {
+    let folder = place.path("nest/report");
+    while !folder.exists() || files(&folder).is_empty() {
         assert!(child.try_wait().expect("a status").is_none(), "it ended before it could be stopped");
         std::thread::sleep(std::time::Duration::from_millis(5));
     }

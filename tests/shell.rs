@@ -133,19 +133,20 @@ fn completions_and_man_pages_hold_every_flag() {
     let generate = |arguments: &[&str]| stdout(&succeeds(place.run(&[&["generate"], arguments].concat())));
     let completions = ["bash", "zsh", "fish", "elvish", "powershell"].map(|shell| generate(&["completions", shell]));
     let pages = generate(&["man"]).replace("\\-", "-");
-    assert_eq!(pages.matches("\n.TH hachure").count(), 3, "one page a subcommand: {pages}");
+    assert_eq!(pages.matches("\n.TH hachure").count(), 4, "one page a subcommand: {pages}");
     let command = Arguments::command();
-    let draw = command.find_subcommand("draw").expect("draw");
-    let shown = draw.get_arguments().filter(|a| !a.is_hide_set()).filter_map(|a| a.get_long()).collect::<Vec<_>>();
-    assert!(shown.contains(&"azimuth") && shown.contains(&"output"));
+    let of = |name| command.find_subcommand(name).expect("a subcommand").get_arguments();
+    let shown = of("draw").chain(of("compare")).filter(|a| !a.is_hide_set());
+    let shown = shown.filter_map(|a| a.get_long()).collect::<Vec<_>>();
+    assert!(["azimuth", "output", "truth-level"].iter().all(|flag| shown.contains(flag)));
     for flag in shown {
         assert!(pages.contains(&format!("--{flag}")), "no man page knows --{flag}");
         assert!(completions[0].contains(&format!("--{flag} ")), "bash does not know --{flag}");
         assert!(completions.iter().all(|text| text.contains(flag)), "a shell does not know --{flag}");
     }
     generate(&["man", "-o", "."]);
-    assert_eq!(place.written(), ["hachure-draw.1", "hachure-info.1", "hachure.1"]);
-    let files = ["hachure.1", "hachure-draw.1", "hachure-info.1"];
+    assert_eq!(place.written(), ["hachure-compare.1", "hachure-draw.1", "hachure-info.1", "hachure.1"]);
+    let files = ["hachure.1", "hachure-draw.1", "hachure-compare.1", "hachure-info.1"];
     let files = files.map(|name| fs::read_to_string(place.path(name)).expect(name)).concat();
     assert_eq!(files.replace("\\-", "-"), pages);
     assert!(!stdout(&place.run(&["--help"])).contains("generate"), "it is for packagers, so hidden");

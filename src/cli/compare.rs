@@ -58,7 +58,7 @@ pub struct CompareArguments {
     #[command(flatten)]
     view: ViewArguments,
     /// Pages, pixels across and down [default: --size]
-    #[arg(long, value_name = "WxH,...", value_parser = values::size, value_delimiter = ',', help_heading = "View")]
+    #[arg(long, value_name = "WxH,...", value_parser = values::size, value_delimiter = ',', conflicts_with = "size", help_heading = "View")]
     sizes: Vec<Size>,
     /// A file of views, drawn instead of the one that flags give
     #[arg(long, value_name = "FILE", help_heading = "View")]
@@ -81,7 +81,7 @@ pub struct CompareArguments {
     /// Subdivisions of a cell's edge for truth: 8, 16, 32 or 64 [default: no visible cell's edge longer than a pixel]
     #[arg(long, value_name = "N", value_parser = values::truth_level, help_heading = "Measure")]
     truth_level: Option<Level>,
-    /// Warm frames behind each time, at least 9
+    /// Warm frames behind each time, 9 to 100
     #[arg(long, value_name = "N", value_parser = values::repeat, default_value = "9", help_heading = "Measure")]
     repeat: usize,
     /// Find truth anew and keep it nowhere
@@ -110,16 +110,14 @@ pub fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
     sizes.iter().try_for_each(|size| page_fits([size.width, size.height]))?;
     arguments.view.check()?;
     let jobs = arguments.jobs(talk)?;
-    let folder = Folder::open(&arguments.output)?;
     let comparison = arguments.comparison();
-    let runs = comparison.methods.len() * comparison.levels.len();
-    let stages = jobs.iter().map(|job| job.views.len()).sum::<usize>() * sizes.len() * (runs + 1);
-    let (done, gpu) = (Cell::new(0), arguments.device.open(talk)?);
+    let views = || jobs.iter().flat_map(|job| &job.views);
+    let names = views().flat_map(|view| sizes.iter().map(|size| scene_name(&view.name, *size, &sizes)));
+    let folder = Folder::open(&arguments.output, names.flat_map(|name| comparison.picture_names(&name)))?;
+    let scenes_asked = (views().count() * sizes.len()) as f64;
+    let (done, gpu) = (Cell::new(0.0), arguments.device.open(talk)?);
     let hearing = Hearing {
-        stage: &|stage| {
-            talk.progress(stage, done.get() as f64 / stages as f64);
-            done.set(done.get() + 1);
-        },
+        stage: &|stage, share| talk.progress(stage, (done.get() + share) / scenes_asked),
         warn: &|words| talk.warn(words),
         say: &|line| talk.say(line),
         detail: &|line| talk.detail(line),
@@ -133,9 +131,11 @@ pub fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
             let mut view = named.view.view(&surface, Level::default())?;
             (view.camera.width, view.camera.height) = (size.width, size.height);
             let name = scene_name(&named.name, size, &sizes);
+            view.warn_below_ground(&surface, Level::default(), talk);
             let found = comparison.scene(&gpu, &name, &terrain, &view.camera, &hearing)?;
             let (scene, of_scene, drawn) = arguments.scene(name, &job.files, &surface, &view, found);
             scenes.push(scene);
+            done.set(scenes.len() as f64);
             runs.extend(of_scene);
             pictures.extend(drawn);
         }
@@ -144,7 +144,7 @@ pub fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
     let results = Results {
         version: SCHEMA,
         hachure: env!("CARGO_PKG_VERSION"),
-        command: std::env::args().collect::<Vec<_>>().join(" "),
+        command: std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect::<Vec<_>>().join(" "),
         machine: machine(&gpu),
         truth: least_sure(&scenes),
         scenes,
@@ -187,6 +187,7 @@ impl CompareArguments {
                 "leave out one of the two",
             ));
         }
+        each_once("DEM", dems.iter().filter_map(|dem| Some(dem.file_name()?.to_string_lossy().into_owned())))?;
         let mut views = views::read(path, self.view.fov(), self.view.size)?;
         let mut jobs = Vec::new();
         for dem in dems {

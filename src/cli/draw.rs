@@ -143,7 +143,7 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     talk.progress("computing normals", 0.1);
     let surface = Surface::new(dem);
     let view = arguments.view.view(&surface, arguments.level)?;
-    warn_below_ground(&surface, &view.camera, arguments.level, talk);
+    view.warn_below_ground(&surface, arguments.level, talk);
     talk.say(&format!("view: {}", view.flags()))?;
     view.lonlat_flag().map_or(Ok(()), |flag| talk.say(&format!("or with: {flag}")))?;
     talk.progress("opening the adapter", 0.2);
@@ -271,14 +271,5 @@ impl DemReport {
             converted: dem.history().converted().to_vec(),
             assumed: [dem.history().assumed(), dem.history().usual()].concat(),
         }
-    }
-}
-
-fn warn_below_ground(surface: &Surface, camera: &Camera, level: Level, talk: &Talk) {
-    if let Some(ground) = surface.height_below(camera.eye.truncate(), level)
-        && camera.eye.z < ground
-    {
-        let depth = ground - camera.eye.z;
-        talk.warn(&format!("the eye is {depth:.1} m below the ground; give --eye E,N,+H to stand above it"));
     }
 }

@@ -138,7 +138,7 @@ pub fn truth_level(text: &str) -> Result<Level, String> {
 
 /// Frames behind a median.
 pub fn repeat(text: &str) -> Result<usize, String> {
-    text.parse().ok().filter(|n| (9..=10_000).contains(n)).ok_or_else(|| "want 9 to 10000 frames".into())
+    text.parse().ok().filter(|n| (9..=100).contains(n)).ok_or_else(|| "want 9 to 100 frames".into())
 }
 
 /// A method with all it takes, by the name that reports have for it.

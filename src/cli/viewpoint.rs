@@ -5,6 +5,7 @@
 use glam::{DVec2, DVec3};
 use serde::Serialize;
 
+use super::talk::Talk;
 use super::values::{self, Height, LookAt, Size, Standpoint};
 use crate::dem::{Crs, Georeference};
 use crate::error::{Error, Result};
@@ -204,6 +205,17 @@ impl View {
         let Camera { eye, azimuth, altitude, fov, width, height } = self.camera;
         let DVec2 { x, y } = self.file;
         format!("--eye {x},{y},{} --azimuth {azimuth} --altitude {altitude} --fov {fov} --size {width}x{height}", eye.z)
+    }
+
+    /// Warns where the eye is below the ground of that level.
+    pub fn warn_below_ground(&self, surface: &Surface, level: Level, talk: &Talk) {
+        let eye = self.camera.eye;
+        if let Some(ground) = surface.height_below(eye.truncate(), level)
+            && eye.z < ground
+        {
+            let depth = ground - eye.z;
+            talk.warn(&format!("the eye is {depth:.1} m below the ground; give --eye E,N,+H to stand above it"));
+        }
     }
 
     /// The same eye on the globe, as a flag, where the DEM's CRS is known.

@@ -7,12 +7,12 @@
 //!
 //! Does not handle: power cuts. Nothing is synced to disk, the file may be missing then, as with any other writer.
 
-use std::fs;
+use std::fs::{self, File};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
-use tempfile::NamedTempFile;
+use tempfile::TempPath;
 
 use crate::error::{Error, Result};
 
@@ -29,7 +29,9 @@ enum Place {
     File {
         /// Where it goes: `path` with links followed, so that a link stays one.
         target: PathBuf,
-        file: NamedTempFile,
+        /// Open until [`Output::close`].
+        file: Option<File>,
+        temporary: TempPath,
     },
     Stdout(Vec<u8>),
 }
@@ -58,8 +60,9 @@ impl Output {
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
         let file = builder.tempfile_in(folder).map_err(|e| failed(e.to_string()))?;
-        remember(file.path());
-        Ok(Self { path: path.to_owned(), place: Place::File { target, file } })
+        let (file, temporary) = file.into_parts();
+        remember(&temporary);
+        Ok(Self { path: path.to_owned(), place: Place::File { target, file: Some(file), temporary } })
     }
 
     /// Collects bytes for standard output.
@@ -80,13 +83,21 @@ impl Output {
     /// [`Error::Output`] where writing fails.
     pub fn write(&mut self, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
         let written = match &mut self.place {
-            Place::File { file, .. } => {
-                let mut buffer = BufWriter::new(file.as_file_mut());
+            Place::File { file: Some(file), .. } => {
+                let mut buffer = BufWriter::new(file);
                 write(&mut buffer).and_then(|()| buffer.flush())
             }
+            Place::File { file: None, .. } => Err(io::Error::other("it is closed")),
             Place::Stdout(bytes) => write(bytes),
         };
         written.map_err(|e| Error::Output { path: self.path.clone(), what: e.to_string() })
+    }
+
+    /// Closes the file: for many outputs that wait for each other, of which a system lets only so many be open.
+    pub fn close(&mut self) {
+        if let Place::File { file, .. } = &mut self.place {
+            *file = None;
+        }
     }
 
     /// Gives the file its final name, in the place of an older one, or standard output its bytes. A reader of those
@@ -95,9 +106,9 @@ impl Output {
     /// [`Error::Output`] where renaming fails (then the older file still stands) or standard output takes no more.
     pub fn publish(self) -> Result<()> {
         let published = match self.place {
-            Place::File { target, file } => {
-                forget(file.path());
-                file.persist(target).map(drop).map_err(|e| e.error)
+            Place::File { target, temporary, .. } => {
+                forget(&temporary);
+                temporary.persist(target).map_err(|e| e.error)
             }
             Place::Stdout(bytes) => print(&bytes),
         };

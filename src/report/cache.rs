@@ -20,6 +20,7 @@ use crate::view::Camera;
 /// The code that a truth depends on: when it changes, older truths are no longer found.
 const CODE: &str = concat!(
     include_str!("cache.rs"),
+    include_str!("../surface/lattice.rs"),
     include_str!("../surface/normals.rs"),
     include_str!("../surface/patch.rs"),
     include_str!("../truth/cell.rs"),

@@ -4,6 +4,8 @@
 //! renderer, the first frame and the warm frames of each run. Nothing is timed while anything else is computed.
 //! Each warm frame moves the eye 1 m along the view axis, so that nothing of an earlier frame can be used again.
 
+use std::cell::Cell;
+
 use glam::DVec2;
 use xxhash_rust::xxh3::xxh3_64;
 
@@ -23,6 +25,8 @@ use crate::view::Camera;
 
 /// Truth is no coarser, however far the view.
 pub const LEAST_TRUTH_LEVEL: Level = Level::EIGHT;
+/// Share of a scene's work that is given to truth on a progress bar.
+const TRUTH_SHARE: f64 = 0.5;
 /// Names of the bands of depth.
 const BANDS: [&str; 3] = ["near", "middle", "far"];
 /// Coarser truths whose median offset is so many times that of half the level are far enough from truth's own error.
@@ -56,8 +60,8 @@ pub struct Comparison {
 
 /// Who hears of the work.
 pub struct Hearing<'a> {
-    /// What is being done.
-    pub stage: &'a dyn Fn(&str),
+    /// What is being done, and the share of the scene's work that is done, 0 to 1.
+    pub stage: &'a dyn Fn(&str, f64),
     /// Something the user should know.
     pub warn: &'a dyn Fn(&str),
     /// A line on what was found.
@@ -85,11 +89,18 @@ struct Truths {
     truth: Truth,
     report: TruthReport,
     convergence: Option<Convergence>,
-    /// Share of the truth of half the level, drawn one pixel wide, that pops when the eye moves on.
+    /// Share of truth, drawn one pixel wide, that pops when the eye moves on.
     pop: f64,
 }
 
 impl Comparison {
+    /// File names of a scene's pictures.
+    pub fn picture_names(&self, scene: &str) -> Vec<String> {
+        let stems = self.levels.iter().flat_map(|level| self.methods.iter().map(|(name, _)| stem(scene, name, *level)));
+        let of_runs = stems.flat_map(|stem| [mask_name(&stem), difference_name(&stem)]);
+        of_runs.chain([truth_name(scene)]).collect()
+    }
+
     /// Compares in one scene, whose `name` begins the names of its files.
     ///
     /// # Errors
@@ -108,13 +119,15 @@ impl Comparison {
             (to.say)(&format!("{name} flip edges close in on truth: slope {slope:.2} over levels {fitted_levels:?}"))?;
         }
         let Some(judge) = Judge::new(&truth) else { return Err(no_line(name)) };
-        let picture = format!("{name}_truth.png");
+        let picture = truth_name(name);
         let mut pictures = vec![truth_picture(picture.clone(), &Mask::of_truth(&truth))?];
         let mut runs = Vec::new();
         for &level in &self.levels {
             for &(method_name, method) in &self.methods {
-                (to.stage)(&format!("{name}: {method_name} at level {}", level.subdivisions()));
-                let stem = format!("{name}_{method_name}_{}", level.subdivisions());
+                let done = runs.len() as f64 / (self.levels.len() * self.methods.len()) as f64;
+                let words = format!("{name}: {method_name} at level {}", level.subdivisions());
+                (to.stage)(&words, TRUTH_SHARE + (1.0 - TRUTH_SHARE) * done);
+                let stem = stem(name, method_name, level);
                 let trial =
                     Trial { gpu, surface: terrain.surface, plan: Plan::new(level, method, self.border), camera };
                 let (run, drawn) = trial.run(name, method_name, &stem, self.repeat, &judge, pop)?;
@@ -129,12 +142,16 @@ impl Comparison {
     }
 
     fn truths(&self, name: &str, terrain: &Terrain<'_>, camera: &Camera, to: &Hearing<'_>) -> Result<Truths> {
-        (to.stage)(&format!("{name}: truth"));
         let level = match self.truth_level {
             Some(level) => level,
             None => terrain.level_for(camera).ok_or_else(|| nothing_in_view(name))?.max(LEAST_TRUTH_LEVEL),
         };
+        // Truth, those of all coarser levels, and that of the next eye.
+        let truths = f64::from(level.subdivisions().ilog2() + 2);
+        let done = Cell::new(0.0);
         let truth_at = |camera: &Camera, level: Level| {
+            (to.stage)(&format!("{name}: truth at level {}", level.subdivisions()), TRUTH_SHARE * done.get() / truths);
+            done.set(done.get() + 1.0);
             let Kept { truth, ms } = self.cache.truth(terrain, camera, level, to.warn);
             Kept { truth: if self.border == Border::On { truth } else { truth.without_border() }, ms }
         };
@@ -149,22 +166,23 @@ impl Comparison {
         let own = Mask::of_truth(half);
         let agreement = judge.measure(&own).scores().agreement();
         let own_offsets = judge.offsets_of(half);
-        let next = Mask::of_truth(&truth_at(&moved(camera, 1), half.level).truth);
+        let mask = Mask::of_truth(&truth);
+        let next = Mask::of_truth(&truth_at(&moved(camera, 1), level).truth);
         let report = TruthReport {
             level: level.subdivisions(),
             length_px: truth.length(),
             border_px: truth.length() - truth.clone().without_border().length(),
-            fragments: Mask::of_truth(&truth).fragments(FRAGMENT),
+            fragments: mask.fragments(FRAGMENT),
             facets: truth.facets,
             rays: truth.rays,
             truth_ms: ms,
             self_precision: agreement.precision,
             self_recall: agreement.recall,
             self_f: agreement.f(),
-            self_offset_px: own_offsets.map_or(0.0, |offsets| offsets.median),
+            self_offset_px: own_offsets.map(|offsets| offsets.median),
         };
         let convergence = convergence(&judge, &coarser, own_offsets);
-        Ok(Truths { report, convergence, pop: own.pop(&next), truth })
+        Ok(Truths { report, convergence, pop: mask.pop(&next), truth })
     }
 }
 
@@ -212,8 +230,8 @@ impl Trial<'_> {
         let chains = trace(&frame.raster);
         let short = chains.iter().filter(|chain| chain.points.len() < FRAGMENT).count();
         let pictures = [
-            mask_picture(format!("{stem}_mask.png"), &frame.raster)?,
-            difference_picture(format!("{stem}_difference.png"), &mask, &measured)?,
+            mask_picture(mask_name(stem), &frame.raster)?,
+            difference_picture(difference_name(stem), &mask, &measured)?,
         ];
         times.sort_by(f64::total_cmp);
         let agreement = scores.agreement();
@@ -255,13 +273,13 @@ impl Trial<'_> {
             place: (plan.method == Method::Walk).then(|| place(judge, &frame)).flatten(),
             facets: renderer.facets(),
             inked: mask.inked.len(),
-            frame_ms: times[times.len() / 2],
+            frame_ms: median(&times),
             frame_range_ms: [times[0], times[times.len() - 1]],
             first_frame_ms,
             setup_ms,
             passes,
             peak_mib,
-            buffers_mebibytes: mebibytes(renderer.buffers().bytes()),
+            buffers_bytes: renderer.buffers().bytes(),
             pareto: false,
             mask_hashes: hashes,
             mask: pictures[0].name.clone(),
@@ -269,6 +287,22 @@ impl Trial<'_> {
         };
         Ok((run, pictures))
     }
+}
+
+fn stem(scene: &str, method: &str, level: Level) -> String {
+    format!("{scene}_{method}_{}", level.subdivisions())
+}
+
+fn mask_name(stem: &str) -> String {
+    format!("{stem}_mask.png")
+}
+
+fn difference_name(stem: &str) -> String {
+    format!("{stem}_difference.png")
+}
+
+fn truth_name(scene: &str) -> String {
+    format!("{scene}_truth.png")
 }
 
 /// The eye so many metres on, along the view axis.
@@ -318,6 +352,11 @@ fn convergence(judge: &Judge<'_>, coarser: &[Truth], own: Option<Offsets>) -> Op
     Some(Convergence { fitted_levels: fitted.iter().map(|l| l.level).collect(), slope: slope(&points), levels })
 }
 
+/// Of sorted times.
+fn median(times: &[f64]) -> f64 {
+    (times[(times.len() - 1) / 2] + times[times.len() / 2]) / 2.0
+}
+
 /// Least squares; `None` with fewer than two points.
 fn slope(points: &[DVec2]) -> Option<f64> {
     let middle = points.iter().sum::<DVec2>() / points.len() as f64;
@@ -359,7 +398,7 @@ fn mebibytes(bytes: u64) -> f64 {
 fn nothing_in_view(name: &str) -> Error {
     Error::Scene {
         what: format!("{name}: nothing of the DEM is in view"),
-        remedy: "turn the view towards it with --look-at or --azimuth".into(),
+        remedy: "turn the view towards it with --look-at, or --azimuth and --altitude".into(),
     }
 }
 

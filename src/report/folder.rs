@@ -14,7 +14,8 @@ use crate::ink::{Output, output};
 #[derive(Debug)]
 pub struct Folder {
     path: PathBuf,
-    made: bool,
+    /// Folders that were made for it, the outermost first.
+    made: Vec<PathBuf>,
     files: Option<Files>,
 }
 
@@ -40,22 +41,22 @@ pub struct Contents {
 }
 
 impl Folder {
-    /// Makes the folder where there is none, and opens the files in it.
+    /// Makes the folder where there is none, opens the files in it, and looks whether `pictures` can be written there.
     ///
     /// # Errors
-    /// [`Error::Output`] where it is a file or cannot be written.
-    pub fn open(path: &Path) -> Result<Self> {
+    /// [`Error::Output`] where it is a file or something cannot be written.
+    pub fn open(path: &Path, pictures: impl Iterator<Item = String>) -> Result<Self> {
         let failed = |what: String| Error::Output { path: path.to_owned(), what };
         if path.exists() && !path.is_dir() {
             return Err(failed("it is a file, and a report is a folder".into()));
         }
-        let made = !path.exists();
-        fs::create_dir_all(path).map_err(|e| failed(e.to_string()))?;
-        if made {
-            output::remember(path);
-        }
-        // From here on a failure takes the folder along.
+        let missing = path.ancestors().take_while(|folder| !folder.as_os_str().is_empty() && !folder.exists());
+        let mut made: Vec<PathBuf> = missing.map(Path::to_owned).collect();
+        made.reverse();
+        // From here on a failure takes the folders along.
         let mut folder = Self { path: path.to_owned(), made, files: None };
+        folder.made.iter().for_each(|made| output::remember(made));
+        fs::create_dir_all(path).map_err(|e| failed(e.to_string()))?;
         let open = |name: &str| Output::create(&path.join(name));
         folder.files = Some(Files {
             page: open("report.html")?,
@@ -63,6 +64,7 @@ impl Folder {
             csv: open("results.csv")?,
             plot: open("error-time.svg")?,
         });
+        pictures.into_iter().try_for_each(|name| open(&name).map(drop))?;
         Ok(folder)
     }
 
@@ -81,22 +83,25 @@ impl Folder {
         files.json.write(|file| file.write_all(&contents.json))?;
         files.csv.write(|file| file.write_all(&contents.csv))?;
         files.plot.write(|file| file.write_all(contents.plot.as_bytes()))?;
+        let mut outputs = Vec::new();
         for picture in pictures {
             let mut output = Output::create(&self.path.join(&picture.name))?;
             output.write(|file| file.write_all(&picture.png))?;
-            output.publish()?;
+            output.close();
+            outputs.push(output);
         }
-        [files.plot, files.csv, files.json, files.page].into_iter().try_for_each(Output::publish)
+        outputs.extend([files.plot, files.csv, files.json, files.page]);
+        outputs.into_iter().try_for_each(Output::publish)
     }
 }
 
 impl Drop for Folder {
     fn drop(&mut self) {
         self.files = None;
-        if self.made {
-            output::forget(&self.path);
+        for made in self.made.iter().rev() {
+            output::forget(made);
             // Refused where something is in it: it stays then.
-            let _ = fs::remove_dir(&self.path);
+            let _ = fs::remove_dir(made);
         }
     }
 }

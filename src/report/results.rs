@@ -119,7 +119,8 @@ pub struct TruthReport {
     /// Harmonic mean of the two.
     pub self_f: f64,
     /// Median distance of the curves of half the level from these, no pixels between.
-    pub self_offset_px: f64,
+    /// `None` where half the level shows no line.
+    pub self_offset_px: Option<f64>,
 }
 
 /// How coarser levels close in on truth: the distances of their flip edges, and the straight line through the logarithms
@@ -204,8 +205,8 @@ pub struct Run {
     pub passes: Vec<PassTime>,
     /// Most memory the process held while this run was made; `None` where the system does not tell.
     pub peak_mib: Option<f64>,
-    /// Bytes of the run's buffers on the device, in MiB; a number of the scene, not a measurement.
-    pub buffers_mebibytes: f64,
+    /// Bytes of the run's buffers on the device, as they were asked for.
+    pub buffers_bytes: u64,
     /// Whether no run of the scene is both faster and better.
     #[serde(skip)]
     pub pareto: bool,

@@ -222,7 +222,7 @@ impl Sight<'_> {
             let cell = |dc, dr| Cell::new(self.terrain.surface, self.eye, c + dc, r + dr);
             let (own, east, south) = (cell(0, 0), cell(1, 0), cell(0, 1));
             let facets = Facets::new(self.level, [&own, &east, &south]);
-            found.facets += 2 * u64::from(self.level).pow(2);
+            found.facets += facets.toward.iter().flatten().flatten().count() as u64;
             facets.each_line(|sides| self.line(sides, page, &mut found));
         }
         found

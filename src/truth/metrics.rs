@@ -197,7 +197,7 @@ impl Measured<'_> {
         let holds = |distance: f64| ends.iter().filter(|end| distance > **end).count() == band;
         BandScore {
             to: ends.get(band).copied().unwrap_or(f64::INFINITY),
-            length: self.lines(holds).iter().map(|(_, length)| length).sum(),
+            length: sum(self.lines(holds).iter().map(|(_, length)| *length)),
             inked: self.ink(holds).len(),
             agreement: self.agreement(WITHIN, holds),
         }
@@ -224,10 +224,15 @@ impl Measured<'_> {
     }
 }
 
+/// 0 of nothing, where `Iterator::sum` has -0.
+fn sum(values: impl Iterator<Item = f64>) -> f64 {
+    values.fold(0.0, |sum, value| sum + value)
+}
+
 /// Share of the weights whose distance is at most `within`; 1 of nothing.
 fn share_within(within: f64, weighted: &[(f64, f64)]) -> f64 {
-    let all: f64 = weighted.iter().map(|(_, weight)| weight).sum();
-    let near: f64 = weighted.iter().filter(|(distance, _)| *distance <= within).map(|(_, weight)| weight).sum();
+    let all = sum(weighted.iter().map(|(_, weight)| *weight));
+    let near = sum(weighted.iter().filter(|(distance, _)| *distance <= within).map(|(_, weight)| *weight));
     if all > 0.0 { near / all } else { 1.0 }
 }
 

@@ -46,7 +46,7 @@ pub struct Truth {
 impl Truth {
     /// Length of the lines on the page, px.
     pub fn length(&self) -> f64 {
-        self.on_page().map(|piece| piece.length()).sum()
+        self.on_page().fold(0.0, |sum, piece| sum + piece.length())
     }
 
     /// Pieces whose middle is on the page.

@@ -41,37 +41,38 @@ struct Part {
     corners: [DVec3; 3],
 }
 
-/// A cell that stood in the way of a ray: it mostly stands in the way of the next one too.
+/// The cell that stood in the way of the last hidden ray: it mostly stands in the way of the next one too.
 #[derive(Default)]
-pub(super) struct Blocker(Option<[isize; 2]>);
+pub(super) struct Blocker(Option<Cell>);
 
 impl Sight<'_> {
     /// Whether no facet stands between the eye and `target`, metres from the eye. `last` is where to look first.
     pub fn reaches(&self, target: DVec3, last: &mut Blocker) -> bool {
         let ray = Ray { target, inverse: target.recip() };
-        if last.0.is_some_and(|[c, r]| self.cell_blocks(c, r, &ray)) {
+        if last.0.as_ref().is_some_and(|cell| self.cell_blocks(cell, &ray)) {
             return false;
         }
         let found = self.blocker(self.terrain.layers() - 1, 0, 0, &ray);
-        last.0 = found.or(last.0);
-        found.is_none()
+        let reached = found.is_none();
+        last.0 = found.or(last.0.take());
+        reached
     }
 
     /// A cell below a node of the quadtree that stands in the way.
-    fn blocker(&self, layer: usize, c: isize, r: isize, ray: &Ray) -> Option<[isize; 2]> {
+    fn blocker(&self, layer: usize, c: isize, r: isize, ray: &Ray) -> Option<Cell> {
         if !self.terrain.bounding_box(layer, c, r, self.eye).is_some_and(|bounds| ray.meets(&bounds)) {
             return None;
         }
         if layer == 0 {
-            return self.cell_blocks(c, r, ray).then_some([c, r]);
+            let cell = Cell::new(self.terrain.surface, self.eye, c, r);
+            return self.cell_blocks(&cell, ray).then_some(cell);
         }
         let below = [(0, 0), (1, 0), (0, 1), (1, 1)].into_iter();
         below.flat_map(|(dc, dr)| self.blocker(layer - 1, 2 * c + dc, 2 * r + dr, ray)).next()
     }
 
-    /// Whether a facet of cell (c, r) stands in the way.
-    fn cell_blocks(&self, c: isize, r: isize, ray: &Ray) -> bool {
-        let cell = Cell::new(self.terrain.surface, self.eye, c, r);
+    /// Whether a facet of a cell stands in the way.
+    fn cell_blocks(&self, cell: &Cell, ray: &Ray) -> bool {
         (0..2).any(|half| cell.patches[half].as_ref().is_some_and(|patch| self.patch_blocks(patch, half, ray)))
     }
 

@@ -75,7 +75,7 @@ fn the_page_has_all_that_was_measured() {
         "llvmpipe Mesa 22.3.6",
         "wall clock from submitting to done, median of 9 warm frames",
         "--eye 325249,4117889,2000 --azimuth 310",
-        "Fitted slope −1.95: twice the level divides the distance by 3.9.",
+        "Slope fitted to the medians: −1.95: twice the level divides the distance by 3.9.",
         "near to 2410 m,\nmiddle to 5120 m,\nfar beyond",
         "2\u{202f}117\u{202f}248",
         "black: agreed",
