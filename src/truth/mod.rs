@@ -9,7 +9,9 @@
 //! is visible if a ray from the eye reaches it, nudged off the surface by a twentieth of its edge. Cost: bounds of all
 //! cells once, then the facets of the cells where facing may change, then a ray a piece.
 //!
-//! Does not handle: facets nearer than the near plane (there are none to be seen from an eye above ground).
+//! Does not handle: facets nearer than the near plane (there are none to be seen from an eye above ground); the length of
+//! a contour. Lengths are those of the edges, which run to and fro along it, most where it lies aslant to the grid: on a
+//! cone they add up to 1.02 times its length, on a hill to 2.2 times, and finer levels change that little.
 
 mod cell;
 mod contour;

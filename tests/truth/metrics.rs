@@ -1,10 +1,11 @@
 //! Every figure of the metrics on lines and ink of which it is known by formula, and by a judge as slow as its words.
 
+use std::collections::BTreeSet;
 use std::f64::consts::{FRAC_PI_2, SQRT_2};
 use std::ops::Range;
 
 use glam::DVec2;
-use hachure::truth::metrics::{Agreement, DISTANCES, FRAGMENT, Judge, Offsets, Scores};
+use hachure::truth::metrics::{Agreement, BandScore, DISTANCES, FRAGMENT, Judge, Offsets, Scores};
 use hachure::truth::{Inked, Mask, Piece, Truth};
 
 use crate::judged::{piece, truth};
@@ -126,9 +127,9 @@ fn half_the_length_may_be_recalled_and_f_is_the_harmonic_mean() {
 
 #[test]
 fn holes_are_missed_by_length_and_are_gaps_from_three_pixels_on() {
-    for wide in 0..12 {
+    for wide in 0_u32..12 {
         // Ink on either side reaches a pixel into the hole.
-        let missed = if wide > 2 { wide - 2 } else { 0 };
+        let missed = wide.saturating_sub(2);
         let one = ink(&[row(20, 10..40), row(20, 40 + wide..110)]);
         let truth = level_line();
         let judge = Judge::new(&truth).unwrap();
@@ -189,8 +190,13 @@ fn bands_of_depth_hold_a_third_of_the_line_each() {
         near("recall", band.agreement.recall, recall, SUM);
     }
     assert_eq!(bands.map(|band| band.agreement.precision), [1.0, 1.0, 0.0]);
-    // Along a line that recedes evenly, bands end at a third and two thirds of the way.
-    let mut receding = straight([10.0, 20.5], [110.0, 20.5], 0.0);
+    // Along a line that recedes evenly, bands end at a third and two thirds of the way, whatever its pieces.
+    let [short, long] = [10.0, 30.0].map(|x| straight([x, 20.5], [x + 20.0, 20.5], 0.0));
+    let short = short.iter().flat_map(|piece| {
+        let [a, b] = piece.ends;
+        [[a, a.midpoint(b)], [a.midpoint(b), b]].map(|ends| Piece { ends, ..*piece })
+    });
+    let mut receding: Vec<Piece> = short.chain(long).chain(straight([50.0, 20.5], [110.0, 20.5], 0.0)).collect();
     receding.iter_mut().for_each(|piece| piece.distance = piece.middle().x);
     let bands = scores(&truth(PAGE, receding), &ink(&[])).bands;
     near("first end", bands[0].to, 10.0 + 100.0 / 3.0, 0.25);
@@ -226,17 +232,15 @@ fn lines_beyond_the_page_excuse_ink_and_are_not_asked_for() {
 fn a_slow_judge_agrees() {
     let mut random = Random::new(3);
     for _ in 0..40 {
-        let mut place = || [random.between(-4.0, 132.0), random.between(-4.0, 100.0)];
-        let pieces: Vec<Piece> = (0..4).flat_map(|_| straight(place(), place(), 1.0)).collect();
-        let pixels =
-            (0..300).map(|_| Inked { column: random.below(PAGE[0]), row: random.below(PAGE[1]), distance: 1.0 });
-        let (truth, mask) = (truth(PAGE, pieces), ink(&[pixels.collect()]));
-        let found = scores(&truth, &mask);
-        let to_truth = mask.inked.iter().map(|p| (to_lines(p.centre(), &truth.pieces), 1.0)).collect::<Vec<_>>();
-        let to_ink =
-            truth.pieces.iter().filter(|p| (0.0..128.0).contains(&p.middle().x) && (0.0..96.0).contains(&p.middle().y));
+        let (truth, mask) = scatter(&mut random);
+        let judge = Judge::new(&truth).expect("lines");
+        let measured = judge.measure(&mask);
+        let found = measured.scores();
+        let to_truth: Vec<_> = mask.inked.iter().map(|p| (to_lines(p.centre(), &truth.pieces), 1.0)).collect();
+        let inside = |p: DVec2| (0.0..128.0).contains(&p.x) && (0.0..96.0).contains(&p.y);
         let nearest = |p: DVec2| mask.inked.iter().map(|q| q.centre().distance(p)).fold(f64::INFINITY, f64::min);
-        let to_ink = to_ink.map(|p| (nearest(p.middle()), p.ends[0].distance(p.ends[1]))).collect::<Vec<_>>();
+        let pieces = truth.pieces.iter().filter(|p| inside(p.middle()));
+        let to_ink: Vec<_> = pieces.map(|p| (nearest(p.middle()), p.ends[0].distance(p.ends[1]))).collect();
         for (k, at) in DISTANCES.iter().zip(found.at) {
             near("precision", at.precision, share(&to_truth, k + 0.5), SUM);
             near("recall", at.recall, share(&to_ink, k + 0.5), SUM);
@@ -246,7 +250,30 @@ fn a_slow_judge_agrees() {
         let least = share(&to_truth, h95 + SUM).min(share(&to_ink, h95 + SUM));
         let less = share(&to_truth, h95 - SUM).min(share(&to_ink, h95 - SUM));
         assert!(least >= 0.95 - SUM && less < 0.95, "95 % lie within {h95}: {least}, {less}");
+        // All bands together are the whole, pixel by pixel it is the same, and so are the sets wholly farther than 2.5 px.
+        let of_bands = |weight: fn(&BandScore) -> f64, share: fn(&BandScore) -> f64| {
+            found.bands.iter().map(|band| weight(band) * share(band)).sum::<f64>()
+                / found.bands.iter().map(weight).sum::<f64>()
+        };
+        near("precision of bands", of_bands(|b| b.inked as f64, |b| b.agreement.precision), share(&to_truth, 1.5), SUM);
+        near("recall of bands", of_bands(|b| b.length, |b| b.agreement.recall), share(&to_ink, 1.5), SUM);
+        assert!(measured.agrees().eq(to_truth.iter().map(|(d, _)| *d <= 1.5)), "pixels within 1.5 px");
+        let far = |set: &&Vec<usize>| set.iter().all(|&i| to_truth[i].0 > 2.5);
+        assert_eq!(found.spurious, mask.components().iter().filter(far).count(), "sets farther than 2.5 px");
     }
+}
+
+/// Four lines at all depths, some beyond the page, and 300 pixels anywhere.
+fn scatter(random: &mut Random) -> (Truth, Mask) {
+    let mut pieces = Vec::new();
+    for _ in 0..4 {
+        let [from, to] = [0, 1].map(|_| [random.between(-4.0, 132.0), random.between(-4.0, 100.0)]);
+        pieces.extend(straight(from, to, 1.0));
+    }
+    pieces.iter_mut().for_each(|piece| piece.distance = random.between(1.0, 9.0));
+    let places: BTreeSet<[u32; 2]> = (0..300).map(|_| [random.below(PAGE[1]), random.below(PAGE[0])]).collect();
+    let inked = places.into_iter().map(|[row, column]| Inked { column, row, distance: random.between(0.0, 10.0) });
+    (truth(PAGE, pieces), ink(&[inked.collect()]))
 }
 
 fn to_lines(p: DVec2, pieces: &[Piece]) -> f64 {
