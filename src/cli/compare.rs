@@ -83,7 +83,7 @@ pub struct CompareArguments {
     truth_level: Option<Level>,
     /// Warm frames behind each time, 9 to 100
     #[arg(long, value_name = "N", value_parser = values::repeat, default_value = "9", help_heading = "Measure")]
-    repeat: usize,
+    repeat: u32,
     /// Find truth anew and keep it nowhere
     #[arg(long, help_heading = "Measure")]
     no_cache: bool,

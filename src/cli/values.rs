@@ -137,7 +137,7 @@ pub fn truth_level(text: &str) -> Result<Level, String> {
 }
 
 /// Frames behind a median.
-pub fn repeat(text: &str) -> Result<usize, String> {
+pub fn repeat(text: &str) -> Result<u32, String> {
     text.parse().ok().filter(|n| (9..=100).contains(n)).ok_or_else(|| "want 9 to 100 frames".into())
 }
 

@@ -12,6 +12,7 @@ pub mod memory;
 pub mod pictures;
 pub mod plot;
 pub mod results;
+mod trial;
 mod words;
 
 pub use compare::Comparison;
