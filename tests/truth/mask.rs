@@ -85,14 +85,14 @@ fn excess_pop_is_what_truth_does_not_do() {
 fn truth_is_drawn_one_pixel_wide() {
     let down = straight([30.5, 10.0], [30.5, 90.0], 7.0);
     let slant = straight([40.0, 10.0], [80.0, 50.0], 9.0);
-    let outside = straight([-3.0, 5.5], [4.0, 5.5], 5.0);
-    let mask = Mask::of_truth(&truth(PAGE, [slant, down, outside].concat()));
+    let [out, left] = [straight([124.0, 5.5], [131.0, 5.5], 5.0), straight([-3.0, 9.5], [-1.0, 9.5], 5.0)];
+    let mask = Mask::of_truth(&truth(PAGE, [slant, down, out, left].concat()));
     let expected: Vec<Inked> = (0..96)
         .flat_map(|row| {
-            let level = (0..4).filter(move |_| row == 5).map(move |column| Inked { column, row, distance: 5.0 });
+            let out = (124..128).filter(move |_| row == 5).map(move |column| Inked { column, row, distance: 5.0 });
             let down = (10..90).contains(&row).then_some(Inked { column: 30, row, distance: 7.0 });
             let slant = (10..50).contains(&row).then(|| Inked { column: 30 + row, row, distance: 9.0 });
-            level.chain(down).chain(slant)
+            down.into_iter().chain(slant).chain(out)
         })
         .collect();
     assert_eq!(mask.inked, expected, "row by row, each pixel once");

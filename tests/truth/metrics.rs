@@ -73,6 +73,19 @@ fn a_moved_circle_is_as_far_off_as_geometry_says() {
     }
 }
 
+#[test]
+fn offsets_of_lines_count_by_length() {
+    // Of 100 px of line 40 lie 2 px off in four pieces, 60 lie 5 px off in one.
+    let near = (0..4).map(|k| piece([10.0, 20.0].map(|x| DVec2::new(x + 10.0 * f64::from(k), 22.4)), 1.0));
+    let far = piece([DVec2::new(50.0, 25.4), DVec2::new(110.0, 25.4)], 1.0);
+    let lines = truth(PAGE, near.chain([far]).collect());
+    let known = Offsets { mean: 0.4 * 2.0 + 0.6 * 5.0, median: 5.0, p95: 5.0 };
+    let found = Judge::new(&level_line()).and_then(|judge| judge.offsets_of(&lines)).expect("lines");
+    for (found, known) in [(found.mean, known.mean), (found.median, known.median), (found.p95, known.p95)] {
+        assert!((found - known).abs() <= SUM, "{found}, by formula {known}");
+    }
+}
+
 /// In pixels: a line at angle a crosses |sin| + |cos| of them for each pixel of its length.
 #[test]
 fn a_moved_circle_of_pixels_agrees_as_geometry_says() {
