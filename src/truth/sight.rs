@@ -67,7 +67,10 @@ impl Sight<'_> {
             let cell = Cell::new(self.terrain.surface, self.eye, c, r);
             return self.cell_blocks(&cell, ray).then_some(cell);
         }
-        let below = [(0, 0), (1, 0), (0, 1), (1, 1)].into_iter();
+        // Those nearer to the eye first: a hidden ray mostly ends early.
+        let columns = if ray.target.x < 0.0 { [1, 0] } else { [0, 1] };
+        let rows = if ray.target.y < 0.0 { [0, 1] } else { [1, 0] };
+        let below = rows.into_iter().flat_map(|dr| columns.map(|dc| (dc, dr)));
         below.flat_map(|(dc, dr)| self.blocker(layer - 1, 2 * c + dc, 2 * r + dr, ray)).next()
     }
 
