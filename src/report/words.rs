@@ -207,7 +207,7 @@ fn how(method: &str) -> &'static str {
              than a neighbour's toward surface (Mower 2015)."
         }
         "toward-away-wide" => {
-            "The same as toward-away, with away surface counted wherever it touches a pixel or its neighbours."
+            "The same as toward-away, with away surface counted wherever it touches the pixel or that neighbour."
         }
         "adjacency" => {
             "A pixel is ink if a neighbour at least as far shows a facet that shares no lattice edge with its own \
