@@ -99,7 +99,7 @@ impl Comparison {
     /// Compares in one scene, whose `name` begins the names of its files.
     ///
     /// # Errors
-    /// [`Error::Scene`] where there is nothing to compare; those of [`Renderer`].
+    /// [`Error::Scene`] where there is nothing to compare; those of [`Renderer`](crate::render::Renderer).
     pub fn scene(
         &self,
         gpu: &Gpu,
