@@ -10,7 +10,7 @@
 use std::fs::{self, File};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
+use std::sync::{Mutex, PoisonError};
 
 use tempfile::TempPath;
 
@@ -59,9 +59,11 @@ impl Output {
         // As for any new file: the system takes the user's umask off.
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        let file = builder.tempfile_in(folder).map_err(|e| failed(e.to_string()))?;
-        let (file, temporary) = file.into_parts();
-        remember(&temporary);
+        // Made and noted at once: a signal between the two would leave the file behind.
+        let mut under_way = UNDER_WAY.lock().unwrap_or_else(PoisonError::into_inner);
+        let (file, temporary) = builder.tempfile_in(folder).map_err(|e| failed(e.to_string()))?.into_parts();
+        under_way.push(temporary.to_path_buf());
+        drop(under_way);
         Ok(Self { path: path.to_owned(), place: Place::File { target, file: Some(file), temporary } })
     }
 
@@ -107,8 +109,10 @@ impl Output {
     pub fn publish(self) -> Result<()> {
         let published = match self.place {
             Place::File { target, temporary, .. } => {
-                forget(&temporary);
-                temporary.persist(target).map_err(|e| e.error)
+                let path = temporary.to_path_buf();
+                let named = temporary.persist(target).map_err(|e| e.error);
+                forget(&path);
+                named
             }
             Place::Stdout(bytes) => print(&bytes),
         };
@@ -127,14 +131,15 @@ fn print(bytes: &[u8]) -> io::Result<()> {
 /// Temporary files of outputs under way, and folders made for them, in the order in which they were made.
 static UNDER_WAY: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// Notes a file or a folder that goes again if the process is ended by a signal.
-pub fn remember(path: &Path) {
-    if let Ok(mut list) = UNDER_WAY.lock() {
-        list.push(path.to_owned());
-    }
+/// Makes a folder that goes again, where it is empty then, if the process is ended by a signal before [`forget`].
+pub fn make_folder(path: &Path) -> io::Result<()> {
+    let mut under_way = UNDER_WAY.lock().unwrap_or_else(PoisonError::into_inner);
+    fs::create_dir(path)?;
+    under_way.push(path.to_owned());
+    Ok(())
 }
 
-/// The opposite of [`remember`].
+/// From here on a signal leaves it alone.
 pub fn forget(path: &Path) {
     if let Ok(mut list) = UNDER_WAY.lock() {
         list.retain(|p| p != path);
@@ -142,10 +147,10 @@ pub fn forget(path: &Path) {
 }
 
 /// Removes the temporary files of all outputs under way, and folders made for them where they are empty then: for a
-/// process about to be ended by a signal.
+/// process about to be ended by a signal. Whoever makes or names another output from here on waits for that end.
 pub fn discard_all() {
-    if let Ok(mut list) = UNDER_WAY.lock() {
-        let remove = |path: &PathBuf| fs::remove_file(path).or_else(|_| fs::remove_dir(path));
-        list.drain(..).rev().for_each(|path| drop(remove(&path)));
-    }
+    let mut list = UNDER_WAY.lock().unwrap_or_else(PoisonError::into_inner);
+    let remove = |path: &PathBuf| fs::remove_file(path).or_else(|_| fs::remove_dir(path));
+    list.drain(..).rev().for_each(|path| drop(remove(&path)));
+    std::mem::forget(list);
 }

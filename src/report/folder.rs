@@ -51,12 +51,14 @@ impl Folder {
             return Err(failed("it is a file, and a report is a folder".into()));
         }
         let missing = path.ancestors().take_while(|folder| !folder.as_os_str().is_empty() && !folder.exists());
-        let mut made: Vec<PathBuf> = missing.map(Path::to_owned).collect();
-        made.reverse();
-        // From here on a failure takes the folders along.
-        let mut folder = Self { path: path.to_owned(), made, files: None };
-        folder.made.iter().for_each(|made| output::remember(made));
-        fs::create_dir_all(path).map_err(|e| failed(e.to_string()))?;
+        let mut missing: Vec<PathBuf> = missing.map(Path::to_owned).collect();
+        missing.reverse();
+        let mut folder = Self { path: path.to_owned(), made: Vec::new(), files: None };
+        for missing in missing {
+            output::make_folder(&missing).map_err(|e| failed(e.to_string()))?;
+            // From here on a failure takes it along.
+            folder.made.push(missing);
+        }
         let open = |name: &str| Output::create(&path.join(name));
         folder.files = Some(Files {
             page: open("report.html")?,
