@@ -19,7 +19,7 @@ use crate::report::cache::Cache;
 use crate::report::compare::{Compared, Comparison, Hearing, METHODS};
 use crate::report::folder::{Contents, Folder};
 use crate::report::pictures::Picture;
-use crate::report::results::{Machine, Results, SCHEMA, Scene, TruthSummary};
+use crate::report::results::{Machine, Results, Run, SCHEMA, Scene, TruthSummary};
 use crate::report::{error_time_svg, report_html, write_csv};
 use crate::surface::{Level, Surface};
 use crate::truth::Terrain;
@@ -212,7 +212,7 @@ impl CompareArguments {
         surface: &Surface,
         view: &View,
         found: Compared,
-    ) -> (Scene, Vec<crate::report::results::Run>, Vec<Picture>) {
+    ) -> (Scene, Vec<Run>, Vec<Picture>) {
         let (dem, camera) = (surface.dem(), &view.camera);
         let scene = Scene {
             name,

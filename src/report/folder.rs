@@ -45,7 +45,7 @@ impl Folder {
     ///
     /// # Errors
     /// [`Error::Output`] where it is a file or something cannot be written.
-    pub fn open(path: &Path, pictures: impl Iterator<Item = String>) -> Result<Self> {
+    pub fn open(path: &Path, mut pictures: impl Iterator<Item = String>) -> Result<Self> {
         let failed = |what: String| Error::Output { path: path.to_owned(), what };
         if path.exists() && !path.is_dir() {
             return Err(failed("it is a file, and a report is a folder".into()));
@@ -66,7 +66,7 @@ impl Folder {
             csv: open("results.csv")?,
             plot: open("error-time.svg")?,
         });
-        pictures.into_iter().try_for_each(|name| open(&name).map(drop))?;
+        pictures.try_for_each(|name| open(&name).map(drop))?;
         Ok(folder)
     }
 

@@ -17,7 +17,7 @@ use crate::ink::{InkRaster, Kind, Pixel, trace};
 use crate::plan::{Method, Plan};
 use crate::render::{Frame, PassTime, Renderer};
 use crate::surface::{Level, Surface};
-use crate::truth::metrics::{DISTANCES, FRAGMENT, Judge, Scores};
+use crate::truth::metrics::{BandScore, DISTANCES, FRAGMENT, Judge, Scores};
 use crate::truth::{Inked, Mask};
 use crate::view::Camera;
 
@@ -173,7 +173,7 @@ fn at_distances(scores: &Scores) -> Vec<AtDistance> {
 }
 
 fn bands(scores: &Scores) -> Vec<Band> {
-    let band = |(name, band): (&'static str, crate::truth::metrics::BandScore)| Band {
+    let band = |(name, band): (&'static str, BandScore)| Band {
         name,
         to_m: band.to.is_finite().then_some(band.to),
         truth_px: band.length,

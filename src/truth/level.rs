@@ -15,7 +15,8 @@ use crate::view::Camera;
 impl Terrain<'_> {
     /// The least level at which no edge of a facet in a visible cell is longer than a pixel, 64 at most, the sides of
     /// cells taken as straight and divided evenly on the page; `None` where no cell is visible. A cell counts as visible
-    /// if a ray reaches one of its corners or its middle past the facets of level 1. Cost: projecting every cell, then rays until the first visible one of them, the longest first.
+    /// if a ray reaches one of its corners or its middle past the facets of level 1. Cost: projecting every cell, then
+    /// rays until the first visible one of them, the longest first.
     pub fn level_for(&self, camera: &Camera) -> Option<Level> {
         let page = self.page(camera);
         let [columns, rows] = self.grid(0).map(|n| n as u32);
