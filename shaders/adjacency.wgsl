@@ -4,18 +4,12 @@ override shared_vertices: u32 = 2u;
 
 @group(0) @binding(22) var<storage, read_write> out_ink: array<u32>;
 
-fn facet_vertex(f: Facet, k: u32) -> vec2<u32> {
-    return f.origin + corner(f.half, k) * f.step;
+fn shares(f: Facet, g: Facet) -> u32 {
+    return is_of(f.a, g) + is_of(f.b, g) + is_of(f.c, g);
 }
 
-fn shares(f: Facet, g: Facet) -> u32 {
-    var count = 0u;
-    for (var i = 0u; i < 3u; i++) {
-        for (var j = 0u; j < 3u; j++) {
-            count += select(0u, 1u, all(facet_vertex(f, i) == facet_vertex(g, j)));
-        }
-    }
-    return count;
+fn is_of(vertex: vec2<u32>, f: Facet) -> u32 {
+    return select(0u, 1u, all(vertex == f.a) || all(vertex == f.b) || all(vertex == f.c));
 }
 
 // Whether a lattice vertex lies on the border of the DEM or of a void: whether a patch around it is missing.
@@ -37,7 +31,7 @@ fn on_rim(at: vec2<u32>) -> bool {
 }
 
 fn touches_rim(f: Facet) -> bool {
-    return on_rim(facet_vertex(f, 0u)) || on_rim(facet_vertex(f, 1u)) || on_rim(facet_vertex(f, 2u));
+    return on_rim(f.a) || on_rim(f.b) || on_rim(f.c);
 }
 
 @compute @workgroup_size(64)

@@ -1,4 +1,4 @@
-// One invocation a lattice edge of the rim: where its one facet is toward, draws it one pixel wide over what lies
+// One invocation a patch edge of the rim: where its one facet is toward, draws it one pixel wide over what lies
 // farther. A pixel belongs to the line where the edge crosses its central cross: thin, and connected from edge to edge.
 
 struct RimEdge {
@@ -47,31 +47,10 @@ fn draw_crossings(p: vec3<f32>, q: vec3<f32>, axis: u32) {
     }
 }
 
-@compute @workgroup_size(64)
-fn border(@builtin(global_invocation_id) invocation: vec3<u32>) {
-    let parts = CELL_STEPS / scene.step;
-    let i = invocation.y * MOST_GROUPS * 64u + invocation.x;
-    if i / parts >= arrayLength(&rim) {
-        return;
-    }
-    let edge = rim[i / parts];
-    let along = vec2<u32>(select(1u, 0u, edge.direction == 1u), select(1u, 0u, edge.direction == 0u));
-    let at = edge.sample * CELL_STEPS + along * (i % parts) * scene.step;
-    // North-west vertex of the quad whose half has this edge: the quad above or left of it, or the one it starts in.
-    var quad = vec2<i32>(at / scene.step);
-    quad.y -= select(0, 1, edge.direction == 0u && edge.half == 0u);
-    quad.x -= select(0, 1, edge.direction == 1u && edge.half == 1u);
-    let slot = slot_of(quad);
-    if slot == NO_SLOT {
-        return;
-    }
-    let id = slot * CHUNK_FACETS + quad_local(vec2<u32>(quad) % CHUNK_QUADS) + edge.half;
-    if is_away(id) {
-        return;
-    }
-    let end = at + along * scene.step;
-    var p = camera_space(eye_relative(at / CELL_STEPS, vertex_place(at)));
-    var q = camera_space(eye_relative(end / CELL_STEPS, vertex_place(end)));
+// Draws the edge of a facet between two lattice vertices of its chunk.
+fn draw_edge(chunk: Chunk, at: vec2<u32>, end: vec2<u32>) {
+    var p = camera_space(eye_relative(at / CELL_STEPS, vertex_place(chunk, at)));
+    var q = camera_space(eye_relative(end / CELL_STEPS, vertex_place(chunk, end)));
     if p.z < scene.near && q.z < scene.near {
         return;
     }
@@ -84,4 +63,44 @@ fn border(@builtin(global_invocation_id) invocation: vec3<u32>) {
     let end_place = vec3<f32>(vec2<f32>(q.x, -q.y) * (camera.focal / q.z) + camera.centre, depth_of(q));
     draw_crossings(start, end_place, 0u);
     draw_crossings(start, end_place, 1u);
+}
+
+// The part of a patch's edge that lies in one quad's facet, or starts an edge of many patches. `at` is where it starts.
+// Returns how many lattice units it is long.
+fn draw_part(edge: RimEdge, at: vec2<u32>, along: vec2<u32>) -> u32 {
+    // The quad above or left of the edge, or the one it starts in.
+    let above = edge.direction == 0u && edge.half == 0u;
+    let left = edge.direction == 1u && edge.half == 1u;
+    let slot = slot_at(vec2<i32>(at) - select(vec2<i32>(0), vec2<i32>(1), vec2<bool>(left, above)));
+    if slot == NO_SLOT {
+        return CELL_STEPS;
+    }
+    let chunk = chunks[slot];
+    let from_origin = at - chunk.origin;
+    if any(from_origin % chunk.step != vec2<u32>(0u)) {
+        return CELL_STEPS;
+    }
+    let vertex = from_origin / chunk.step;
+    let quad = vertex - select(vec2<u32>(0u), vec2<u32>(1u), vec2<bool>(left, above));
+    let id = slot * CHUNK_FACETS + quad_local(quad) + edge.half;
+    let start = chunk.origin + shared_vertex(chunk.coarser, vertex) * chunk.step;
+    let end = chunk.origin + shared_vertex(chunk.coarser, vertex + along) * chunk.step;
+    if !is_away(id) && any(start != end) {
+        draw_edge(chunk, start, end);
+    }
+    return chunk.step;
+}
+
+@compute @workgroup_size(64)
+fn border(@builtin(global_invocation_id) invocation: vec3<u32>) {
+    let i = invocation.y * MOST_GROUPS * 64u + invocation.x;
+    if i >= arrayLength(&rim) {
+        return;
+    }
+    let edge = rim[i];
+    let along = vec2<u32>(select(1u, 0u, edge.direction == 1u), select(1u, 0u, edge.direction == 0u));
+    var done = 0u;
+    while done < CELL_STEPS {
+        done += draw_part(edge, edge.sample * CELL_STEPS + along * done, along);
+    }
 }

@@ -17,33 +17,49 @@ fn lacking(v: u32) -> u32 {
     return select(0u, 1u, ((nw_se | sw) & MISSING) != 0) | select(0u, 2u, ((nw_se | ne) & MISSING) != 0);
 }
 
-// Which halves of a quad face away, as two bits. `at` is the lattice place of its north-west vertex.
-fn away_halves(at: vec2<u32>, step: u32, nw: vec4<f32>, ne: vec4<f32>, sw: vec4<f32>, se: vec4<f32>) -> u32 {
-    let east = vec2<u32>(step, 0u);
-    let south = vec2<u32>(0u, step);
-    let lowest = eye_relative(at / CELL_STEPS, nw);
-    let to_se = edge_between(at, nw, at + east + south, se);
-    let away_0 = !faces_eye(lowest, edge_between(at, nw, at + south, sw), to_se);
-    let away_1 = !faces_eye(lowest, to_se, edge_between(at, nw, at + east, ne));
+// A vertex: its place on the lattice, and offset and height from `places`.
+struct Vertex {
+    at: vec2<u32>,
+    place: vec4<f32>,
+}
+
+// The vertex at column and row `at` of a chunk, number `v` of the batch.
+fn vertex_of(chunk: Chunk, at: vec2<u32>, v: u32) -> Vertex {
+    return Vertex(chunk.origin + shared_vertex(chunk.coarser, at) * chunk.step, places[v]);
+}
+
+fn edge_of(from_vertex: Vertex, to_vertex: Vertex) -> vec3<f32> {
+    return edge_between(from_vertex.at, from_vertex.place, to_vertex.at, to_vertex.place);
+}
+
+// Which halves of a quad are facets and face away, as two bits: beside a coarser chunk some have collapsed.
+fn away_halves(nw: Vertex, ne: Vertex, sw: Vertex, se: Vertex) -> u32 {
+    let lowest = eye_relative(nw.at / CELL_STEPS, nw.place);
+    let to_se = edge_of(nw, se);
+    let no_diagonal = all(nw.at == se.at);
+    let away_0 = !(faces_eye(lowest, edge_of(nw, sw), to_se) || no_diagonal || all(nw.at == sw.at) || all(sw.at == se.at));
+    let away_1 = !(faces_eye(lowest, to_se, edge_of(nw, ne)) || no_diagonal || all(nw.at == ne.at) || all(ne.at == se.at));
     return select(0u, 1u, away_0) | select(0u, 2u, away_1);
 }
 
 @compute @workgroup_size(64)
 fn facing(@builtin(global_invocation_id) invocation: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {
     let slot = batch.first_slot + group.y;
-    if !in_wedge(sphere_of(slot)) {
+    if !in_wedge(bounds_of(slot)) {
         return;
     }
     let chunk = chunks[slot];
     let ragged = has_voids
         || any(chunk.origin + CHUNK_QUADS * chunk.step > (scene.samples - 1u) * CELL_STEPS);
-    let quad = local_quad(invocation.x * 32u);
+    var quad = local_quad(invocation.x * 32u);
     var v = group.y * CHUNK_VERTICES + quad.y * CHUNK_SIDE + quad.x;
-    var at = chunk.origin + quad * chunk.step;
     var bits = 0u;
     var missing = 0u;
     // Two columns of eight quads, row by row: each vertex is read once.
-    var north = array<vec4<f32>, 3>(places[v], places[v + 1u], places[v + 2u]);
+    let one = vec2<u32>(1u, 0u);
+    var north_west = vertex_of(chunk, quad, v);
+    var north = vertex_of(chunk, quad + one, v + 1u);
+    var north_east = vertex_of(chunk, quad + one + one, v + 2u);
     for (var k = 0u; k < 16u; k += 2u) {
         var lacks = vec2<u32>(0u);
         if ragged {
@@ -51,12 +67,15 @@ fn facing(@builtin(global_invocation_id) invocation: vec3<u32>, @builtin(workgro
             missing |= lacks.x | lacks.y;
         }
         v += CHUNK_SIDE;
-        let south = array<vec4<f32>, 3>(places[v], places[v + 1u], places[v + 2u]);
-        let east = at + vec2<u32>(chunk.step, 0u);
-        bits |= (away_halves(at, chunk.step, north[0], north[1], south[0], south[1]) & ~lacks.x) << k;
-        bits |= (away_halves(east, chunk.step, north[1], north[2], south[1], south[2]) & ~lacks.y) << (k + 16u);
+        quad.y += 1u;
+        let south_west = vertex_of(chunk, quad, v);
+        let south = vertex_of(chunk, quad + one, v + 1u);
+        let south_east = vertex_of(chunk, quad + one + one, v + 2u);
+        bits |= (away_halves(north_west, north, south_west, south) & ~lacks.x) << k;
+        bits |= (away_halves(north, north_east, south, south_east) & ~lacks.y) << (k + 16u);
+        north_west = south_west;
         north = south;
-        at.y += chunk.step;
+        north_east = south_east;
     }
     out_facing[(batch.part_slot + group.y) * CHUNK_WORDS + invocation.x] = bits;
     let block = invocation.x >> 2u;

@@ -22,52 +22,95 @@ struct Pairs {
 @group(0) @binding(22) var<storage, read_write> out_pairs: Pairs;
 
 // Rectangles with more quads along a side are not looked into: the walk leaps better.
-const LARGEST_RECTANGLE: i32 = 16;
+const LARGEST_RECTANGLE: u32 = 16u;
 
-// A facet's quad, in quads from the north-west corner of the lattice.
-fn quad_of(id: u32) -> vec2<i32> {
-    return vec2<i32>(chunks[id / CHUNK_FACETS].origin / scene.step + local_quad(id % CHUNK_FACETS));
+// Beside a coarser chunk a facet may reach into the quad before it: 1 where quads must be taken by twos.
+fn by_twos(chunk: Chunk) -> vec2<u32> {
+    return select(vec2<u32>(0u), vec2<u32>(1u), chunk.coarser != 0u);
+}
+
+// What of the lattice a facet lies in: corners of a rectangle.
+fn rectangle_of(chunk: Chunk, local: u32) -> vec4<u32> {
+    let quad = local_quad(local);
+    let twos = by_twos(chunk);
+    return vec4<u32>(chunk.origin + (quad & ~twos) * chunk.step, chunk.origin + ((quad | twos) + 1u) * chunk.step);
 }
 
 // Whether an away facet lies within one block between two quads of it, given within the block.
-fn block_has_away(first_facet: u32, low: vec2<i32>, high: vec2<i32>) -> bool {
-    let rows = (1u << u32(2 * (high.y + 1))) - (1u << u32(2 * low.y));
+fn block_has_away(first_facet: u32, low: vec2<u32>, high: vec2<u32>) -> bool {
+    let rows = (1u << (2u * (high.y + 1u))) - (1u << (2u * low.y));
     for (var column = low.x; column <= high.x; column++) {
-        if (away_bits(first_facet + u32(column) * 16u) & rows) != 0u {
+        if (away_bits(first_facet + column * 16u) & rows) != 0u {
             return true;
         }
     }
     return false;
 }
 
-// Whether a walk between two facets could meet an away one.
-fn is_open(p: u32, q: u32) -> bool {
-    let a = quad_of(p);
-    let b = quad_of(q);
-    let low = min(a, b);
-    let high = max(a, b);
-    if !thrifty || any(high - low >= vec2<i32>(LARGEST_RECTANGLE)) {
-        return true;
-    }
+// Whether an away facet lies between two lattice places, low inside and high not, as far as they lie in the chunk.
+fn part_has_away(slot: u32, chunk: Chunk, low: vec2<u32>, high: vec2<u32>) -> bool {
+    let inner_low = max(low, chunk.origin) - chunk.origin;
+    let inner_high = min(high, chunk.origin + CHUNK_QUADS * chunk.step) - chunk.origin;
+    let twos = by_twos(chunk);
+    let shift = vec2<u32>(firstTrailingBit(chunk.step));
+    let first = (inner_low >> shift) & ~twos;
+    let last = ((inner_high - 1u) >> shift) | twos;
+    let summary = summaries[slot];
     let eight = vec2<u32>(3u);
-    let last = high >> eight;
-    for (var block = low >> eight; block.y <= last.y; ) {
-        let corner_quad = block << eight;
-        let slot = slot_of(corner_quad);
-        if slot != NO_SLOT {
-            let local = quad_local(vec2<u32>(corner_quad) % CHUNK_QUADS);
-            if ((summaries[slot] >> (local >> 7u)) & 1u) != 0u {
-                let inner_low = max(low - corner_quad, vec2<i32>(0));
-                let inner_high = min(high - corner_quad, vec2<i32>(7));
-                if block_has_away(slot * CHUNK_FACETS + local, inner_low, inner_high) {
-                    return true;
-                }
+    for (var block = first >> eight; all(inner_low < inner_high) && block.y <= (last.y >> 3u); ) {
+        if ((summary >> (block.y * 4u + block.x)) & 1u) != 0u {
+            let corner_quad = block << eight;
+            let block_low = max(first, corner_quad) - corner_quad;
+            let block_high = min(last - corner_quad, vec2<u32>(7u));
+            if block_has_away(slot * CHUNK_FACETS + quad_local(corner_quad), block_low, block_high) {
+                return true;
             }
         }
-        block.x += 1;
-        if block.x > last.x {
-            block = vec2<i32>(low.x >> 3u, block.y + 1);
+        block.x += 1u;
+        if block.x > (last.x >> 3u) {
+            block = vec2<u32>(first.x >> 3u, block.y + 1u);
         }
+    }
+    return false;
+}
+
+// Whether two chunks cover all between two lattice places.
+fn cover(a: Chunk, b: Chunk, low: vec2<u32>, high: vec2<u32>) -> bool {
+    let a_end = a.origin + CHUNK_QUADS * a.step;
+    let b_end = b.origin + CHUNK_QUADS * b.step;
+    let holds = (max(a.origin, b.origin) <= low) & (high <= min(a_end, b_end));
+    let meet = (a_end == b.origin) | (b_end == a.origin);
+    return (holds.y && meet.x) || (holds.x && meet.y);
+}
+
+// Whether a walk between two facets could meet an away one.
+fn is_open(p: u32, q: u32) -> bool {
+    if !thrifty {
+        return true;
+    }
+    let slot_p = p / CHUNK_FACETS;
+    let slot_q = q / CHUNK_FACETS;
+    let chunk_p = chunks[slot_p];
+    let chunk_q = chunks[slot_q];
+    let a = rectangle_of(chunk_p, p % CHUNK_FACETS);
+    let b = rectangle_of(chunk_q, q % CHUNK_FACETS);
+    let low = min(a.xy, b.xy);
+    let high = max(a.zw, b.zw);
+    if any(high - low > vec2<u32>(LARGEST_RECTANGLE * chunk_p.step)) {
+        return true;
+    }
+    if slot_p != slot_q && !cover(chunk_p, chunk_q, low, high) {
+        return true;
+    }
+    var slot = slot_p;
+    loop {
+        if part_has_away(slot, chunks[slot], low, high) {
+            return true;
+        }
+        if slot == slot_q {
+            return false;
+        }
+        slot = slot_q;
     }
     return false;
 }

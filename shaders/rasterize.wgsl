@@ -107,7 +107,7 @@ fn rasterize_facet(id: u32, a: vec3<i32>, b: vec3<i32>, c: vec3<i32>, v: u32, aw
 @compute @workgroup_size(64)
 fn rasterize(@builtin(global_invocation_id) invocation: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {
     let slot = batch.first_slot + group.y;
-    if !in_view(sphere_of(slot)) {
+    if !in_view(bounds_of(slot)) {
         return;
     }
     let local = invocation.x * STRIP_FACETS;

@@ -137,14 +137,15 @@ fn rasterize_triangle(either: Triangle, share: vec2<u32>, lane: u32, id: u32, aw
 fn rasterize_facet(id: u32, share: vec2<u32>, lane: u32) {
     let slot = id / CHUNK_FACETS - batch.first_slot;
     let quad = local_quad(id % CHUNK_FACETS);
-    let facet = facet_of(id);
+    let chunk = chunks[id / CHUNK_FACETS];
+    let half = id & 1u;
     let away = (emitted_bits(id) & 1u) == 1u;
     let base = slot * CHUNK_VERTICES + quad.y * CHUNK_SIDE + quad.x;
     var flags = 0;
     for (var k = 0u; k < 3u; k++) {
-        let d = corner(facet.half, k);
+        let d = corner(half, k);
         let v = base + d.y * CHUNK_SIDE + d.x;
-        let at = facet.origin + d * facet.step;
+        let at = chunk.origin + shared_vertex(chunk.coarser, quad + d) * chunk.step;
         polygons[lane][0][k] = vec4<f32>(camera_space(eye_relative(at / CELL_STEPS, places[v])), f32(k));
         flags |= screens[v].w;
     }
@@ -160,7 +161,7 @@ fn rasterize_facet(id: u32, share: vec2<u32>, lane: u32) {
         var screen = vec4<i32>(NO_PLACE);
         if point.w != CUT {
             // Corners keep the place that the facets beside this one know.
-            let d = corner(facet.half, u32(point.w));
+            let d = corner(half, u32(point.w));
             screen = screens[base + d.y * CHUNK_SIDE + d.x];
         }
         if screen.x == NO_PLACE {

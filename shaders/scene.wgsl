@@ -3,8 +3,8 @@
 struct Scene {
     cell: vec2<f32>,        // metres between columns and rows
     samples: vec2<u32>,     // columns, rows
-    chunk_grid: vec2<u32>,  // chunks across, down
-    step: u32,              // lattice units between vertices
+    roots: vec2<u32>,       // of the quadtree of chunks, across, down
+    root_size: u32,         // lattice units along a root's side, a power of two
     near: f32,              // metres along the view axis
 }
 
@@ -31,8 +31,12 @@ struct Batch {
 
 struct Chunk {
     origin: vec2<u32>,      // lattice place of the north-west vertex
-    step: u32,
-    pad: u32,
+    step: u32,              // lattice units between vertices
+    coarser: u32,           // sides beyond which a chunk of twice the step lies: NORTH | EAST | SOUTH | WEST
+    low: f32,               // metres, below all its surface
+    high: f32,
+    beyond: f32,            // metres that its surface reaches beyond its square on the map
+    tile: u32,              // which tile holds its samples
 }
 
 override has_voids: bool = false;
@@ -47,7 +51,8 @@ override thrifty: bool = true;
 @group(0) @binding(1) var<uniform> camera: Camera;
 @group(0) @binding(2) var<uniform> batch: Batch;
 @group(0) @binding(3) var<storage, read> chunks: array<Chunk>;
-@group(0) @binding(4) var<storage, read> slots: array<u32>;
+@group(0) @binding(4) var<storage, read> nodes: array<u32>;
+// Tiles of 33 x 33 samples, row by row.
 @group(0) @binding(5) var<storage, read> heights: array<f32>;
 @group(0) @binding(6) var<storage, read> gradients_east: array<f32>;
 @group(0) @binding(7) var<storage, read> gradients_north: array<f32>;
@@ -60,7 +65,6 @@ override thrifty: bool = true;
 @group(0) @binding(14) var<storage, read> places: array<vec4<f32>>;
 @group(0) @binding(15) var<storage, read> screens: array<vec4<i32>>;
 @group(0) @binding(16) var<storage, read> pixels: array<vec2<u32>>;
-@group(0) @binding(17) var<storage, read> spheres: array<vec4<f32>>;
 
 const CELL_STEPS: u32 = 64u;
 const CHUNK_QUADS: u32 = 32u;
@@ -71,6 +75,13 @@ const CHUNK_WORDS: u32 = 64u;
 // Workgroups along one dimension.
 const MOST_GROUPS: u32 = 65535u;
 const NO_SLOT: u32 = 0xffffffffu;
+// Bit of a node that has children: the rest is the index of the first of four.
+const INNER: u32 = 0x80000000u;
+
+const NORTH: u32 = 1u;
+const EAST: u32 = 2u;
+const SOUTH: u32 = 4u;
+const WEST: u32 = 8u;
 // Facing words of one part: 128 MiB.
 const PART_WORDS_LOG2: u32 = 25u;
 

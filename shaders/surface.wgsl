@@ -15,8 +15,14 @@ struct Patch {
     centre: vec3<f32>,
 }
 
-fn normal_at(i: u32) -> vec3<f32> {
-    return vec3<f32>(-gradients_east[i], -gradients_north[i], 1.0);
+// A sample: metres, and dz/d east and north.
+struct Sample {
+    height: f32,
+    gradient: vec2<f32>,
+}
+
+fn normal_of(sample: Sample) -> vec3<f32> {
+    return vec3<f32>(-sample.gradient, 1.0);
 }
 
 // A third of what of an edge lies in the tangent plane with that normal; `scale` is 1 / its squared length.
@@ -24,22 +30,45 @@ fn tangent(edge: vec3<f32>, normal: vec3<f32>, scale: f32) -> vec3<f32> {
     return (edge - normal * (dot(edge, normal) * scale)) * (1.0 / 3.0);
 }
 
-// The patch of cell `at` above or below the diagonal. Corners outside the grid are clamped: they have weight 0.
-fn patch_of(at: vec2<u32>, above: bool) -> Patch {
-    let low = min(at, scene.samples - 1u);
-    let high = min(at + 1u, scene.samples - 1u);
-    let columns = scene.samples.x;
-    let nw = low.y * columns + low.x;
-    let se = high.y * columns + high.x;
-    let third = select(high.y * columns + low.x, low.y * columns + high.x, above);
+// Samples along a tile's edge.
+const TILE_SIDE: u32 = 33u;
+const TILE_SAMPLES: u32 = 1089u;
+
+// Index of the sample at column and row `at` of a tile.
+fn tile_sample(tile: u32, at: vec2<u32>) -> u32 {
+    return tile * TILE_SAMPLES + at.y * TILE_SIDE + at.x;
+}
+
+// Column and row within its tile of the sample north-west of a lattice place in or beside a chunk.
+fn tile_place(chunk: Chunk, at: vec2<u32>) -> vec2<u32> {
+    if chunk.step > CELL_STEPS {
+        return (at - chunk.origin) / chunk.step;
+    }
+    // A tile is as wide as a chunk of level 1.
+    return (at - chunk.origin / (CHUNK_QUADS * CELL_STEPS) * (CHUNK_QUADS * CELL_STEPS)) / CELL_STEPS;
+}
+
+// The sample at column and row `at` of a tile; beyond it the last one.
+fn sample_of(tile: u32, at: vec2<u32>) -> Sample {
+    let i = tile_sample(tile, min(at, vec2<u32>(TILE_SIDE - 1u)));
+    return Sample(heights[i], vec2<f32>(gradients_east[i], gradients_north[i]));
+}
+
+// The patch above or below the diagonal of the cell at a column and row of a tile. Corners outside the tile have weight 0.
+fn patch_of(tile: u32, low: vec2<u32>, above: bool) -> Patch {
+    let third = low + select(vec2<u32>(0u, 1u), vec2<u32>(1u, 0u), above);
+    return patch_over(sample_of(tile, low), sample_of(tile, low + 1u), sample_of(tile, third), above);
+}
+
+// The patch over three corners of a cell: north-west, south-east, and north-east (above the diagonal) or south-west.
+fn patch_over(nw: Sample, se: Sample, third: Sample, above: bool) -> Patch {
     let south = vec2<f32>(0.0, -scene.cell.y);
     let east = vec2<f32>(scene.cell.x, 0.0);
-    let height = heights[nw];
-    let b = vec3<f32>(east + south, heights[se] - height);
-    let c = vec3<f32>(select(south, east, above), heights[third] - height);
-    let normal_a = normal_at(nw);
-    let normal_b = normal_at(se);
-    let normal_c = normal_at(third);
+    let b = vec3<f32>(east + south, se.height - nw.height);
+    let c = vec3<f32>(select(south, east, above), third.height - nw.height);
+    let normal_a = normal_of(nw);
+    let normal_b = normal_of(se);
+    let normal_c = normal_of(third);
     let scale_a = 1.0 / dot(normal_a, normal_a);
     let scale_b = 1.0 / dot(normal_b, normal_b);
     let scale_c = 1.0 / dot(normal_c, normal_c);
@@ -50,7 +79,7 @@ fn patch_of(at: vec2<u32>, above: bool) -> Patch {
     let bc = b + tangent(c - b, normal_b, scale_b);
     let cb = c - tangent(c - b, normal_c, scale_c);
     let centre = (ab + ba + ac + ca + bc + cb) * 0.25 - (b + c) * (1.0 / 6.0);
-    return Patch(height, b, c, ab, ba, ac, ca, bc, cb, centre);
+    return Patch(nw.height, b, c, ab, ba, ac, ca, bc, cb, centre);
 }
 
 // Offset in metres from the NW sample to the point at (u, v) of the cell, u east, v south, 0 to 1.
@@ -66,10 +95,14 @@ fn patch_point(p: Patch, at: vec2<f32>) -> vec3<f32> {
         + p.bc * (b3 * b * c) + p.cb * (c3 * c * b) + p.centre * (2.0 * a3 * b * c);
 }
 
-// A lattice vertex: offset from its own sample (NW of its cell) in xyz, that sample's height in w, metres.
-fn vertex_place(at: vec2<u32>) -> vec4<f32> {
+// A lattice vertex of a chunk: offset from its own sample (NW of its cell) in xyz, that sample's height in w, metres.
+fn vertex_place(chunk: Chunk, at: vec2<u32>) -> vec4<f32> {
+    let place = tile_place(chunk, at);
     let sub = at % CELL_STEPS;
-    let p = patch_of(at / CELL_STEPS, sub.x > sub.y);
+    if all(sub == vec2<u32>(0u)) {
+        return vec4<f32>(0.0, 0.0, 0.0, heights[tile_sample(chunk.tile, place)]);
+    }
+    let p = patch_of(chunk.tile, place, sub.x > sub.y);
     return vec4<f32>(patch_point(p, vec2<f32>(sub) / f32(CELL_STEPS)), p.height);
 }
 

@@ -1,4 +1,4 @@
-// One invocation a third of a column of vertices: of each the offset from its sample, the place on the page, the depth.
+// One invocation a block of vertices, some columns and rows: of each the offset from its sample, the place on the page, the depth.
 // Chunks that share a vertex evaluate it from the same cell in the same way: they agree to the bit.
 
 @group(0) @binding(20) var<storage, read_write> out_places: array<vec4<f32>>;
@@ -13,32 +13,9 @@ fn view_flags(q: vec3<f32>) -> i32 {
         | select(0, BEYOND_GUARD, any(abs(p) > vec2<f32>(GUARD * q.z)));
 }
 
-// Whether a vertex lies outside the DEM or depends on a void: no facet that has it exists.
-fn is_missing(at: vec2<u32>) -> bool {
-    if any(at > (scene.samples - 1u) * CELL_STEPS) {
-        return true;
-    }
-    if !has_voids {
-        return false;
-    }
-    let cell = at / CELL_STEPS;
-    let sub = at % CELL_STEPS;
-    let west = cell.x;
-    let east = min(cell.x + 1u, scene.samples.x - 1u);
-    let north = cell.y;
-    let south = min(cell.y + 1u, scene.samples.y - 1u);
-    return (max(sub.x, sub.y) < CELL_STEPS && !is_valid(west, north))
-        || (min(sub.x, sub.y) > 0u && !is_valid(east, south))
-        || (sub.x > sub.y && !is_valid(east, north))
-        || (sub.y > sub.x && !is_valid(west, south));
-}
-
-// Rows of vertices that one invocation works off, down a column.
-const STRIP: u32 = 11u;
-
-fn store(i: u32, at: vec2<u32>, place: vec4<f32>) {
+fn store(i: u32, at: vec2<u32>, place: vec4<f32>, missing: bool) {
     let q = camera_space(eye_relative(at / CELL_STEPS, place));
-    let flags = view_flags(q) | select(0, MISSING, is_missing(at));
+    let flags = view_flags(q) | select(0, MISSING, missing || any(at > (scene.samples - 1u) * CELL_STEPS));
     var screen = vec4<i32>(NO_PLACE, 0, 0, flags);
     if (flags & (CLIPPED | MISSING)) == 0 {
         screen = vec4<i32>(snapped(q), bitcast<i32>(depth_of(q)), flags);
@@ -47,40 +24,85 @@ fn store(i: u32, at: vec2<u32>, place: vec4<f32>) {
     out_screens[i] = screen;
 }
 
+// Two samples of a column, one below the other, and whether they are void.
+struct Pair {
+    west: Sample,
+    east: Sample,
+    void_west: bool,
+    void_east: bool,
+}
+
+fn is_void(at: vec2<u32>) -> bool {
+    let inside = min(at, scene.samples - 1u);
+    return has_voids && !is_valid(inside.x, inside.y);
+}
+
+// The samples at the north-west of a cell and east of it, by their place in a tile and in the DEM.
+fn pair_of(tile: u32, place: vec2<u32>, cell: vec2<u32>) -> Pair {
+    let east = vec2<u32>(1u, 0u);
+    return Pair(sample_of(tile, place), sample_of(tile, place + east), is_void(cell), is_void(cell + east));
+}
+
+// Columns that one invocation works off, so that they lie in one cell; and rows: at level 2 they share more cells.
+fn block_columns(step: u32) -> u32 {
+    return select(4u, 2u, step == CELL_STEPS / 2u);
+}
+
+fn block_rows(step: u32) -> u32 {
+    return select(6u, 11u, step == CELL_STEPS / 2u);
+}
+
 @compute @workgroup_size(64)
 fn tessellate(@builtin(global_invocation_id) invocation: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {
-    let column = invocation.x % CHUNK_SIDE;
-    let row = invocation.x / CHUNK_SIDE * STRIP;
     let slot = batch.first_slot + group.y;
-    if row >= CHUNK_SIDE || !in_wedge(sphere_of(slot)) {
-        return;
-    }
     let chunk = chunks[slot];
-    var at = chunk.origin + vec2<u32>(column, row) * chunk.step;
-    var i = group.y * CHUNK_VERTICES + row * CHUNK_SIDE + column;
-    let end = i + STRIP * CHUNK_SIDE;
-    if chunk.step == CELL_STEPS {
+    let columns = block_columns(chunk.step);
+    let across = CHUNK_QUADS / columns + 1u;
+    let first = vec2<u32>(invocation.x % across * columns, invocation.x / across * block_rows(chunk.step));
+    if first.y >= CHUNK_SIDE || !in_wedge(bounds_of(slot)) {
+        return;
+    }
+    let end = min(first + vec2<u32>(columns, block_rows(chunk.step)), vec2<u32>(CHUNK_SIDE));
+    let base = group.y * CHUNK_VERTICES;
+    if chunk.step >= CELL_STEPS {
         // Every vertex is a sample.
-        for (; i < end; i += CHUNK_SIDE) {
-            let sample = min(at / CELL_STEPS, scene.samples - 1u);
-            store(i, at, vec4<f32>(0.0, 0.0, 0.0, heights[sample.y * scene.samples.x + sample.x]));
-            at.y += chunk.step;
+        for (var row = first.y; row < end.y; row++) {
+            for (var column = first.x; column < end.x; column++) {
+                let at = chunk.origin + vec2<u32>(column, row) * chunk.step;
+                let height = heights[tile_sample(chunk.tile, vec2<u32>(column, row))];
+                store(base + row * CHUNK_SIDE + column, at, vec4<f32>(0.0, 0.0, 0.0, height), is_void(at / CELL_STEPS));
+            }
         }
         return;
     }
-    while i < end {
-        // One cell after the other: its two patches serve all its vertices of this column.
-        let cell = at / CELL_STEPS;
-        let below = patch_of(cell, false);
-        let above = patch_of(cell, true);
-        for (; i < end && at.y / CELL_STEPS == cell.y; i += CHUNK_SIDE) {
-            let sub = at % CELL_STEPS;
-            var p = below;
-            if sub.x > sub.y {
-                p = above;
+    // One cell after the other: its two patches serve all its vertices of these columns.
+    var row = first.y;
+    let corner_place = chunk.origin + first * chunk.step;
+    var cell = corner_place / CELL_STEPS;
+    var place = tile_place(chunk, corner_place);
+    var north = pair_of(chunk.tile, place, cell);
+    while row < end.y {
+        let south = pair_of(chunk.tile, place + vec2<u32>(0u, 1u), cell + vec2<u32>(0u, 1u));
+        let below = patch_over(north.west, south.east, south.west, false);
+        let above = patch_over(north.west, south.east, north.east, true);
+        let next_cell = min(end.y, ((cell.y + 1u) * CELL_STEPS - chunk.origin.y) / chunk.step);
+        for (; row < next_cell; row++) {
+            for (var column = first.x; column < end.x; column++) {
+                let at = chunk.origin + vec2<u32>(column, row) * chunk.step;
+                let sub = at % CELL_STEPS;
+                var p = below;
+                if sub.x > sub.y {
+                    p = above;
+                }
+                // Of its cell's samples a vertex depends on those whose weight is not 0.
+                let missing = north.void_west || (min(sub.x, sub.y) > 0u && south.void_east)
+                    || (sub.x > sub.y && north.void_east) || (sub.y > sub.x && south.void_west);
+                let offset = patch_point(p, vec2<f32>(sub) / f32(CELL_STEPS));
+                store(base + row * CHUNK_SIDE + column, at, vec4<f32>(offset, p.height), missing);
             }
-            store(i, at, vec4<f32>(patch_point(p, vec2<f32>(sub) / f32(CELL_STEPS)), p.height));
-            at.y += chunk.step;
         }
+        north = south;
+        cell.y += 1u;
+        place.y += 1u;
     }
 }

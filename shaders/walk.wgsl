@@ -1,8 +1,19 @@
 // One invocation a pixel with open pairs: of each pair with a neighbour, walks the lattice from the nearer pixel's point on
 // the surface to the farther one's, facet by facet, in integers. An away facet on the way makes the nearer one ink; a
-// void or the outside ends the walk.
+// void or the outside ends the walk. Pairs with a pixel without surface, and walks past facets beside a coarser chunk where
+// something may happen, are rare and left to `walk_rest`: drivers that run both sides of every branch pay for them here.
 
+// Pixels for another pass, and the workgroups of 64 that it takes along x, as far as they go.
 struct Pairs {
+    groups_x: atomic<u32>,
+    groups_y: u32,
+    groups_z: u32,
+    count: atomic<u32>,
+    pixels: array<u32>,
+}
+
+// The same to read.
+struct PairsRead {
     groups_x: u32,
     groups_y: u32,
     groups_z: u32,
@@ -10,9 +21,13 @@ struct Pairs {
     pixels: array<u32>,
 }
 
-@group(0) @binding(21) var<storage, read> pairs: Pairs;
+@group(0) @binding(21) var<storage, read> pairs: PairsRead;
 @group(0) @binding(22) var<storage, read_write> out_ink: array<atomic<u32>>;
 @group(0) @binding(23) var<storage, read_write> out_counts: Counts;
+@group(0) @binding(24) var<storage, read_write> out_rest: Pairs;
+
+// Whether walks past facets beside a coarser chunk are left to another pass.
+override defers: bool = true;
 
 // Walk units in a lattice step of the finest level.
 const UNITS: u32 = 256u;
@@ -24,15 +39,27 @@ struct Corners {
     edge_2: vec3<f32>,
 }
 
-fn corners_of(f: Facet) -> Corners {
-    let cell = f.origin / CELL_STEPS;
-    let sub = f.origin % CELL_STEPS;
-    let patch_here = patch_of(cell, patch_half(f) == 1u);
-    let scale = 1.0 / f32(CELL_STEPS);
-    let a = patch_point(patch_here, vec2<f32>(sub) * scale);
-    let b = patch_point(patch_here, vec2<f32>(sub + corner(f.half, 1u) * f.step) * scale);
-    let c = patch_point(patch_here, vec2<f32>(sub + corner(f.half, 2u) * f.step) * scale);
-    return Corners(eye_relative(cell, vec4<f32>(a, patch_here.height)), b - a, c - a);
+fn corners_of(chunk: Chunk, f: Facet) -> Corners {
+    let base = min(f.a, min(f.b, f.c)) / CELL_STEPS * CELL_STEPS;
+    let place = tile_place(chunk, base);
+    let sum = (f.a - base) + (f.b - base) + (f.c - base);
+    // Up to level 1 vertices are samples, at any finer level one patch has all three.
+    let samples = chunk.step >= CELL_STEPS;
+    let patch_here = patch_of(chunk.tile, place, sum.x > sum.y);
+    let a = corner_of(chunk, patch_here, place, f.a - base, samples);
+    let b = corner_of(chunk, patch_here, place, f.b - base, samples);
+    let c = corner_of(chunk, patch_here, place, f.c - base, samples);
+    return Corners(eye_relative(base / CELL_STEPS, vec4<f32>(a, patch_here.height)), b - a, c - a);
+}
+
+// Offset of a facet's vertex from the sample at `place` of a tile; `sub` is the way to it in lattice units.
+fn corner_of(chunk: Chunk, patch_here: Patch, place: vec2<u32>, sub: vec2<u32>, samples: bool) -> vec3<f32> {
+    let on_patch = patch_point(patch_here, vec2<f32>(sub) / f32(CELL_STEPS));
+    let columns = sub / CELL_STEPS;
+    let tile_steps = columns >> vec2<u32>(max(firstTrailingBit(chunk.step), 6u) - 6u);
+    let height = heights[tile_sample(chunk.tile, place + tile_steps)] - patch_here.height;
+    let flat = vec2<f32>(columns) * scene.cell * vec2<f32>(1.0, -1.0);
+    return select(on_patch, vec3<f32>(flat, height), samples);
 }
 
 // Volumes that a ray spans with the edges of a facet: up to scale the perspective-correct barycentrics of where it
@@ -46,76 +73,27 @@ fn volumes(t: Corners, ray: vec3<f32>) -> vec3<f32> {
     return select(w, -w, w.x + w.y + w.z < 0.0);
 }
 
+// Lattice units from vertex a of a facet for barycentrics of b and c.
+fn from_a(f: Facet, w: vec2<f32>) -> vec2<f32> {
+    return vec2<f32>(vec2<i32>(f.b) - vec2<i32>(f.a)) * w.x + vec2<f32>(vec2<i32>(f.c) - vec2<i32>(f.a)) * w.y;
+}
+
 // Where the ray through a page place meets a facet, clamped to the facet, in walk units.
 fn facet_hit(id: u32, px: vec2<f32>) -> vec2<i32> {
     let f = facet_of(id);
-    var w = max(volumes(corners_of(f), ray_through(px)), vec3<f32>(0.0));
+    var w = max(volumes(corners_of(chunks[id / CHUNK_FACETS], f), ray_through(px)), vec3<f32>(0.0));
     let sum = w.x + w.y + w.z;
     w = select(w / sum, vec3<f32>(1.0, 0.0, 0.0), sum == 0.0);
-    let along = vec2<f32>(corner(f.half, 1u)) * w.y + vec2<f32>(corner(f.half, 2u)) * w.z;
-    return vec2<i32>(f.origin * UNITS) + vec2<i32>(round(along * f32(f.step * UNITS)));
+    return vec2<i32>(f.a * UNITS) + vec2<i32>(round(from_a(f, w.yz) * f32(UNITS)));
 }
 
-// Where the map projection of a page place's ray leaves the DEM, in walk units; `origin` where it never meets it.
-fn map_exit(px: vec2<f32>, origin: vec2<i32>) -> vec2<i32> {
-    let ray = ray_through(px).xy * vec2<f32>(1.0, -1.0);
-    let eye = vec2<f32>(1.0, -1.0) * camera.eye_offset / scene.cell;
-    let low = vec2<f32>(-camera.eye_cell) - eye;
-    let high = vec2<f32>(vec2<i32>(scene.samples - 1u) - camera.eye_cell) - eye;
-    let heading = ray / scene.cell;
-    let exits = select(high, low, heading < vec2<f32>(0.0)) / heading;
-    let entries = select(low, high, heading < vec2<f32>(0.0)) / heading;
-    let exit = min(select(exits.x, 1e30, heading.x == 0.0), select(exits.y, 1e30, heading.y == 0.0));
-    let entry = max(select(entries.x, -1e30, heading.x == 0.0), select(entries.y, -1e30, heading.y == 0.0));
-    if exit <= max(entry, 0.0) || exit >= 1e30 {
-        return origin;
-    }
-    let end = clamp(heading * exit, low, high) - low;
-    return vec2<i32>(round(end * f32(CELL_STEPS * UNITS)));
-}
-
-// Snapping moves a rim by up to 1/256 px: a pixel without surface may have its centre on the land by that much. The way
-// to it is aimed beyond its centre by this share.
-const OVERSHOOT: f32 = 1.0 / 64.0;
-
-// Where a walk ends, and whether it then follows the ray of the pixel it leads to.
-struct Goal {
-    at: vec2<i32>,
-    goes_on: bool,
-}
-
-// The way to a pixel without surface. It leads to where that pixel's ray meets the plane of the facet at `origin`: if the
-// land ends on the way there, the pixels are parted by a rim, no silhouette. If that place is farther than the facet, the
-// ray has the land below it so far, and the way goes on under the ray to the edge of the map. If it is nearer, the ray
-// passes under the land behind.
-fn open_goal(id: u32, centre: vec2<f32>, to_centre: vec2<f32>, origin: vec2<i32>) -> Goal {
-    let f = facet_of(id);
-    let t = corners_of(f);
-    let normal = cross(t.edge_1, t.edge_2);
-    let ray = ray_through(to_centre + (to_centre - centre) * OVERSHOOT);
-    if dot(normal, ray) >= 0.0 {
-        return Goal(map_exit(to_centre, origin), false);
-    }
-    let w = volumes(t, ray);
-    let sum = w.x + w.y + w.z;
-    let along = vec2<f32>(corner(f.half, 1u)) * w.y + vec2<f32>(corner(f.half, 2u)) * w.z;
-    // In walk units, times `sum`, which may be next to nothing.
-    let d = vec2<f32>(vec2<i32>(f.origin * UNITS) - origin) * sum + along * f32(f.step * UNITS);
-    // No farther than one cell beyond the edge of the map.
-    let cell = i32(CELL_STEPS * UNITS);
-    let room = vec2<f32>(select(vec2<i32>(scene.samples) * cell - origin, origin + cell, d < vec2<f32>(0.0)));
-    let reach = select(vec2<f32>(1e30), room / abs(d), abs(d) * 1e30 > room);
-    let at = origin + vec2<i32>(round(d * min(1.0 / sum, min(reach.x, reach.y))));
-    let px = (to_centre - centre) / camera.focal;
-    return Goal(at, dot(normal, camera.right.xyz * px.x - camera.up.xyz * px.y) >= 0.0);
-}
-
-// The away facet a walk met and where it entered it, in quads from the facet's north-west vertex.
+// The away facet a walk met and where it entered it, in walk units from the facet's vertex a.
 struct Meeting {
     met: bool,
     left_land: bool,
     done: bool,
-    facet: Facet,
+    deferred: bool,
+    id: u32,
     entered: vec2<f32>,
     steps: u32,
 }
@@ -134,132 +112,264 @@ fn half_behind(crossed: vec2<bool>, d: vec2<i32>) -> u32 {
     return select(select(0u, 1u, d.y > 0), select(0u, 1u, d.x < 0), crossed.x);
 }
 
-// Which patch of its cell a facet lies in.
-fn patch_half(f: Facet) -> u32 {
-    let sub = f.origin % CELL_STEPS;
-    return select(0u, 1u, sub.x > sub.y || (sub.x == sub.y && f.half == 1u));
+fn lacks_vertex(f: Facet) -> bool {
+    return is_missing(f.a) || is_missing(f.b) || is_missing(f.c);
 }
 
-fn is_missing(f: Facet) -> bool {
-    let cell = vec2<i32>(f.origin / CELL_STEPS);
-    return !patch_exists(cell.x, cell.y, patch_half(f));
+// Whether a half of a quad, which no coarser chunk is beside, is no facet.
+fn is_no_facet(chunk: Chunk, quad: vec2<u32>, half: u32) -> bool {
+    let at = chunk.origin + quad * chunk.step;
+    let cell = at / CELL_STEPS;
+    let sub = at % CELL_STEPS;
+    let above = sub.x > sub.y || (sub.x == sub.y && half == 1u);
+    let third = cell + select(vec2<u32>(0u, 1u), vec2<u32>(1u, 0u), above);
+    let last = scene.samples - 1u;
+    // Coarser chunks have no voids.
+    let void_corner = has_voids && chunk.step <= CELL_STEPS && all(cell < last)
+        && !(is_valid(cell.x, cell.y) && is_valid(cell.x + 1u, cell.y + 1u) && is_valid(third.x, third.y));
+    return void_corner || any(at + chunk.step > last * CELL_STEPS);
+}
+
+// Whether some facet of a quad reaches out of it or has collapsed, for the coarser chunk beside it.
+fn beside_coarser(coarser: u32, quad: vec2<u32>) -> bool {
+    let first = quad == vec2<u32>(0u);
+    let last = quad == vec2<u32>(CHUNK_QUADS - 1u);
+    return (first.y && (coarser & NORTH) != 0u) || (last.y && (coarser & SOUTH) != 0u)
+        || (first.x && (coarser & WEST) != 0u) || (last.x && (coarser & EAST) != 0u);
+}
+
+// Twice the signed area between a vector and the way from one walk place to another.
+fn wide_cross(v: vec2<i32>, from_place: vec2<i32>, to_place: vec2<i32>) -> vec2<u32> {
+    let d = to_place - from_place;
+    return wide_sub(wide_mul(v.y, d.x), wide_mul(v.x, d.y));
+}
+
+// The share of a segment at which it enters the interior of a facet; 2 where it has no part in it.
+fn entry_share(f: Facet, origin: vec2<i32>, end: vec2<i32>) -> f32 {
+    let corners = array<vec2<i32>, 3>(vec2<i32>(f.a * UNITS), vec2<i32>(f.b * UNITS), vec2<i32>(f.c * UNITS));
+    var share = 0.0;
+    var left = false;
+    var right = false;
+    for (var k = 0u; k < 3u; k++) {
+        let p = corners[k];
+        let edge = corners[(k + 1u) % 3u] - p;
+        let here = wide_cross(edge, p, origin);
+        let there = wide_cross(edge, p, end);
+        if wide_sign(here) <= 0 && wide_sign(there) <= 0 {
+            return 2.0;
+        }
+        if wide_sign(here) <= 0 {
+            let before = -wide_f32(here);
+            share = max(share, before / (before + wide_f32(there)));
+        }
+        let side = wide_sign(wide_cross(end - origin, origin, p));
+        left = left || side < 0;
+        right = right || side > 0;
+    }
+    return select(2.0, share, left && right);
+}
+
+// What a segment meets first among the facets of a square of two by two quads beside a coarser chunk.
+fn meet_beside_coarser(slot: u32, quad: vec2<u32>, origin: vec2<i32>, end: vec2<i32>) -> Meeting {
+    var meeting: Meeting;
+    let chunk = chunks[slot];
+    var first = 2.0;
+    for (var k = 0u; k < 8u; k++) {
+        let at = (quad & ~vec2<u32>(1u)) + vec2<u32>((k >> 1u) & 1u, k >> 2u);
+        let id = slot * CHUNK_FACETS + quad_local(at) + (k & 1u);
+        let f = chunk_facet(chunk, at, k & 1u);
+        if is_collapsed(f) {
+            continue;
+        }
+        let missing = lacks_vertex(f);
+        if !missing && !is_away(id) {
+            continue;
+        }
+        let share = entry_share(f, origin, end);
+        if share < first {
+            first = share;
+            meeting.met = !missing;
+            meeting.left_land = missing;
+            meeting.id = id;
+            meeting.entered = vec2<f32>(origin - vec2<i32>(f.a * UNITS)) + vec2<f32>(end - origin) * share;
+        }
+    }
+    return meeting;
+}
+
+// How much later a segment meets the column line than the row line at a walk place, up to a positive factor.
+fn lead_between(lines: vec2<i32>, origin: vec2<i32>, d: vec2<i32>) -> vec2<u32> {
+    let to_line = select((lines - origin) * sign(d), vec2<i32>(1), d == vec2<i32>(0));
+    return wide_sub(wide_mul(to_line.x, abs(d.y)), wide_mul(to_line.y, abs(d.x)));
+}
+
+// The quad of a chunk at half or twice the step into which a segment comes by a quad at `step`; and which of its lines
+// it comes across.
+struct Arrival {
+    quad: vec2<i32>,
+    crossed: vec2<bool>,
+}
+
+fn arrival(step: u32, to_step: u32, quad: vec2<i32>, crossed: vec2<bool>, origin: vec2<i32>, d: vec2<i32>) -> Arrival {
+    let ahead = d > vec2<i32>(0);
+    if to_step > step {
+        let even = (quad & vec2<i32>(1)) == vec2<i32>(0);
+        return Arrival(quad >> vec2<u32>(1u), crossed & (even == ahead));
+    }
+    if to_step == step {
+        return Arrival(quad, crossed);
+    }
+    let near = select(vec2<i32>(1), vec2<i32>(0), ahead);
+    if all(crossed) {
+        return Arrival(quad * 2 + near, crossed);
+    }
+    // Across the line it is the nearer half; along it, whether the middle is met before the line.
+    let side = i32(step * UNITS);
+    let middle = quad * side + side / 2;
+    let lead = wide_sign(lead_between(select(middle, (quad + near) * side, crossed), origin, d));
+    let passed = select(-lead, lead, crossed.x);
+    var half = select(near, 1 - near, passed >= 0);
+    let still = select(d.x, d.y, crossed.x) == 0;
+    if still {
+        half = select(vec2<i32>(0), vec2<i32>(1), origin >= middle);
+    }
+    return Arrival(quad * 2 + select(half, near, crossed), crossed | vec2<bool>(passed == 0 && !still));
+}
+
+// Whether a segment runs along a line of the lattice: there it meets the interior of no facet.
+fn runs_along_line(side: i32, origin: vec2<i32>, d: vec2<i32>) -> bool {
+    return (d.x == 0 && origin.x % side == 0) || (d.y == 0 && origin.y % side == 0)
+        || (d.x == d.y && (origin.x - origin.y) % side == 0);
 }
 
 // Walks from one point to another in walk units.
 fn walk_between(origin: vec2<i32>, end: vec2<i32>) -> Meeting {
     var meeting: Meeting;
-    meeting.met = false;
-    meeting.left_land = false;
-    meeting.done = true;
-    meeting.steps = 0u;
-    let d = end - origin;
-    let a = vec2<u32>(abs(d));
-    let shift = vec2<u32>(firstTrailingBit(scene.step * UNITS));
-    let side = i32(scene.step * UNITS);
-    // Along a lattice line the segment meets the interior of no facet.
-    if (d.x == 0 && origin.x % side == 0) || (d.y == 0 && origin.y % side == 0)
-        || (d.x == d.y && (origin.x - origin.y) % side == 0) {
-        return meeting;
-    }
-    let heading = sign(d);
-    var quad = select(origin, origin - 1, d < vec2<i32>(0)) >> shift;
-    let last = select(select(end, end - 1, d > vec2<i32>(0)) >> shift, quad, d == vec2<i32>(0));
-    var left = vec2<u32>(abs(last - quad));
-    let start = origin - (quad << shift);
-    let finish = end - (last << shift);
-    let to_line = select(select(start, side - start, d > vec2<i32>(0)), vec2<i32>(1), d == vec2<i32>(0));
-    // Sign of `lead`: whether the next column line (-) or the next row line (+) is met first.
-    var lead = wide_sub(wide_mul_u32(u32(to_line.x), a.y), wide_mul_u32(u32(to_line.y), a.x));
-    let per_column = wide_mul_u32(u32(side), a.y);
-    let per_row = wide_mul_u32(u32(side), a.x);
     // Some drivers end a loop that takes too long: then this stays false.
     meeting.done = false;
-    var entry = half_at(start.x - start.y, d.x - d.y);
+    let d = end - origin;
+    let heading = sign(d);
+    // On a line the quad ahead of it, on the last line of the map the one before.
+    let limit = vec2<i32>((scene.samples - 1u) * (CELL_STEPS * UNITS));
+    let first = select(origin, origin - 1, (d < vec2<i32>(0)) | ((d == vec2<i32>(0)) & (origin == limit)));
+    var slot = slot_at(first >> vec2<u32>(firstTrailingBit(UNITS)));
+    var quad = first;
+    var step = 1u;
     var crossed = vec2<bool>(false);
+    var steps = 0u;
+    // Chunk by chunk.
     loop {
-        meeting.steps += 1u;
-        let slot = slot_of(quad);
-        if slot == NO_SLOT {
-            meeting.left_land = true;
+        if slot == NO_SLOT || all(d == vec2<i32>(0)) {
+            meeting.left_land = slot == NO_SLOT;
             meeting.done = true;
             break;
         }
-        let inner = vec2<u32>(quad) & vec2<u32>(CHUNK_QUADS - 1u);
-        let block = (inner.y >> 3u) * 4u + (inner.x >> 3u);
+        let chunk = chunks[slot];
+        let side = i32(chunk.step * UNITS);
+        let shift = vec2<u32>(firstTrailingBit(chunk.step * UNITS));
+        if steps == 0u {
+            quad = first >> shift;
+        } else {
+            let to = arrival(step, chunk.step, quad, crossed, origin, d);
+            quad = to.quad;
+            crossed = to.crossed;
+        }
+        step = chunk.step;
+        let along = runs_along_line(side, origin, d);
         let summary = summaries[slot];
-        let eventful = ((summary >> block) & 0x10001u) != 0u;
-        // Leap over a chunk or a block where nothing can happen.
-        let node = select(select(8u, 1u, eventful || !thrifty), CHUNK_QUADS, summary == 0u && thrifty);
-        let in_node = vec2<u32>(quad) & vec2<u32>(node - 1u);
-        let to_side = select(in_node + 1u, node - in_node, d > vec2<i32>(0));
-        let column_end = wide_add(lead, wide_scale(per_column, to_side.x - 1u));
-        let first = wide_sign(wide_sub(column_end, wide_scale(per_row, to_side.y - 1u)));
-        let leaves = vec2<bool>(first <= 0, first >= 0);
-        let ends = any(leaves & (to_side > left));
-        if eventful {
-            var exit = half_behind(leaves, -d);
-            if ends {
-                exit = half_at(finish.x - finish.y, d.y - d.x);
-            }
-            let word = slot * CHUNK_FACETS + quad_local(inner);
-            var half = entry;
-            var through = crossed;
-            loop {
-                let f = Facet(vec2<u32>(quad) * scene.step, scene.step, half);
-                if is_missing(f) {
-                    meeting.left_land = true;
+        let start = origin - (quad << shift);
+        var entry = select(half_behind(crossed, d), half_at(start.x - start.y, d.x - d.y), steps == 0u);
+        let last = select(select(end, end - 1, d > vec2<i32>(0)) >> shift, quad, d == vec2<i32>(0));
+        var left = vec2<u32>(abs(last - quad));
+        // Its sign: whether the next column line (-) or the next row line (+) is met first.
+        let lines = (quad + select(vec2<i32>(0), vec2<i32>(1), d > vec2<i32>(0))) << shift;
+        var lead = lead_between(lines, origin, d);
+        let per_column = wide_mul_u32(u32(side), u32(abs(d.y)));
+        let per_row = wide_mul_u32(u32(side), u32(abs(d.x)));
+        let chunk_at = quad >> vec2<u32>(5u);
+        // Node by node: leaps over a chunk or a block where nothing can happen.
+        loop {
+            steps += 1u;
+            let inner = vec2<u32>(quad) & vec2<u32>(CHUNK_QUADS - 1u);
+            let block = (inner.y >> 3u) * 4u + (inner.x >> 3u);
+            let eventful = ((summary >> block) & 0x10001u) != 0u;
+            let node = select(select(8u, 1u, eventful || !thrifty), CHUNK_QUADS, summary == 0u && thrifty);
+            let in_node = inner & vec2<u32>(node - 1u);
+            let to_side = select(in_node + 1u, node - in_node, d > vec2<i32>(0));
+            let column_end = wide_add(lead, wide_scale(per_column, to_side.x - 1u));
+            let order = wide_sign(wide_sub(column_end, wide_scale(per_row, to_side.y - 1u)));
+            let leaves = vec2<bool>(order <= 0, order >= 0);
+            let ends = any(leaves & (to_side > left));
+            let seam = beside_coarser(chunk.coarser, inner);
+            if eventful && seam {
+                if defers {
+                    meeting.deferred = true;
                     meeting.done = true;
-                    return meeting;
-                }
-                if is_away(word + half) {
-                    meeting.met = true;
-                    meeting.done = true;
-                    meeting.facet = f;
-                    meeting.entered = entry_point(origin - (quad << shift), d, through, half != entry);
-                    return meeting;
-                }
-                if half == exit {
                     break;
                 }
-                half = exit;
+                let met = meet_beside_coarser(slot, inner, origin, end);
+                if met.met || met.left_land {
+                    meeting = met;
+                    meeting.done = true;
+                    break;
+                }
             }
-        }
-        if ends {
-            meeting.done = true;
-            break;
-        }
-        // Lines of the other direction met on the way to the node's side.
-        var steps = to_side;
-        crossed = leaves;
-        if !all(leaves) {
-            var ahead = column_end;
-            var cost = per_row;
-            if leaves.y {
-                ahead = wide_sub(wide_scale(per_row, to_side.y - 1u), lead);
-                cost = per_column;
+            if eventful && !seam && !along {
+                let at_end = end - (quad << shift);
+                let exit = select(half_behind(leaves, -d), half_at(at_end.x - at_end.y, d.y - d.x), ends);
+                let id = slot * CHUNK_FACETS + quad_local(inner);
+                let away = away_bits(id);
+                let entry_away = ((away >> entry) & 1u) == 1u;
+                let entry_missing = is_no_facet(chunk, inner, entry);
+                let exit_missing = is_no_facet(chunk, inner, exit);
+                if entry_away || entry_missing || exit_missing || ((away >> exit) & 1u) == 1u {
+                    meeting.left_land = entry_missing || (!entry_away && exit_missing);
+                    meeting.met = !meeting.left_land;
+                    meeting.id = id + select(exit, entry, entry_away);
+                    let by_diagonal = !entry_away && exit != entry;
+                    meeting.entered = entry_point(origin - (quad << shift), d, f32(side), crossed, by_diagonal);
+                    meeting.done = true;
+                    break;
+                }
             }
+            if ends {
+                meeting.done = true;
+                break;
+            }
+            // Lines of the other direction met on the way to the node's side.
+            let ahead = select(column_end, wide_sub(wide_scale(per_row, to_side.y - 1u), lead), vec2<bool>(leaves.y));
+            let cost = select(per_row, per_column, vec2<bool>(leaves.y));
             var count = 0u;
-            for (var k = node >> 1u; k > 0u; k >>= 1u) {
-                if wide_sign(wide_sub(ahead, wide_scale(cost, count + k - 1u))) >= 0 {
-                    count += k;
+            if !all(leaves) {
+                for (var k = node >> 1u; k > 0u; k >>= 1u) {
+                    if wide_sign(wide_sub(ahead, wide_scale(cost, count + k - 1u))) >= 0 {
+                        count += k;
+                    }
                 }
             }
             let at_corner = count > 0u && wide_sign(wide_sub(ahead, wide_scale(cost, count - 1u))) == 0;
-            steps = select(vec2<u32>(count, to_side.y), vec2<u32>(to_side.x, count), leaves.x);
+            let moved = select(to_side, vec2<u32>(count), !leaves & vec2<bool>(!all(leaves)));
             crossed = leaves | vec2<bool>(at_corner);
+            quad += heading * vec2<i32>(moved);
+            if any(chunk_at != (quad >> vec2<u32>(5u))) {
+                break;
+            }
+            left -= moved;
+            lead = wide_sub(wide_add(lead, wide_scale(per_column, moved.x)), wide_scale(per_row, moved.y));
+            entry = half_behind(crossed, d);
         }
-        quad += heading * vec2<i32>(steps);
-        left -= steps;
-        lead = wide_sub(wide_add(lead, wide_scale(per_column, steps.x)), wide_scale(per_row, steps.y));
-        entry = half_behind(crossed, d);
+        if meeting.done {
+            break;
+        }
+        slot = slot_at(quad * i32(chunk.step));
     }
+    meeting.steps = steps;
     return meeting;
 }
 
-// Where a segment that starts at `start` (relative to the quad's north-west vertex, walk units) entered a quad
-// through a side, or its second half through the diagonal; in quads.
-fn entry_point(start: vec2<i32>, d: vec2<i32>, crossed: vec2<bool>, by_diagonal: bool) -> vec2<f32> {
-    let side = f32(scene.step * UNITS);
+// Where a segment that starts at `start` (relative to the quad's north-west vertex, walk units) entered a quad through a
+// side, or its second half through the diagonal; in walk units from that vertex.
+fn entry_point(start: vec2<i32>, d: vec2<i32>, side: f32, crossed: vec2<bool>, by_diagonal: bool) -> vec2<f32> {
     let s = vec2<f32>(start);
     let v = vec2<f32>(d);
     var t = 0.0;
@@ -270,60 +380,39 @@ fn entry_point(start: vec2<i32>, d: vec2<i32>, crossed: vec2<bool>, by_diagonal:
     } else if crossed.y {
         t = (select(side, 0.0, d.y > 0) - s.y) / v.y;
     }
-    return clamp((s + v * t) / side, vec2<f32>(0.0), vec2<f32>(1.0));
+    return clamp(s + v * t, vec2<f32>(0.0), vec2<f32>(side));
 }
 
-// Page place in pixels of a point of a facet given in quads from its quad's north-west vertex.
-fn place_of(f: Facet, at: vec2<f32>) -> vec2<f32> {
-    let t = corners_of(f);
-    let se = min(at.x, at.y);
-    let other = abs(at.x - at.y);
-    let weights = select(vec2<f32>(other, se), vec2<f32>(se, other), f.half == 1u);
+// Page place in pixels of a point of a facet given in walk units from its vertex a.
+fn place_of(id: u32, at: vec2<f32>) -> vec2<f32> {
+    let f = facet_of(id);
+    let t = corners_of(chunks[id / CHUNK_FACETS], f);
+    let b = vec2<f32>(vec2<i32>(f.b) - vec2<i32>(f.a)) * f32(UNITS);
+    let c = vec2<f32>(vec2<i32>(f.c) - vec2<i32>(f.a)) * f32(UNITS);
+    let area = b.x * c.y - b.y * c.x;
+    let weights = max(vec2<f32>(at.x * c.y - at.y * c.x, b.x * at.y - b.y * at.x) / area, vec2<f32>(0.0));
     let q = camera_space(t.p + t.edge_1 * weights.x + t.edge_2 * weights.y);
     return vec2<f32>(q.x, -q.y) * (camera.focal / q.z) + camera.centre;
 }
 
-// Inks the nearer pixel of a pair if the walk to the farther one meets an away facet. Says how far it walked.
-fn walk_pair(one: vec2<i32>, other: vec2<i32>) -> u32 {
-    let first = pixels[pixel_index(one)];
-    let second = pixels[pixel_index(other)];
-    // Equal depth: the lower ID is nearer.
-    let swapped = second.y > first.y || (second.y == first.y && second.x < first.x);
-    let p = select(first, second, swapped);
-    let q = select(second, first, swapped);
-    if p.x == 0u || is_away(p.x - 1u) {
-        return 0u;
-    }
-    let at = select(one, other, swapped);
-    let centre = vec2<f32>(at) + 0.5;
-    let to_centre = vec2<f32>(select(other, one, swapped)) + 0.5;
-    let origin = facet_hit(p.x - 1u, centre);
-    var goal: Goal;
-    if q.y == 0u || is_away(q.x - 1u) {
-        goal = open_goal(p.x - 1u, centre, to_centre, origin);
-    } else {
-        goal = Goal(facet_hit(q.x - 1u, to_centre), false);
-    }
-    var meeting: Meeting;
-    var start = origin;
-    var longest = 0u;
-    for (var legs = select(1u, 2u, goal.goes_on); legs > 0u; legs--) {
-        meeting = walk_between(start, goal.at);
-        longest = max(longest, meeting.steps);
-        if !meeting.done {
-            atomicAdd(&out_counts.cut_short, 1u);
-        }
-        if meeting.met || meeting.left_land {
-            break;
-        }
-        start = goal.at;
-        goal.at = map_exit(to_centre, start);
-    }
+// Notes a facet that a walk from a pixel met. Of the walks that ink a pixel, the one whose line runs nearest to its centre
+// gives the place.
+fn ink(at: vec2<i32>, meeting: Meeting) {
+    let mark = silhouette_at(place_of(meeting.id, meeting.entered) - (vec2<f32>(at) + 0.5));
     if meeting.met {
-        // Of the walks that ink a pixel, the one whose line runs nearest to its centre gives the place.
-        atomicMax(&out_ink[pixel_index(at)], silhouette_at(place_of(meeting.facet, meeting.entered) - centre));
+        atomicMax(&out_ink[pixel_index(at)], mark);
     }
-    return longest;
+}
+
+fn check_done(meeting: Meeting) {
+    if !meeting.done {
+        atomicAdd(&out_counts.cut_short, 1u);
+    }
+}
+
+// Whether of two pixels the second is nearer. Equal depth: the lower ID is.
+fn is_behind(first: vec2<u32>, second: vec2<u32>) -> bool {
+    return second.y > first.y || (second.y == first.y && second.x < first.x);
 }
 
 @compute @workgroup_size(64)
@@ -331,9 +420,39 @@ fn walk(@builtin(global_invocation_id) invocation: vec3<u32>, @builtin(num_workg
     var longest = 0u;
     for (var k = invocation.x; k < pairs.count; k += groups.x * 64u) {
         let i = pairs.pixels[k] & 0xffffffu;
-        let at = vec2<i32>(vec2<u32>(i % camera.size.x, i / camera.size.x));
+        let one = vec2<i32>(vec2<u32>(i % camera.size.x, i / camera.size.x));
+        let first = pixels[i];
+        var place = vec2<i32>(0);
+        if first.x != 0u {
+            place = facet_hit(first.x - 1u, vec2<f32>(one) + 0.5);
+        }
+        var deferred = 0u;
         for (var left = pairs.pixels[k] >> 24u; left != 0u; left &= left - 1u) {
-            longest = max(longest, walk_pair(at, at + neighbour(firstTrailingBit(left))));
+            let other = one + neighbour(firstTrailingBit(left));
+            let second = pixels[pixel_index(other)];
+            let swapped = is_behind(first, second);
+            let p = select(first, second, swapped);
+            let q = select(second, first, swapped);
+            if p.x == 0u || is_away(p.x - 1u) {
+                continue;
+            }
+            if q.x == 0u || is_away(q.x - 1u) {
+                deferred |= left & (~left + 1u);
+                continue;
+            }
+            let other_place = facet_hit(second.x - 1u, vec2<f32>(other) + 0.5);
+            let meeting = walk_between(select(place, other_place, swapped), select(other_place, place, swapped));
+            deferred |= select(0u, left & (~left + 1u), meeting.deferred);
+            ink(select(one, other, swapped), meeting);
+            check_done(meeting);
+            longest = max(longest, meeting.steps);
+        }
+        if deferred != 0u {
+            let n = atomicAdd(&out_rest.count, 1u);
+            out_rest.pixels[n] = i | (deferred << 24u);
+            if n % 64u == 0u {
+                atomicMax(&out_rest.groups_x, min(n / 64u + 1u, MOST_GROUPS));
+            }
         }
     }
     atomicMax(&out_counts.longest_walk, longest);

@@ -1,16 +1,19 @@
 //! The whole algorithm on one screen: plan, passes, readback.
 
+use std::cell::{Ref, RefCell};
 use std::time::Instant;
 
 use crate::error::{Error, Result};
+use crate::gpu::buffers::Room;
 use crate::gpu::clock::Timer;
+use crate::gpu::stages::Stages;
 use crate::gpu::uniforms::{Counts, near_plane};
-use crate::gpu::work::{Stage, Work};
-use crate::gpu::{Buffers, CameraUniform, Clock, Extent, Gpu, Pass};
-use crate::gpu::{border, compose, facing, rasterize, rasterize_large, silhouette, tessellate};
+use crate::gpu::work::Work;
+use crate::gpu::{Buffers, CameraUniform, Clock, Extent, Gpu};
+use crate::gpu::{border, facing, rasterize, seam, tessellate};
 use crate::ink::InkRaster;
-use crate::plan::{Batch, Border, Method, Plan, Thrift, batches};
-use crate::surface::rim::rim;
+use crate::plan::{Batch, Border, Detail, Method, Plan, Visibility, batches, detail};
+use crate::surface::rim::{RimEdge, rim};
 use crate::surface::{Lattice, Surface};
 use crate::view::Camera;
 
@@ -37,89 +40,66 @@ pub struct Renderer<'a> {
     gpu: &'a Gpu,
     surface: &'a Surface,
     plan: Plan,
-    lattice: Lattice,
-    batches: Vec<Batch>,
-    rounds: u32,
+    visibility: Visibility,
     size: [u32; 2],
-    rim_edges: usize,
-    buffers: Buffers,
-    per_batch: [Stage; 4],
-    silhouettes: Vec<(Stage, Extent)>,
-    border: Option<Stage>,
-    compose: Stage,
+    rim: Vec<RimEdge>,
+    loaded: RefCell<Loaded>,
 }
 
+/// A lattice on the device, and what draws it.
+struct Loaded {
+    lattice: Lattice,
+    batches: Vec<Batch>,
+    buffers: Buffers,
+    stages: Stages,
+}
+
+/// Chunks, nodes and tiles for which there is room before the first frame of an adaptive lattice.
+const FIRST_ROOM: Room = Room { chunks: 512, nodes: 2048, tiles: 512 };
+
 impl<'a> Renderer<'a> {
-    /// Uploads the scene and compiles what the method needs.
+    /// Compiles what the plan needs. The lattice of a uniform level is uploaded, other lattices belong to frames.
     ///
     /// # Errors
     /// [`Error::Limit`] when the scene or the page is too large, [`Error::Gpu`] when the driver refuses.
     pub fn new(gpu: &'a Gpu, surface: &'a Surface, plan: Plan, size: [u32; 2]) -> Result<Self> {
         let dem = surface.dem();
-        let lattice = Lattice::uniform(dem, plan.level)?;
+        let (lattice, room) = match plan.detail {
+            Detail::Uniform(level) => {
+                let lattice = Lattice::uniform(dem, level)?;
+                let room = Room::of(&lattice);
+                (lattice, room)
+            }
+            Detail::Adaptive { .. } => (Lattice::empty(dem, surface.pyramid().coarsest_step())?, FIRST_ROOM),
+        };
         let rim = if plan.border == Border::On { rim(dem) } else { Vec::new() };
         let visibility = plan.method.visibility(gpu.int64);
-        let batches = batches(lattice.chunks().len() as u32);
-        let buffers = Buffers::new(gpu, surface, &lattice, &rim, &batches, visibility, size)?;
-        let flag = |on: bool| f64::from(u8::from(on));
-        let constants = [
-            ("has_voids", flag(dem.voids() > 0)),
-            ("facing_parts", f64::from(batches.last().map_or(1, |b| b.part() + 1))),
-            ("two_depths", flag(matches!(plan.method, Method::TowardAway { .. }))),
-            ("thrifty", flag(plan.thrift == Thrift::LeaveOut)),
-            ("conservative", flag(plan.method == Method::TowardAway { wide: true })),
-        ];
-        let group = |pass: &Pass, i, round, batch| pass.bind(gpu, |name| buffers.resource(name, i, round, batch));
-        let of_batches = |pass: Pass| {
-            let rounds = 0..visibility.rounds();
-            let each = batches.iter().enumerate().flat_map(|(i, b)| rounds.clone().map(move |round| (i, round, *b)));
-            let groups = each.map(|(i, round, b)| group(&pass, i, round, b)).collect::<Result<_>>()?;
-            Ok::<_, Error>(Stage { groups, pass })
-        };
-        let of_page = |pass: Pass| {
-            let groups = vec![group(&pass, 0, 0, Batch { first_slot: 0, chunks: 0 })?];
-            Ok::<_, Error>(Stage { groups, pass })
-        };
-        let per_batch = [
-            of_batches(tessellate::pass(gpu, &constants)?)?,
-            of_batches(facing::pass(gpu, &constants)?)?,
-            of_batches(rasterize::pass(gpu, visibility, &constants)?)?,
-            of_batches(rasterize_large::pass(gpu, visibility, &constants)?)?,
-        ];
-        let silhouettes = silhouette::passes(gpu, plan.method, size, &constants)?.into_iter();
-        let silhouettes = silhouettes.map(|(pass, extent)| Ok((of_page(pass)?, extent))).collect::<Result<_>>()?;
-        let border = if rim.is_empty() { None } else { Some(of_page(border::pass(gpu, &constants)?)?) };
-        let compose = of_page(compose::pass(gpu, &constants)?)?;
-        Ok(Self {
-            gpu,
-            surface,
-            plan,
-            lattice,
-            rounds: visibility.rounds(),
-            size,
-            rim_edges: rim.len(),
-            batches,
-            buffers,
-            per_batch,
-            silhouettes,
-            border,
-            compose,
-        })
+        let buffers = Buffers::new(gpu, surface, &lattice, room, &rim, visibility, size)?;
+        let parts = batches(room.chunks).last().map_or(1, |b| b.part() + 1);
+        let stages = Stages::new(gpu, dem, &plan, !rim.is_empty(), parts, size)?;
+        let mut loaded = Loaded { batches: Vec::new(), lattice, buffers, stages };
+        loaded.bind(gpu, room, visibility)?;
+        let renderer = Self { gpu, surface, plan, visibility, size, rim, loaded: RefCell::new(loaded) };
+        renderer.load(&mut renderer.loaded.borrow_mut())?;
+        Ok(renderer)
     }
 
-    /// The lattice whose facets are drawn.
-    pub fn lattice(&self) -> &Lattice {
-        &self.lattice
+    /// The lattice whose facets are drawn, of an adaptive one that of the last frame.
+    pub fn lattice(&self) -> Ref<'_, Lattice> {
+        Ref::map(self.loaded.borrow(), |loaded| &loaded.lattice)
     }
 
-    /// How many facets the scene has.
+    /// How many facets the scene has; with an adaptive lattice, those of the last frame's chunks.
     pub fn facets(&self) -> u64 {
-        self.surface.patches() * u64::from(self.lattice.level().subdivisions()).pow(2)
+        match self.plan.detail {
+            Detail::Uniform(level) => self.surface.patches() * u64::from(level.subdivisions()).pow(2),
+            Detail::Adaptive { .. } => self.lattice().facets(self.surface.dem()),
+        }
     }
 
     /// The buffers, for reading what passes left.
-    pub fn buffers(&self) -> &Buffers {
-        &self.buffers
+    pub fn buffers(&self) -> Ref<'_, Buffers> {
+        Ref::map(self.loaded.borrow(), |loaded| &loaded.buffers)
     }
 
     /// Metres to the near plane: depths of a frame are this over the distance along the view axis.
@@ -127,7 +107,7 @@ impl<'a> Renderer<'a> {
         near_plane(self.surface.dem())
     }
 
-    /// Draws a frame to its mask and waits for it. Nothing but the camera is uploaded.
+    /// Draws a frame to its mask and waits for it.
     ///
     /// # Errors
     /// Whatever the driver reports; [`Error::Flag`] for an eye out of reach or a camera of another page size.
@@ -176,13 +156,14 @@ impl<'a> Renderer<'a> {
     /// [`Error::Limit`] when the scene has several batches, which share one vertex buffer; [`Error::Flag`] for an eye
     /// out of reach.
     pub fn record_vertices(&self, camera: &Camera, encoder: &mut wgpu::CommandEncoder) -> Result<()> {
-        let ([batch], [stage, ..]) = (self.batches.as_slice(), &self.per_batch) else {
+        self.look(camera)?;
+        let loaded = self.loaded.borrow();
+        let ([batch], [stage, ..]) = (loaded.batches.as_slice(), &loaded.stages.per_batch) else {
             return Err(Error::Limit {
-                what: format!("the vertices take {} batches, one can be drawn", self.batches.len()),
+                what: format!("the vertices take {} batches, one can be drawn", loaded.batches.len()),
                 remedy: "use a lower --level or a --crop".into(),
             });
         };
-        self.buffers.write_camera(self.gpu, &CameraUniform::new(self.surface.dem(), camera)?)?;
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
         stage.pass.record(&mut pass, &stage.groups[0], tessellate::invocations(batch));
         Ok(())
@@ -194,11 +175,12 @@ impl<'a> Renderer<'a> {
     /// Whatever the driver reports; [`Error::Gpu`] when a pixel has a depth and no ID or a walk was cut short.
     pub fn read(&self) -> Result<Frame> {
         let [width, height] = self.size;
-        let mut work = Work::new(self.gpu, &self.buffers, None);
-        work.record(&self.compose, 0, self.size)?;
+        let Loaded { buffers, stages, .. } = &*self.loaded.borrow();
+        let mut work = Work::new(self.gpu, buffers, None);
+        work.record(&stages.compose, 0, self.size)?;
         work.finish()?;
-        let bytes = self.gpu.read(self.buffers.get("page")?, u64::from(width) * u64::from(height) * 8)?;
-        let counts = self.gpu.read(self.buffers.get("counts")?, size_of::<Counts>() as u64)?;
+        let bytes = self.gpu.read(buffers.get("page")?, u64::from(width) * u64::from(height) * 8)?;
+        let counts = self.gpu.read(buffers.get("counts")?, size_of::<Counts>() as u64)?;
         let counts: Counts = bytemuck::pod_read_unaligned(&counts);
         if counts.orphans > 0 {
             return Err(Error::Gpu { what: format!("{} pixels have a depth and no facet", counts.orphans) });
@@ -217,45 +199,79 @@ impl<'a> Renderer<'a> {
                 format!("the camera has {}x{} pixels, the renderer {width}x{height}", camera.width, camera.height);
             return Err(Error::flag("--size", what, "make a renderer for this size"));
         }
-        self.buffers.write_camera(self.gpu, &CameraUniform::new(self.surface.dem(), camera)?)?;
-        let mut work = Work::new(self.gpu, &self.buffers, timer);
+        self.look(camera)?;
+        let loaded = self.loaded.borrow();
+        let mut work = Work::new(self.gpu, &loaded.buffers, timer);
         work.clear(&["pixels", "ink", "summaries", "counts"])?;
         if self.plan.method == (Method::TowardAway { wide: true }) {
             work.clear(&["touched"])?;
         }
         work.empty("candidates", "no_pixels")?;
         work.empty("pairs", "no_pixels")?;
-        for round in 0..self.rounds {
-            for (i, batch) in self.batches.iter().enumerate() {
-                self.rasterize(&mut work, round, i, batch)?;
+        work.empty("rest", "no_pixels")?;
+        for round in 0..self.visibility.rounds() {
+            for (i, batch) in loaded.batches.iter().enumerate() {
+                self.rasterize(&mut work, &loaded, round, i, batch)?;
             }
         }
-        for (stage, extent) in &self.silhouettes {
+        for (stage, extent) in &loaded.stages.silhouettes {
             work.record(stage, 0, *extent)?;
         }
-        if let Some(stage) = &self.border {
-            work.record(stage, 0, border::invocations(&stage.pass, self.rim_edges, self.lattice.level()))?;
+        if let Some(stage) = &loaded.stages.border {
+            work.record(stage, 0, border::invocations(&stage.pass, self.rim.len()))?;
         }
         work.finish()
     }
 
     /// One batch: its vertices, its facing, its pixels. A later round needs the vertices anew only where other batches
     /// have overwritten them.
-    fn rasterize(&self, work: &mut Work<'_>, round: u32, i: usize, batch: &Batch) -> Result<()> {
-        let group = i * self.rounds as usize + round as usize;
-        let [tessellate_stage, facing_stage, small, large] = &self.per_batch;
+    fn rasterize(&self, work: &mut Work<'_>, loaded: &Loaded, round: u32, i: usize, batch: &Batch) -> Result<()> {
+        let group = i * self.visibility.rounds() as usize + round as usize;
+        let [tessellate_stage, seam_stage, facing_stage, small, large] = &loaded.stages.per_batch;
+        let several = loaded.batches.len() > 1;
         work.empty("queue", "empty_queue")?;
-        if round == 0 || self.batches.len() > 1 {
+        if round == 0 || several {
             work.record(tessellate_stage, group, tessellate::invocations(batch))?;
+            if loaded.lattice.has_seams() {
+                work.record(seam_stage, group, seam::invocations(batch))?;
+            }
         }
         if round == 0 {
             work.record(facing_stage, group, facing::invocations(batch))?;
         }
         work.record(small, group, rasterize::invocations(batch))?;
         work.record(large, group, Extent::List("queue"))?;
-        if self.batches.len() > 1 {
+        if several {
             work.submit()?;
         }
         Ok(())
+    }
+
+    /// Brings to the device what a camera asks for: itself, and its lattice where each frame has its own.
+    fn look(&self, camera: &Camera) -> Result<()> {
+        let uniform = CameraUniform::new(self.surface.dem(), camera)?;
+        let mut loaded = self.loaded.borrow_mut();
+        if let Detail::Adaptive { error_px } = self.plan.detail {
+            loaded.lattice = detail::adaptive(self.surface, camera, error_px, self.plan.thrift)?;
+            self.load(&mut loaded)?;
+        }
+        loaded.buffers.write_camera(self.gpu, &uniform)
+    }
+
+    /// Brings the lattice to the device, into larger buffers where it needs them.
+    fn load(&self, loaded: &mut Loaded) -> Result<()> {
+        let Self { gpu, surface, visibility, .. } = self;
+        loaded.batches = batches(loaded.lattice.chunks().len() as u32);
+        let Some(room) = loaded.buffers.load(gpu, surface, &loaded.lattice)? else { return Ok(()) };
+        loaded.buffers = Buffers::new(gpu, surface, &loaded.lattice, room, &self.rim, *visibility, self.size)?;
+        loaded.bind(gpu, room, *visibility)?;
+        loaded.buffers.load(gpu, surface, &loaded.lattice).map(drop)
+    }
+}
+
+impl Loaded {
+    /// Binds the passes to the buffers, for as many batches as these have room for.
+    fn bind(&mut self, gpu: &Gpu, room: Room, visibility: Visibility) -> Result<()> {
+        self.stages.bind(gpu, &self.buffers, &batches(room.chunks), visibility.rounds())
     }
 }

@@ -77,7 +77,8 @@ impl<'a> Baseline<'a> {
         let half_page = buffer(bytemuck::cast_slice(&[half[0], half[1], 0, 0]), wgpu::BufferUsages::UNIFORM);
         let pipeline = pipeline(gpu);
         let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
-        let screens = vertices.buffers().get("screens")?.as_entire_binding();
+        let buffers = vertices.buffers();
+        let screens = buffers.get("screens")?.as_entire_binding();
         let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("baseline"),
             layout: &pipeline.get_bind_group_layout(0),

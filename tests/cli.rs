@@ -83,7 +83,8 @@ pub fn refuses(place: &Place, arguments: &[&str], code: i32, words: &str) {
 #[test]
 fn draw_writes_picture_mask_and_report() {
     let place = Place::new();
-    let output = place.run(&[&DRAW[..], &["--mask", "mask.png", "--json", "report.json"]].concat());
+    let level: [&str; 2] = ["--level", "4"];
+    let output = place.run(&[&DRAW[..], &level[..], &["--mask", "mask.png", "--json", "report.json"]].concat());
     assert!(output.status.success(), "{}", stderr(&output));
     assert_eq!(place.written(), ["mask.png", "out.png", "report.json"]);
     let report: Value =
@@ -164,11 +165,13 @@ fn an_eye_below_ground_draws_with_a_warning() {
 #[test]
 fn wrong_usage_exits_with_2() {
     let place = Place::new();
-    let cases: [(&[&str], &str); 20] = [
+    let cases: [(&[&str], &str); 22] = [
         (&["--page", "A4"], "--page"),
         (&["--style", "x"], "--style"),
         (&["--level", "3"], "want 1, 2, 4"),
-        (&["--level", "auto"], "want 1, 2, 4"),
+        (&["--level", "automatic"], "want 1, 2, 4, 8, 16, 32 or 64, or auto"),
+        (&["--error-px", "0"], "want pixels, from 0.01 to 100"),
+        (&["--level", "4", "--error-px", "1"], "--error-px: goes with --level auto only"),
         (&["--size", "0x48"], "want WxH"),
         (&["--size", "99999x1"], "want WxH"),
         (&["--fov", "nan"], "out of range"),

@@ -196,7 +196,8 @@ fn where_nothing_can_be_compared_one_line_says_so() {
     let base = ["compare", "hill.asc", "-o", "report"];
     for (flags, words) in [
         (["--levels", "3"], "want 1, 2, 4"),
-        (["--levels", "auto"], "want 1, 2, 4"),
+        (["--levels", "best"], "want 1, 2, 4"),
+        (["--levels", "auto,auto"], "auto is there twice"),
         (["--levels", "2,4,2"], "2 is there twice"),
         (["--methods", "pen"], "want some of walk, toward-away"),
         (["--methods", "walk,walk"], "walk is there twice"),

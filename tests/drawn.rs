@@ -76,12 +76,12 @@ pub struct Shot {
 pub fn shoot(gpu: &Gpu, renderer: &Renderer<'_>, camera: &Camera) -> Shot {
     let chunks = renderer.lattice().chunks().len();
     assert!(chunks <= 4096, "{chunks} chunks share the vertex buffer, the first are overwritten");
-    let buffer = |name| renderer.buffers().get(name).expect("a buffer of this name");
+    let buffer = |name| renderer.buffers().get(name).expect("a buffer of this name").clone();
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    encoder.clear_buffer(buffer("screens"), 0, None);
+    encoder.clear_buffer(&buffer("screens"), 0, None);
     gpu.queue.submit([encoder.finish()]);
     renderer.frame(camera).expect("a frame");
-    let read = |name, size| gpu.read(buffer(name), size).expect("a copy of the buffer");
+    let read = |name, size| gpu.read(&buffer(name), size).expect("a copy of the buffer");
     let screens = read("screens", chunks as u64 * u64::from(CHUNK_VERTICES) * 16);
     let pixels = read("pixels", u64::from(camera.width) * u64::from(camera.height) * 8);
     Shot { screens: bytemuck::pod_collect_to_vec(&screens), pixels: bytemuck::pod_collect_to_vec(&pixels) }

@@ -51,7 +51,7 @@ fn facets_beyond_their_ids_are_refused_with_numbers() {
     // 1448 x 1448 chunks of 2048 facets have IDs, 1449 x 1449 have not; at level 64 a chunk is half a cell.
     assert!(Lattice::uniform(&flat(725, 725), level(64)).is_ok());
     let error =
-        refused(Lattice::uniform(&flat(726, 726), level(64)), &["level 64", "4305920000 facets", "2097152", "--level"]);
+        refused(Lattice::uniform(&flat(726, 726), level(64)), &["level 64", "4305920000 facets", "2097151", "--level"]);
     assert!(matches!(error, Error::Limit { .. }));
     refused(Lattice::uniform(&flat(131_001, 2), level(1)), &["131001 x 2", "131000", "--crop"]);
     assert!(Lattice::uniform(&flat(131_000, 2), level(1)).is_ok());

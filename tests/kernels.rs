@@ -5,12 +5,14 @@
 
 use std::collections::HashMap;
 
+use bytemuck::Zeroable;
 use glam::{DVec2, IVec2};
 use hachure::dem::Dem;
-use hachure::gpu::uniforms::SceneUniform;
+use hachure::gpu::uniforms::{ChunkUniform, SceneUniform};
 use hachure::gpu::{Gpu, Pass};
-use hachure::surface::lattice::{CELL_STEPS, CHUNK_FACETS, NO_SLOT};
-use hachure::surface::{Lattice, LatticePoint};
+use hachure::surface::lattice::{CELL_STEPS, CHUNK_FACETS};
+use hachure::surface::quadtree::NO_SLOT;
+use hachure::surface::{Chunk, Lattice, LatticePoint};
 use wgpu::BufferUsages;
 
 use crate::scenes::{Random, gpu, level};
@@ -109,7 +111,7 @@ impl Field {
 
     /// The first away facet the segment meets before any that is missing; its north-west vertex and half.
     fn twin(&self, origin: IVec2, end: IVec2) -> Option<[u32; 3]> {
-        let step = self.lattice.level().step() as i32;
+        let step = self.lattice.chunks()[0].step as i32;
         let side = step * UNITS;
         let low = origin.min(end).map(|v| v.div_euclid(side)) - 1;
         let high = origin.max(end).map(|v| v.div_euclid(side)) + 1;
@@ -165,7 +167,7 @@ fn entry(origin: IVec2, end: IVec2, corners: [IVec2; 3]) -> Option<Share> {
 
 /// Segments in walk units: short and long, anywhere, and through lattice vertices and along lattice lines.
 fn segments(field: &Field, count: usize, random: &mut Random) -> Vec<[i32; 4]> {
-    let side = field.lattice.level().step() as i32 * UNITS;
+    let side = field.lattice.chunks()[0].step as i32 * UNITS;
     let limit = IVec2::new(field.dem.columns() as i32 - 1, field.dem.rows() as i32 - 1) * (CELL_STEPS as i32 * UNITS);
     let mut place = |grain: i32| {
         let at = |limit: i32, random: &mut Random| random.below((limit / grain) as u32 + 1) as i32 * grain;
@@ -197,14 +199,22 @@ fn segments(field: &Field, count: usize, random: &mut Random) -> Vec<[i32; 4]> {
     (0..count).map(|_| segment()).collect()
 }
 
+/// The chunks as a walk knows them, without samples.
+pub fn chunk_uniforms(lattice: &Lattice) -> Vec<ChunkUniform> {
+    let uniform = |c: &Chunk| ChunkUniform { origin: c.origin, step: c.step, coarser: c.coarser, ..Zeroable::zeroed() };
+    lattice.chunks().iter().map(uniform).collect()
+}
+
 /// What the shader's walk finds for each segment: met, x, y and half of the facet.
 fn walk(field: &Field, segments: &[[i32; 4]]) -> Vec<Option<[u32; 3]>> {
     let scene = SceneUniform::new(&field.dem, &field.lattice);
+    let chunks = chunk_uniforms(&field.lattice);
     let bits = |word: &[bool]| word.iter().rev().fold(0_u32, |bits, v| bits << 1 | u32::from(*v));
     let valid: Vec<u32> = field.dem.valid().chunks(32).map(bits).collect();
-    let data: [(&str, &[u8]); 9] = [
+    let data: [(&str, &[u8]); 10] = [
         ("scene", bytemuck::bytes_of(&scene)),
-        ("slots", bytemuck::cast_slice(field.lattice.slots())),
+        ("chunks", bytemuck::cast_slice(&chunks)),
+        ("nodes", bytemuck::cast_slice(field.lattice.tree().nodes())),
         ("summaries", bytemuck::cast_slice(&field.summaries)),
         ("valid", bytemuck::cast_slice(&valid)),
         ("facing_0", bytemuck::cast_slice(&field.facing)),
@@ -213,9 +223,13 @@ fn walk(field: &Field, segments: &[[i32; 4]]) -> Vec<Option<[u32; 3]>> {
         ("facing_3", &[]),
         ("segments", bytemuck::cast_slice(segments)),
     ];
-    let constants = [("has_voids", f64::from(u8::from(field.dem.voids() > 0)))];
+    let constants = [("has_voids", f64::from(u8::from(field.dem.voids() > 0))), ("defers", 0.0)];
     let found = run("walk_probe", WALK, &constants, &data, segments.len() as u32);
-    found.chunks_exact(4).map(|f| (f[0] == 1).then_some([f[1], f[2], f[3]])).collect()
+    let place = |id: u32| {
+        let a = field.lattice.facet(id)[0];
+        [a.x, a.y, id % 2]
+    };
+    found.chunks_exact(4).map(|f| (f[0] == 1).then(|| place(f[1]))).collect()
 }
 
 #[test]
@@ -233,7 +247,7 @@ fn walks_meet_what_exact_arithmetic_meets() {
         let met = found.iter().flatten().count();
         println!("level {subdivisions}, 1 in {rarity} away, voids {voids}: {met} of {} walks meet one", segments.len());
         assert!(met > 50 && met < segments.len() - 50, "a dull field");
-        assert!(!voids || field.lattice.slots().contains(&NO_SLOT), "no chunk is void");
+        assert!(!voids || field.lattice.tree().nodes().contains(&NO_SLOT), "no chunk is void");
         let wrong = found.iter().zip(expected(&field)).position(|(f, e)| *f != e);
         if let Some(i) = wrong {
             let [a, b, c, d] = segments[i];

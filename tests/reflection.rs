@@ -4,16 +4,16 @@
 use std::collections::BTreeMap;
 use std::mem::offset_of;
 
-use hachure::dem::MAX_SAMPLES;
+use hachure::gpu::buffers::Room;
 use hachure::gpu::pass::reflect;
 use hachure::gpu::sizes::{BLOCK, LARGEST_BINDING, fits, written};
-use hachure::gpu::uniforms::{BatchUniform, Counts, SceneUniform};
+use hachure::gpu::uniforms::{BatchUniform, ChunkUniform, Counts, SceneUniform};
 use hachure::gpu::{CameraUniform, adjacency, border, candidates, compose, facing, pairs};
-use hachure::gpu::{rasterize, rasterize_large, tessellate, toward_away, walk};
+use hachure::gpu::{rasterize, rasterize_large, seam, tessellate, toward_away, walk, walk_rest};
 use hachure::plan::Visibility;
 use hachure::plan::batches::{BATCH_CHUNKS, PART_CHUNKS};
 use hachure::surface::rim::RimEdge;
-use hachure::surface::{Chunk, Lattice, lattice};
+use hachure::surface::{Lattice, lattice, quadtree, tile};
 use wgpu::naga;
 
 use crate::drawn::{BESIDE, CLIPPED, MISSING};
@@ -33,6 +33,8 @@ fn shaders() -> Vec<(&'static str, &'static str)> {
         ("candidates", candidates::SOURCE),
         ("pairs", pairs::SOURCE),
         ("walk", walk::SOURCE),
+        ("walk_rest", walk_rest::SOURCE),
+        ("seam", seam::SOURCE),
     ];
     for visibility in [Visibility::Key64, Visibility::Key32, Visibility::TwoDepths] {
         all.push(("rasterize", rasterize::source(visibility)));
@@ -69,14 +71,14 @@ macro_rules! layout {
 /// WGSL name and Rust layout of every struct both know.
 fn shared_structs() -> Vec<(&'static str, Layout)> {
     vec![
-        ("Scene", layout!(SceneUniform: cell, samples, chunk_grid, step, near)),
+        ("Scene", layout!(SceneUniform: cell, samples, roots, root_size, near)),
         (
             "Camera",
             layout!(CameraUniform: right, up, forward, eye_cell, eye_offset, eye_height, centre, focal, pad, size, wedge),
         ),
         ("Batch", layout!(BatchUniform: first_slot, part_slot, round, pad)),
         ("Counts", layout!(Counts: longest_walk, orphans, cut_short)),
-        ("Chunk", layout!(Chunk: origin, step, pad)),
+        ("Chunk", layout!(ChunkUniform: origin, step, coarser, low, high, beyond, tile)),
         ("RimEdge", layout!(RimEdge: sample, direction, half)),
     ]
 }
@@ -102,10 +104,16 @@ fn shared_constants() -> Vec<(&'static str, i64)> {
         ("CHUNK_SIDE", i64::from(lattice::CHUNK_SIDE)),
         ("CHUNK_VERTICES", i64::from(lattice::CHUNK_VERTICES)),
         ("CHUNK_WORDS", i64::from(lattice::CHUNK_WORDS)),
-        ("NO_SLOT", i64::from(lattice::NO_SLOT)),
+        ("NO_SLOT", i64::from(quadtree::NO_SLOT)),
         ("PART_WORDS_LOG2", i64::from(words.ilog2())),
         ("STRIP_FACETS", i64::from(rasterize::STRIP_FACETS)),
-        ("STRIP", i64::from(tessellate::STRIP)),
+        ("INNER", i64::from(quadtree::INNER)),
+        ("NORTH", i64::from(lattice::NORTH)),
+        ("EAST", i64::from(lattice::EAST)),
+        ("SOUTH", i64::from(lattice::SOUTH)),
+        ("WEST", i64::from(lattice::WEST)),
+        ("TILE_SIDE", i64::from(tile::TILE_SIDE)),
+        ("TILE_SAMPLES", i64::from(tile::TILE_SAMPLES)),
         ("TILE", i64::from(rasterize_large::TILE)),
         ("COLUMNS", i64::from(BLOCK[0])),
         ("ROWS", i64::from(BLOCK[1])),
@@ -192,7 +200,7 @@ fn differences_between_rust_and_wgsl_are_noticed() {
     };
     assert_eq!(differ("struct Chunk", "struct Chunk"), "");
     assert!(differ("    pad: u32,\n    size", "    fill: u32,\n    size").starts_with("Camera"));
-    assert!(differ("step: u32,\n    pad: u32", "pad: u32,\n    step: u32").starts_with("Chunk"));
+    assert!(differ("coarser: u32, ", "spare: u32, coarser: u32, ").starts_with("Chunk"));
     assert!(differ("near: f32,", "near: f32, far: f32,").starts_with("Scene"));
     assert!(differ("part_slot: u32,", "slot_of_part: u32,").starts_with("Batch"));
     assert!(differ("CHUNK_VERTICES: u32 = 1089u", "CHUNK_VERTICES: u32 = 1088u").starts_with("CHUNK_VERTICES"));
@@ -213,15 +221,10 @@ fn every_binding_fits_at_every_level() {
     for n in [1, 2, 4, 8, 16, 32, 64] {
         let lattice = Lattice::uniform(&dem, level(n)).expect("IDs suffice");
         let chunks = lattice.chunks().len() as u64;
-        let mut sizes = written(chunks, [16_384, 1024]).expect("a page of this size");
-        sizes.extend([
-            ("chunks", size_of_val(lattice.chunks()) as u64),
-            ("slots", size_of_val(lattice.slots()) as u64),
-            ("spheres", chunks * 16),
-            ("heights", 500 * 500 * 4),
-            ("gradients_east", 500 * 500 * 4),
-            ("gradients_north", 500 * 500 * 4),
-        ]);
+        let room = Room::of(&lattice);
+        // Cells of 500 x 500 samples in tiles of 32 x 32.
+        assert_eq!((room.chunks as usize, room.tiles), (lattice.chunks().len(), 16 * 16));
+        let sizes = written(room, [16_384, 1024]).expect("a page of this size");
         for (name, size) in &sizes {
             assert!(fits(name, *size).is_ok(), "level {n}: {name} takes {size} bytes");
         }
@@ -231,10 +234,8 @@ fn every_binding_fits_at_every_level() {
         assert_eq!(of("screens"), chunks.min(u64::from(BATCH_CHUNKS)) * u64::from(lattice::CHUNK_VERTICES) * 16);
         assert!(of("queue") >= 4 + chunks.min(u64::from(BATCH_CHUNKS)) * u64::from(lattice::CHUNK_FACETS) * 4);
     }
-    // As many samples as are read: each of heights and gradients takes one whole binding.
-    assert!(fits("heights", MAX_SAMPLES as u64 * 4).is_ok());
     assert!(fits("heights", LARGEST_BINDING).is_ok());
     let line = fits("heights", LARGEST_BINDING + 1).expect_err("a byte too many").to_string();
-    assert!(line.contains("129 MiB of heights, a device binds 128; use a --crop"), "{line}");
-    assert!(written(1, [16_384, 1025]).is_err());
+    assert!(line.contains("129 MiB of heights, a device binds 128; use --level auto or a --crop"), "{line}");
+    assert!(written(Room { chunks: 1, nodes: 1, tiles: 1 }, [16_384, 1025]).is_err());
 }

@@ -28,7 +28,7 @@ fn stamping(int64: Int64) -> &'static Gpu {
 /// The passes of a frame with border lines, in their order.
 fn passes(method: Method) -> Vec<&'static str> {
     let silhouette: &[&str] = match method {
-        Method::Walk => &["candidates", "pairs", "walk"],
+        Method::Walk => &["candidates", "pairs", "walk", "walk_rest"],
         Method::TowardAway { .. } => &["toward_away"],
         Method::Adjacency { .. } => &["adjacency"],
     };

@@ -45,8 +45,8 @@ impl Worst {
 /// Compares every vertex of a frame.
 fn compare(surface: &Surface, renderer: &Renderer<'_>, camera: &Camera, shot: &Shot) -> Worst {
     let mut worst = Worst::default();
-    let chunks = renderer.lattice().chunks().iter();
-    for (chunk, screens) in chunks.zip(shot.screens.chunks_exact(CHUNK_VERTICES as usize)) {
+    let lattice = renderer.lattice();
+    for (chunk, screens) in lattice.chunks().iter().zip(shot.screens.chunks_exact(CHUNK_VERTICES as usize)) {
         let left_out = screens.iter().all(|s| *s == [0; 4]);
         for (v, screen) in (0..).zip(screens) {
             let [x, y] = [v % CHUNK_SIDE, v / CHUNK_SIDE];

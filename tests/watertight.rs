@@ -76,7 +76,7 @@ fn eyes(surface: &Surface, random: &mut Random) -> Vec<Camera> {
 
 fn check(surface: &Surface, n: u32, random: &mut Random, met: &mut Met) {
     let renderer = renderer(gpu(), surface, n, BY_ID, PAGE);
-    let mesh = facets(surface, renderer.lattice());
+    let mesh = facets(surface, &renderer.lattice());
     for camera in eyes(surface, random) {
         let shot = shoot(gpu(), &renderer, &camera);
         let depths: Vec<u32> = shot.pixels.iter().map(|p| p[1]).collect();
@@ -129,7 +129,7 @@ fn no_pinhole_around_voids() {
         heights[40 + seed as usize] = f32::NAN;
         let holed = surface(12, 50.0, heights);
         let renderer = renderer(gpu(), &holed, 4, BY_ID, PAGE);
-        let mesh = facets(&holed, renderer.lattice());
+        let mesh = facets(&holed, &renderer.lattice());
         for azimuth in [0.0, 100.0, 200.0, 300.0] {
             let camera = look(over(&holed, 1.0, 1.0, 300.0 + azimuth), azimuth, -70.0, PAGE);
             let shot = shoot(gpu(), &renderer, &camera);
@@ -149,7 +149,7 @@ fn pinholes_are_found() {
     let holed = surface(9, 50.0, heights);
     let camera = look(over(&whole, 4.0, 4.0, 150.0), 20.0, -90.0, PAGE);
     let [whole_renderer, holed_renderer] = [&whole, &holed].map(|s| renderer(gpu(), s, 2, BY_ID, PAGE));
-    let mesh = facets(&whole, whole_renderer.lattice());
+    let mesh = facets(&whole, &whole_renderer.lattice());
     let near = whole_renderer.near();
     let depths = |r| shoot(gpu(), r, &camera).pixels.iter().map(|p| p[1]).collect::<Vec<_>>();
     // Drawn without the patches around one sample: a hexagon is missing.

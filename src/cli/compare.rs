@@ -8,12 +8,13 @@ use std::thread::available_parallelism;
 use super::device::DeviceArguments;
 use super::talk::Talk;
 use super::terrain::TerrainArguments;
-use super::values::{self, Size};
+use super::values::{self, LevelChoice, Size};
 use super::viewpoint::{View, ViewArguments};
 use super::views::{self, NamedView};
 use crate::error::{Error, Result};
 use crate::gpu::Gpu;
 use crate::gpu::sizes::page_fits;
+use crate::plan::detail::ERROR_PX;
 use crate::plan::{Border, Method};
 use crate::report::cache::Cache;
 use crate::report::compare::{Compared, Comparison, Hearing, METHODS};
@@ -68,8 +69,11 @@ pub struct CompareArguments {
     #[arg(long, value_name = "X", value_parser = values::exaggeration, allow_hyphen_values = true, default_value = "1", help_heading = "Surface")]
     exaggeration: f64,
     /// Subdivisions of a cell's edge: 1, 2, 4, 8, 16, 32 or 64
-    #[arg(long, value_name = "N,...", value_parser = values::level, value_delimiter = ',', default_value = "1,2,4,8", help_heading = "Surface")]
-    levels: Vec<Level>,
+    #[arg(long, value_name = "N|auto,...", value_parser = values::level_choice, value_delimiter = ',', default_value = "1,2,4,8,auto", help_heading = "Surface")]
+    levels: Vec<LevelChoice>,
+    /// Of level auto: how far facets may deviate from the surface on the page, in pixels
+    #[arg(long, value_name = "PX", value_parser = values::error_px, default_value_t = ERROR_PX, help_heading = "Surface")]
+    error_px: f64,
 
     /// Methods to compare [default: all]
     #[arg(long, value_name = "NAME,...", value_parser = values::method, value_delimiter = ',', help_heading = "Method")]
@@ -105,7 +109,7 @@ struct Job {
 pub fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
     let sizes = arguments.sizes();
     each_once("--sizes", sizes.iter().map(|size| format!("{}x{}", size.width, size.height)))?;
-    each_once("--levels", arguments.levels.iter().map(|level| level.subdivisions().to_string()))?;
+    each_once("--levels", arguments.levels.iter().map(LevelChoice::to_string))?;
     each_once("--methods", arguments.methods.iter().map(|(name, _)| (*name).to_owned()))?;
     sizes.iter().try_for_each(|size| page_fits([size.width, size.height]))?;
     arguments.view.check()?;
@@ -128,10 +132,10 @@ pub fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
         let terrain = Terrain::new(&surface);
         for (named, size) in job.views.iter().flat_map(|view| sizes.iter().map(move |size| (view, *size))) {
             // Heights above ground are above the level of `hachure draw`.
-            let mut view = named.view.view(&surface, Level::default())?;
+            let mut view = named.view.view(&surface, LevelChoice::Auto.near())?;
             (view.camera.width, view.camera.height) = (size.width, size.height);
             let name = scene_name(&named.name, size, &sizes);
-            view.warn_below_ground(&surface, Level::default(), talk);
+            view.warn_below_ground(&surface, LevelChoice::Auto.near(), talk);
             let found = comparison.scene(&gpu, &name, &terrain, &view.camera, &hearing)?;
             let (scene, of_scene, drawn) = arguments.scene(name, &job.files, &surface, &view, found);
             scenes.push(scene);
@@ -163,7 +167,7 @@ impl CompareArguments {
     fn comparison(&self) -> Comparison {
         Comparison {
             methods: if self.methods.is_empty() { METHODS.to_vec() } else { self.methods.clone() },
-            levels: self.levels.clone(),
+            levels: self.levels.iter().map(|level| level.detail(self.error_px)).collect(),
             repeat: self.repeat,
             border: self.border,
             truth_level: self.truth_level,

@@ -4,25 +4,24 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::ValueEnum;
-use glam::DVec2;
 use serde::Serialize;
 
 use super::device::DeviceArguments;
 use super::outputs::OutputArguments;
 use super::talk::Talk;
 use super::terrain::TerrainArguments;
-use super::values;
+use super::values::{self, LevelChoice};
 use super::viewpoint::{View, ViewArguments, ViewReport};
 use crate::dem::Dem;
 use crate::error::{Error, Result};
 use crate::gpu::Gpu;
 use crate::gpu::sizes::page_fits;
 use crate::ink::{self, Style};
-use crate::plan::{Border, Method, Plan, Share};
+use crate::plan::detail::ERROR_PX;
+use crate::plan::{Border, Detail, Method, Plan, Share};
 use crate::render::{Frame, PassTime, Renderer};
-use crate::surface::bounds::spheres;
-use crate::surface::{Level, Surface};
-use crate::view::Camera;
+use crate::report::results::DrawnLevel;
+use crate::surface::Surface;
 
 /// Warm frames behind the median of `--json`.
 const WARM_FRAMES: usize = 9;
@@ -58,9 +57,12 @@ pub struct DrawArguments {
     /// Factor on every elevation
     #[arg(long, value_name = "X", value_parser = values::exaggeration, allow_hyphen_values = true, default_value = "1", help_heading = "Surface")]
     exaggeration: f64,
-    /// Subdivisions of a cell's edge: 1, 2, 4, 8, 16, 32 or 64
-    #[arg(long, value_name = "N", value_parser = values::level, default_value = "4", help_heading = "Surface")]
-    level: Level,
+    /// Subdivisions of a cell's edge: 1, 2, 4, 8, 16, 32 or 64; auto: each part of the DEM as fine as the page shows
+    #[arg(long, value_name = "N|auto", value_parser = values::level_choice, default_value = "auto", help_heading = "Surface")]
+    level: LevelChoice,
+    /// --level auto only: how far facets may deviate from the surface on the page, in pixels [default: 0.25]
+    #[arg(long, value_name = "PX", value_parser = values::error_px, help_heading = "Surface")]
+    error_px: Option<f64>,
 
     /// How silhouettes are found
     #[arg(long, default_value = "walk", help_heading = "Method")]
@@ -95,7 +97,7 @@ struct Report {
     version: &'static str,
     dem: DemReport,
     method: &'static str,
-    level: u32,
+    level: DrawnLevel,
     facets: u64,
     inked: usize,
     longest_walk: u32,
@@ -134,6 +136,7 @@ struct LeftOut {
 /// Whatever went wrong; nothing stands under a final name then.
 pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     let method = arguments.method()?;
+    arguments.detail()?;
     let size = [arguments.view.size.width, arguments.view.size.height];
     page_fits(size)?;
     arguments.view.check()?;
@@ -142,14 +145,14 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     let dem = arguments.terrain.read(&arguments.terrain.dems, arguments.exaggeration, talk)?;
     talk.progress("computing normals", 0.1);
     let surface = Surface::new(dem);
-    let view = arguments.view.view(&surface, arguments.level)?;
-    view.warn_below_ground(&surface, arguments.level, talk);
+    let view = arguments.view.view(&surface, arguments.level.near())?;
+    view.warn_below_ground(&surface, arguments.level.near(), talk);
     talk.say(&format!("view: {}", view.flags()))?;
     view.lonlat_flag().map_or(Ok(()), |flag| talk.say(&format!("or with: {flag}")))?;
     talk.progress("opening the adapter", 0.2);
     let gpu = arguments.device.open(talk)?;
     talk.progress("drawing", 0.4);
-    let renderer = Renderer::new(&gpu, &surface, Plan::new(arguments.level, method, arguments.border), size)?;
+    let renderer = Renderer::new(&gpu, &surface, Plan::new(arguments.detail()?, method, arguments.border), size)?;
     let frame = renderer.draw(&view.camera)?;
     let drawing = ink::draw(&frame.raster, &Style::for_page(view.camera.width));
     let report = || {
@@ -158,7 +161,7 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     };
     let report = outputs.want_report().then(report).transpose()?;
     if talk.is_verbose() {
-        explain(talk, &arguments.left_out(&surface, &renderer, &view.camera), report.as_ref())?;
+        explain(talk, &arguments.left_out(&surface), report.as_ref())?;
     }
     talk.progress("writing", 0.8);
     outputs.write(&drawing, &frame, report.as_ref())?;
@@ -178,6 +181,13 @@ impl DrawArguments {
     /// Whether one of the files is standard output.
     pub fn fill_stdout(&self) -> bool {
         self.outputs.fill_stdout()
+    }
+
+    fn detail(&self) -> Result<Detail> {
+        if self.error_px.is_some() && self.level != LevelChoice::Auto {
+            return Err(Error::flag("--error-px", "goes with --level auto only", "leave one of them out"));
+        }
+        Ok(self.level.detail(self.error_px.unwrap_or(ERROR_PX)))
     }
 
     fn method(&self) -> Result<Method> {
@@ -210,7 +220,7 @@ impl DrawArguments {
             version: env!("CARGO_PKG_VERSION"),
             dem: DemReport::of(&self.terrain.dems, surface.dem()),
             method: method.name(),
-            level: self.level.subdivisions(),
+            level: self.detail()?.into(),
             facets: renderer.facets(),
             inked: frame.inked(),
             longest_walk: frame.longest_walk,
@@ -220,16 +230,14 @@ impl DrawArguments {
             adapter: format!("{} ({})", gpu.info.name, gpu.info.driver_info),
             int64: gpu.int64,
             view: view.report(surface.dem().georeference(), self.exaggeration),
-            left_out: self.left_out(surface, renderer, camera),
+            left_out: self.left_out(surface),
         })
     }
 
     /// What the frame did without.
-    fn left_out(&self, surface: &Surface, renderer: &Renderer<'_>, camera: &Camera) -> Vec<LeftOut> {
+    fn left_out(&self, surface: &Surface) -> Vec<LeftOut> {
         let mut left_out = Vec::new();
         let mut leave = |out: bool, what, why, saved| left_out.extend(out.then_some(LeftOut { what, why, saved }));
-        let (beside, chunks) = chunks_beside(surface, renderer, camera);
-        leave(beside > 0, "chunks", "beside the page", Some(format!("{beside} of {chunks} chunks")));
         leave(self.border == Border::Off, "border pass", "--border off", None);
         leave(surface.dem().voids() == 0, "void tests", "the DEM has no voids", None);
         left_out
@@ -246,17 +254,6 @@ fn explain(talk: &Talk, left_out: &[LeftOut], report: Option<&Report>) -> Result
         talk.detail(&format!("pass {name}: {ms:.2} ms"))?;
     }
     report.map_or(Ok(()), |report| talk.detail(&format!("median frame: {:.2} ms", report.frame_ms)))
-}
-
-/// How many chunks lie beside the page's map projection, where nothing of them is computed, and how many there are.
-fn chunks_beside(surface: &Surface, renderer: &Renderer<'_>, camera: &Camera) -> (usize, usize) {
-    let spheres = spheres(surface, renderer.lattice());
-    let eye = camera.eye.truncate() - surface.dem().position(0, 0).truncate();
-    let beside = |[x, y, _, radius]: [f64; 4]| {
-        let sides = camera.wedge().into_iter().flatten();
-        sides.map(|inward| inward.dot(DVec2::new(x, y) - eye)).any(|distance| distance < -radius)
-    };
-    (spheres.iter().filter(|s| beside(s.map(f64::from))).count(), spheres.len())
 }
 
 impl DemReport {

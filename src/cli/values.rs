@@ -1,11 +1,14 @@
 //! Values of flags: numbers with commas, sizes, levels, adapters. Each parser says what it wants.
 
+use std::fmt::Display;
+use std::ops::RangeInclusive;
+
 use glam::DVec2;
 
 use crate::dem::ElevationUnit;
 use crate::gpu::AdapterChoice;
 use crate::gpu::sizes::LARGEST_SIDE;
-use crate::plan::Method;
+use crate::plan::{Detail, Method};
 use crate::report::compare::{LEAST_TRUTH_LEVEL, METHODS};
 use crate::surface::Level;
 
@@ -47,6 +50,9 @@ pub struct Size {
     /// Down.
     pub height: u32,
 }
+
+/// Deviations that make sense: below, facets fill the memory; above, nothing is left of the land.
+const ERRORS_PX: RangeInclusive<f64> = 0.01..=100.0;
 
 fn number(text: &str) -> Result<f64, String> {
     let value: f64 = text.trim().parse().map_err(|_| format!("`{text}` is no number"))?;
@@ -129,6 +135,55 @@ pub fn size(text: &str) -> Result<Size, String> {
 /// A level: subdivisions of a cell's edge.
 pub fn level(text: &str) -> Result<Level, String> {
     text.parse().ok().and_then(Level::new).ok_or_else(|| "want 1, 2, 4, 8, 16, 32 or 64".into())
+}
+
+/// `--level`: one level everywhere, or each chunk at its own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LevelChoice {
+    /// Subdivisions of a cell's edge.
+    Of(Level),
+    /// As fine as the page shows.
+    Auto,
+}
+
+impl LevelChoice {
+    /// How fine facets are where they may deviate by `error_px` on the page.
+    pub fn detail(self, error_px: f64) -> Detail {
+        match self {
+            Self::Of(level) => Detail::Uniform(level),
+            Self::Auto => Detail::Adaptive { error_px },
+        }
+    }
+
+    /// The level of the ground under the eye: chunks that near are fine.
+    pub fn near(self) -> Level {
+        match self {
+            Self::Of(level) => level,
+            Self::Auto => Level::EIGHT,
+        }
+    }
+}
+
+impl Display for LevelChoice {
+    fn fmt(&self, to: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Of(level) => level.subdivisions().fmt(to),
+            Self::Auto => to.write_str("auto"),
+        }
+    }
+}
+
+/// A level, or `auto`.
+pub fn level_choice(text: &str) -> Result<LevelChoice, String> {
+    if text == "auto" {
+        return Ok(LevelChoice::Auto);
+    }
+    level(text).map(LevelChoice::Of).map_err(|want| format!("{want}, or auto"))
+}
+
+/// Largest deviation of facets on the page.
+pub fn error_px(text: &str) -> Result<f64, String> {
+    number(text).ok().filter(|px| ERRORS_PX.contains(px)).ok_or_else(|| "want pixels, from 0.01 to 100".into())
 }
 
 /// A level of truth.

@@ -2,7 +2,6 @@
 
 use super::{Gpu, Pass};
 use crate::error::Result;
-use crate::surface::Level;
 
 /// The composed shader.
 pub const SOURCE: &str = crate::shader!("scene", "lattice", "surface", "ink", "border");
@@ -15,9 +14,9 @@ pub fn pass(gpu: &Gpu, constants: &[(&str, f64)]) -> Result<Pass> {
     Pass::new(gpu, "border", SOURCE, constants)
 }
 
-/// One invocation a lattice edge of the rim, folded into rows of 65 535 workgroups.
-pub fn invocations(pass: &Pass, rim_edges: usize, level: Level) -> [u32; 2] {
-    let edges = rim_edges as u64 * u64::from(level.subdivisions());
+/// One invocation a patch edge of the rim, folded into rows of 65 535 workgroups.
+pub fn invocations(pass: &Pass, rim_edges: usize) -> [u32; 2] {
+    let edges = rim_edges as u64;
     let row = 65_535 * u64::from(pass.workgroup[0]);
     [edges.min(row) as u32, edges.div_ceil(row) as u32]
 }

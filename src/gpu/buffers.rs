@@ -1,26 +1,28 @@
 //! Everything that lies on the device, each buffer under the name the shaders give it.
 //!
-//! The scene is uploaded once. A frame uploads the camera. No binding exceeds 128 MiB, whatever the level: vertices
-//! and the queue are sized by a batch, facing bits lie in up to four parts.
+//! A frame uploads the camera, its lattice, and those tiles of samples that are not there yet. No binding exceeds
+//! 128 MiB, whatever the level: vertices and the queue are sized by a batch, facing bits lie in up to four parts.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use bytemuck::Zeroable;
 
 use super::candidates::NO_PIXELS;
 use super::device::Gpu;
+use super::pool::{Placed, Pool};
 use super::rasterize_large::empty_queue;
-
 use super::sizes::{self, fits};
-use super::uniforms::{BatchUniform, CameraUniform, SceneUniform};
+use super::uniforms::{BatchUniform, CameraUniform, ChunkUniform, SceneUniform};
 use crate::dem::Dem;
 use crate::error::{Error, Result};
 use crate::plan::batches::PART_CHUNKS;
-use crate::plan::{Batch, Visibility};
-use crate::surface::bounds::spheres;
+use crate::plan::{Batch, Visibility, batches};
 use crate::surface::rim::RimEdge;
-use crate::surface::{Lattice, Surface};
+use crate::surface::tile::{TILE_SAMPLES, TileSamples};
+use crate::surface::{Lattice, Surface, Tile};
 
+/// Tiles sent to the device together, 13 KB each.
+const TILES_AT_ONCE: usize = 1024;
 /// Bytes between entries of a uniform buffer that are bound one at a time.
 const UNIFORM_STRIDE: u64 = 256;
 
@@ -29,10 +31,41 @@ pub struct Buffers {
     named: HashMap<&'static str, wgpu::Buffer>,
     batches: wgpu::Buffer,
     rounds: u32,
+    room: Room,
+    pool: Pool,
+}
+
+/// For what there is room.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Room {
+    /// Chunks of a frame.
+    pub chunks: u32,
+    /// Nodes of their quadtree.
+    pub nodes: usize,
+    /// Tiles of samples.
+    pub tiles: usize,
+}
+
+impl Room {
+    /// What a lattice takes.
+    pub fn of(lattice: &Lattice) -> Self {
+        let tiles: HashSet<Tile> = lattice.chunks().iter().map(Tile::of).collect();
+        Self { chunks: lattice.chunks().len() as u32, nodes: lattice.tree().nodes().len(), tiles: tiles.len() }
+    }
+
+    /// Room for another as well, by doubling what is too small, so that it seldom grows.
+    fn grown(self, least: Self) -> Self {
+        let grow = |has: usize, needs: usize| if has >= needs { has } else { needs.max(2 * has) };
+        Self {
+            chunks: grow(self.chunks as usize, least.chunks as usize) as u32,
+            nodes: grow(self.nodes, least.nodes),
+            tiles: grow(self.tiles, least.tiles),
+        }
+    }
 }
 
 impl Buffers {
-    /// Uploads a scene and makes room for frames of `width` x `height` pixels.
+    /// Uploads what all frames of a scene share, and makes room for a frame of `width` x `height` pixels.
     ///
     /// # Errors
     /// [`Error::Limit`] when a buffer would exceed what every device binds.
@@ -40,37 +73,65 @@ impl Buffers {
         gpu: &Gpu,
         surface: &Surface,
         lattice: &Lattice,
+        room: Room,
         rim: &[RimEdge],
-        batches: &[Batch],
         visibility: Visibility,
         [width, height]: [u32; 2],
     ) -> Result<Self> {
         let mut buffers = Self {
             named: HashMap::new(),
-            batches: upload_uniforms(gpu, &batch_uniforms(batches, visibility.rounds())),
+            batches: upload_uniforms(gpu, &batch_uniforms(&batches(room.chunks), visibility.rounds())),
             rounds: visibility.rounds(),
+            room,
+            pool: Pool::new(room.tiles),
         };
         let dem = surface.dem();
         buffers.uniform(gpu, "scene", bytemuck::bytes_of(&SceneUniform::new(dem, lattice)));
         buffers.uniform(gpu, "camera", bytemuck::bytes_of(&CameraUniform::zeroed()));
-        buffers.upload(gpu, "chunks", bytemuck::cast_slice(lattice.chunks()))?;
-        buffers.upload(gpu, "spheres", bytemuck::cast_slice(&spheres(surface, lattice)))?;
-        buffers.upload(gpu, "slots", bytemuck::cast_slice(lattice.slots()))?;
-        buffers.upload(gpu, "heights", bytemuck::cast_slice(dem.heights()))?;
-        for (name, gradients) in ["gradients_east", "gradients_north"].into_iter().zip(surface.gradients()) {
-            buffers.upload(gpu, name, bytemuck::cast_slice(gradients))?;
-        }
         let voids = dem.voids() > 0;
         buffers.upload(gpu, "valid", bytemuck::cast_slice(&if voids { valid_bits(dem) } else { vec![0] }))?;
         buffers.upload(gpu, "rim", bytemuck::cast_slice(rim))?;
-
         buffers.upload(gpu, "empty_queue", bytemuck::bytes_of(&empty_queue([width, height])))?;
         buffers.upload(gpu, "no_pixels", bytemuck::bytes_of(&NO_PIXELS))?;
-        for (name, size) in sizes::written(lattice.chunks().len() as u64, [width, height])? {
+        for (name, size) in sizes::written(room, [width, height])? {
             buffers.create(gpu, name, size)?;
         }
         gpu.check()?;
         Ok(buffers)
+    }
+
+    /// Brings a lattice and its samples to the device; what is already there stays. Where there is no room, says for
+    /// what room must be made.
+    ///
+    /// # Errors
+    /// Whatever the driver reports.
+    pub fn load(&mut self, gpu: &Gpu, surface: &Surface, lattice: &Lattice) -> Result<Option<Room>> {
+        let needs = Room::of(lattice);
+        let grown = self.room.grown(needs);
+        let tiles: Vec<Tile> = lattice.chunks().iter().map(Tile::of).collect();
+        let Some(Placed { places, missing }) = self.pool.place(&tiles).filter(|_| grown == self.room) else {
+            return Ok(Some(grown));
+        };
+        for batch in missing.chunks(TILES_AT_ONCE) {
+            for (place, tile) in batch {
+                let TileSamples { heights, gradients: [east, north] } = tile.read(surface);
+                for (name, samples) in [("heights", heights), ("gradients_east", east), ("gradients_north", north)] {
+                    let offset = u64::from(*place) * u64::from(TILE_SAMPLES) * 4;
+                    gpu.queue.write_buffer(self.get(name)?, offset, bytemuck::cast_slice(&samples));
+                }
+            }
+            // Sent at once: until then the driver holds a second copy.
+            gpu.queue.submit([]);
+            if missing.len() > TILES_AT_ONCE {
+                gpu.wait()?;
+            }
+        }
+        let chunks = lattice.chunks().iter().zip(places);
+        let chunks: Vec<_> = chunks.map(|(chunk, tile)| ChunkUniform::new(*chunk, surface.pyramid(), tile)).collect();
+        gpu.queue.write_buffer(self.get("chunks")?, 0, bytemuck::cast_slice(&chunks));
+        gpu.queue.write_buffer(self.get("nodes")?, 0, bytemuck::cast_slice(lattice.tree().nodes()));
+        gpu.check()?;
+        Ok(None)
     }
 
     /// A buffer by the name the shaders give it.

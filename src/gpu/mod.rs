@@ -10,14 +10,18 @@ pub mod device;
 pub mod facing;
 pub mod pairs;
 pub mod pass;
+pub mod pool;
 pub mod rasterize;
 pub mod rasterize_large;
+pub mod seam;
 pub mod silhouette;
 pub mod sizes;
+pub mod stages;
 pub mod tessellate;
 pub mod toward_away;
 pub mod uniforms;
 pub mod walk;
+pub mod walk_rest;
 pub mod work;
 
 pub use buffers::Buffers;

@@ -1,6 +1,6 @@
 //! Stage 3, the silhouettes: which passes a method takes, in their order, and how far each reaches.
 
-use super::{Extent, Gpu, Pass, adjacency, candidates, pairs, toward_away, walk};
+use super::{Extent, Gpu, Pass, adjacency, candidates, pairs, toward_away, walk, walk_rest};
 use crate::error::Result;
 use crate::plan::Method;
 
@@ -16,6 +16,7 @@ pub fn passes(gpu: &Gpu, method: Method, size: [u32; 2], constants: &[(&str, f64
             (candidates::pass(gpu, constants)?, candidates::extent(size)),
             (pairs::pass(gpu, constants)?, pairs::EXTENT),
             (walk::pass(gpu, constants)?, walk::EXTENT),
+            (walk_rest::pass(gpu, constants)?, walk_rest::EXTENT),
         ],
     })
 }

@@ -1,9 +1,11 @@
 //! How large each buffer is: numbers alone, so that limits are known before anything is allocated.
 
-use super::uniforms::Counts;
+use super::buffers::Room;
+use super::uniforms::{ChunkUniform, Counts};
 use crate::error::{Error, Result};
 use crate::plan::batches::{BATCH_CHUNKS, PART_CHUNKS};
 use crate::surface::lattice::{CHUNK_FACETS, CHUNK_VERTICES, CHUNK_WORDS};
+use crate::surface::tile::TILE_SAMPLES;
 
 /// The largest storage binding every WebGPU device grants, in bytes.
 pub const LARGEST_BINDING: u64 = 128 << 20;
@@ -32,18 +34,25 @@ pub fn page_fits([width, height]: [u32; 2]) -> Result<()> {
     Ok(())
 }
 
-/// Name and bytes of every buffer that passes write, for so many chunks and a page of `width` x `height` pixels.
+/// Name and bytes of every buffer that frames write, with room for so much and a page of `width` x `height` pixels.
 ///
 /// # Errors
 /// As [`page_fits`].
-pub fn written(chunks: u64, [width, height]: [u32; 2]) -> Result<Vec<(&'static str, u64)>> {
+pub fn written(room: Room, [width, height]: [u32; 2]) -> Result<Vec<(&'static str, u64)>> {
     page_fits([width, height])?;
     let pixels = u64::from(width) * u64::from(height);
+    let chunks = u64::from(room.chunks);
     let batch = chunks.min(u64::from(BATCH_CHUNKS));
+    let tiles = room.tiles as u64 * u64::from(TILE_SAMPLES) * 4;
     let part = u64::from(PART_CHUNKS);
     let facing = (0..).map(|i| chunks.saturating_sub(i * part).min(part) * u64::from(CHUNK_WORDS) * 4);
     let mut sizes: Vec<_> = FACING.into_iter().zip(facing).collect();
     sizes.extend([
+        ("chunks", chunks * size_of::<ChunkUniform>() as u64),
+        ("nodes", room.nodes as u64 * 4),
+        ("heights", tiles),
+        ("gradients_east", tiles),
+        ("gradients_north", tiles),
         ("summaries", chunks * 4),
         ("places", batch * u64::from(CHUNK_VERTICES) * 16),
         ("screens", batch * u64::from(CHUNK_VERTICES) * 16),
@@ -53,6 +62,7 @@ pub fn written(chunks: u64, [width, height]: [u32; 2]) -> Result<Vec<(&'static s
         ("ink", pixels * 4),
         ("candidates", LIST_HEADER + pixels * 4),
         ("pairs", LIST_HEADER + pixels * 4),
+        ("rest", LIST_HEADER + pixels * 4),
         ("page", pixels * 8),
         ("counts", size_of::<Counts>() as u64),
     ]);
@@ -73,6 +83,6 @@ pub fn fits(name: &str, size: u64) -> Result<()> {
             size.div_ceil(1 << 20),
             LARGEST_BINDING >> 20
         ),
-        remedy: "use a --crop".into(),
+        remedy: "use --level auto or a --crop".into(),
     })
 }

@@ -5,7 +5,8 @@ use glam::DVec3;
 
 use crate::dem::Dem;
 use crate::error::{Error, Result};
-use crate::surface::Lattice;
+use crate::surface::pyramid::Relief;
+use crate::surface::{Chunk, Lattice, Pyramid};
 use crate::view::Camera;
 
 /// The near plane in cells: a power of two, so that depths scale without rounding.
@@ -19,10 +20,10 @@ pub struct SceneUniform {
     pub cell: [f32; 2],
     /// Columns, rows.
     pub samples: [u32; 2],
-    /// Chunks across, down.
-    pub chunk_grid: [u32; 2],
-    /// Lattice units between vertices.
-    pub step: u32,
+    /// Of the quadtree of chunks, across, down.
+    pub roots: [u32; 2],
+    /// Lattice units along a root's side, a power of two.
+    pub root_size: u32,
     /// Metres along the view axis.
     pub near: f32,
 }
@@ -53,6 +54,26 @@ pub struct CameraUniform {
     pub size: [u32; 2],
     /// Inward normals of the two sides of the page's map projection; 0 where it is no wedge.
     pub wedge: [f32; 4],
+}
+
+/// `Chunk` of scene.wgsl.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct ChunkUniform {
+    /// Lattice place of the north-west vertex.
+    pub origin: [u32; 2],
+    /// Lattice units between vertices.
+    pub step: u32,
+    /// Sides beyond which a chunk of twice the step lies.
+    pub coarser: u32,
+    /// Metres, below all its surface.
+    pub low: f32,
+    /// Metres, above all its surface.
+    pub high: f32,
+    /// Metres that its surface reaches beyond its square on the map.
+    pub beyond: f32,
+    /// Which tile holds its samples.
+    pub tile: u32,
 }
 
 /// `Batch` of scene.wgsl.
@@ -87,10 +108,19 @@ impl SceneUniform {
         Self {
             cell: dem.cell().as_vec2().to_array(),
             samples: [dem.columns() as u32, dem.rows() as u32],
-            chunk_grid: lattice.grid(),
-            step: lattice.level().step(),
+            roots: lattice.tree().roots(),
+            root_size: lattice.tree().root_size(),
             near: near_plane(dem) as f32,
         }
+    }
+}
+
+impl ChunkUniform {
+    /// A chunk with its samples in a tile.
+    pub fn new(chunk: Chunk, pyramid: &Pyramid, tile: u32) -> Self {
+        let Chunk { origin, step, coarser } = chunk;
+        let Relief { low, high, beyond } = pyramid.relief(origin, step);
+        Self { origin, step, coarser, low, high, beyond, tile }
     }
 }
 

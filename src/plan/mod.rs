@@ -1,18 +1,19 @@
 //! What a frame needs: which method over which facets, and in which batches.
 
 pub mod batches;
+pub mod detail;
+mod horizon;
 pub mod method;
 
 pub use batches::{Batch, batches};
+pub use detail::Detail;
 pub use method::{Border, Method, Share, Thrift, Visibility};
 
-use crate::surface::Level;
-
 /// What is drawn, whatever the eye.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Plan {
-    /// The level of every facet.
-    pub level: Level,
+    /// How fine facets are.
+    pub detail: Detail,
     /// How silhouettes are found.
     pub method: Method,
     /// Whether the rim is drawn.
@@ -22,15 +23,15 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Silhouettes and border by `method` at `level`, leaving out what cannot change the picture.
-    pub fn new(level: Level, method: Method, border: Border) -> Self {
-        Self { level, method, border, thrift: Thrift::LeaveOut }
+    /// Silhouettes and border by `method`, leaving out what cannot change the picture.
+    pub fn new(detail: impl Into<Detail>, method: Method, border: Border) -> Self {
+        Self { detail: detail.into(), method, border, thrift: Thrift::LeaveOut }
     }
 }
 
-/// The walk at level 4, with border lines.
+/// The walk over facets as fine as the page asks, with border lines.
 impl Default for Plan {
     fn default() -> Self {
-        Self::new(Level::default(), Method::Walk, Border::On)
+        Self::new(Detail::default(), Method::Walk, Border::On)
     }
 }

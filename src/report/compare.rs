@@ -10,11 +10,11 @@ use glam::DVec2;
 
 use super::cache::{Cache, Kept};
 use super::pictures::{Picture, truth_picture};
-use super::results::{Convergence, LevelOffset, Run, TruthReport};
+use super::results::{Convergence, DrawnLevel, LevelOffset, Run, TruthReport};
 use super::trial::{Trial, line, moved, picture_names};
 use crate::error::{Error, Result};
 use crate::gpu::Gpu;
-use crate::plan::{Border, Method, Plan, Share};
+use crate::plan::{Border, Detail, Method, Plan, Share};
 use crate::surface::Level;
 use crate::truth::metrics::{FRAGMENT, Judge, Offsets};
 use crate::truth::{Line, Mask, Terrain, Truth};
@@ -42,7 +42,7 @@ pub struct Comparison {
     /// Name and method.
     pub methods: Vec<(&'static str, Method)>,
     /// Each method is run at each.
-    pub levels: Vec<Level>,
+    pub levels: Vec<Detail>,
     /// Warm frames behind a median, at least one.
     pub repeat: u32,
     /// Whether border lines are drawn and judged.
@@ -92,7 +92,7 @@ impl Comparison {
     /// File names of a scene's pictures.
     pub fn picture_names(&self, scene: &str) -> Vec<String> {
         let runs = self.levels.iter().flat_map(|level| self.methods.iter().map(move |(name, _)| (*name, *level)));
-        let of_runs = runs.flat_map(|(method, level)| picture_names(scene, method, level));
+        let of_runs = runs.flat_map(|(method, level)| picture_names(scene, method, level.into()));
         of_runs.chain([truth_name(scene)]).collect()
     }
 
@@ -120,7 +120,7 @@ impl Comparison {
         for &level in &self.levels {
             for &(method_name, method) in &self.methods {
                 let done = runs.len() as f64 / (self.levels.len() * self.methods.len()) as f64;
-                let words = format!("{name}: {method_name} at level {}", level.subdivisions());
+                let words = format!("{name}: {method_name} at level {}", DrawnLevel::from(level));
                 (to.stage)(&words, TRUTH_SHARE + (1.0 - TRUTH_SHARE) * done);
                 let trial = Trial {
                     gpu,

@@ -81,6 +81,7 @@ fn render(page: &Page) -> std::result::Result<String, minijinja::Error> {
     engine.add_filter("ms", |ms: f64| milliseconds(ms));
     engine.add_filter("cell", |v: Option<f64>, digits: usize| cell(v, |v| fixed(v, digits)));
     engine.add_filter("count_cell", |v: Option<f64>| cell(v, |v| count(v as u64)));
+    engine.add_filter("level_cell", level_cell);
     engine.add_filter("ms_cell", |v: Option<f64>| cell(v, milliseconds));
     engine.add_filter("quoted", quoted);
     engine.render_named_str("report.html", include_str!("report.html"), Serde(page))
@@ -127,6 +128,12 @@ fn count(value: u64) -> String {
 }
 
 /// A cell of a table: what is read, and the value by which it is sorted.
+/// Levels in their order, `auto` last.
+fn level_cell(level: Value) -> Value {
+    let sorted = f64::try_from(level.clone()).unwrap_or(f64::MAX);
+    cell(Some(sorted), |_| level.to_string())
+}
+
 fn cell(value: Option<f64>, show: impl Fn(f64) -> String) -> Value {
     let (sorted, shown) = value.map_or_else(|| (String::new(), "–".into()), |v| (v.to_string(), show(v)));
     Value::from_safe_string(format!("<td data-v=\"{sorted}\">{}</td>", HtmlEscape(&shown)))

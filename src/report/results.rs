@@ -4,7 +4,11 @@
 //! (`_mib`). Shares run from 0 to 1. What is measured anew in every run and so differs between two runs of the same
 //! comparison has one of the last two endings or is called `passes`; all else is the same to the last digit.
 
-use serde::Serialize;
+use std::fmt::Display;
+
+use serde::{Serialize, Serializer};
+
+use crate::plan::Detail;
 
 /// Version of the schema: raised when a key changes its meaning or goes.
 pub const SCHEMA: u32 = 1;
@@ -148,6 +152,39 @@ pub struct LevelOffset {
     pub p95_px: f64,
 }
 
+/// The level of a run's facets: a number in JSON, or "auto". Finer ones come later, the adaptive one last.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(untagged)]
+pub enum DrawnLevel {
+    /// Subdivisions of a cell's edge, everywhere.
+    Of(u32),
+    /// Each chunk at its own.
+    #[serde(serialize_with = "auto")]
+    Auto,
+}
+
+fn auto<S: Serializer>(to: S) -> std::result::Result<S::Ok, S::Error> {
+    to.serialize_str("auto")
+}
+
+impl From<Detail> for DrawnLevel {
+    fn from(detail: Detail) -> Self {
+        match detail {
+            Detail::Uniform(level) => Self::Of(level.subdivisions()),
+            Detail::Adaptive { .. } => Self::Auto,
+        }
+    }
+}
+
+impl Display for DrawnLevel {
+    fn fmt(&self, to: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Of(level) => level.fmt(to),
+            Self::Auto => to.write_str("auto"),
+        }
+    }
+}
+
 /// A method at a level in a scene.
 #[derive(Debug, Clone, Serialize)]
 pub struct Run {
@@ -155,8 +192,8 @@ pub struct Run {
     pub scene: String,
     /// `walk`, `toward-away`, `toward-away-wide`, `adjacency`, `adjacency-corner`.
     pub method: &'static str,
-    /// Subdivisions of a cell's edge.
-    pub level: u32,
+    /// Subdivisions of a cell's edge, or `auto`.
+    pub level: DrawnLevel,
     /// Pixels across.
     pub width: u32,
     /// Pixels down.

@@ -10,13 +10,13 @@ use xxhash_rust::xxh3::xxh3_64;
 
 use super::memory;
 use super::pictures::{Picture, difference_picture, mask_picture};
-use super::results::{AtDistance, Band, Place, Run};
+use super::results::{AtDistance, Band, DrawnLevel, Place, Run};
 use crate::error::Result;
 use crate::gpu::Gpu;
 use crate::ink::{InkRaster, Kind, Pixel, trace};
 use crate::plan::{Method, Plan};
 use crate::render::{Frame, PassTime, Renderer};
-use crate::surface::{Level, Surface};
+use crate::surface::Surface;
 use crate::truth::metrics::{BandScore, DISTANCES, FRAGMENT, Judge, Scores};
 use crate::truth::{Inked, Mask};
 use crate::view::Camera;
@@ -66,7 +66,7 @@ impl Trial<'_> {
         let timed = self.time()?;
         let mask = mask_of(&timed.first.raster, timed.near);
         let measured = self.judge.measure(&mask);
-        let names = picture_names(self.scene, self.method, self.plan.level);
+        let names = picture_names(self.scene, self.method, self.plan.detail.into());
         let [mask_name, difference_name] = names.clone();
         let pictures =
             [mask_picture(mask_name, &timed.first.raster)?, difference_picture(difference_name, &mask, &measured)?];
@@ -112,7 +112,7 @@ impl Trial<'_> {
         Run {
             scene: self.scene.to_owned(),
             method: self.method,
-            level: self.plan.level.subdivisions(),
+            level: self.plan.detail.into(),
             width: self.camera.width,
             height: self.camera.height,
             precision: agreement.precision,
@@ -157,8 +157,8 @@ pub(super) fn line(run: &Run) -> String {
 }
 
 /// File names of a run's mask and of its difference from truth.
-pub(super) fn picture_names(scene: &str, method: &str, level: Level) -> [String; 2] {
-    ["mask", "difference"].map(|kind| format!("{scene}_{method}_{}_{kind}.png", level.subdivisions()))
+pub(super) fn picture_names(scene: &str, method: &str, level: DrawnLevel) -> [String; 2] {
+    ["mask", "difference"].map(|kind| format!("{scene}_{method}_{level}_{kind}.png"))
 }
 
 /// The eye so many metres on, along the view axis.

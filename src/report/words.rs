@@ -7,7 +7,7 @@
 
 use serde::Serialize;
 
-use super::results::Run;
+use super::results::{DrawnLevel, Run};
 use super::{Results, merge};
 
 /// F from which on a drawing is good enough to be chosen by its speed.
@@ -29,7 +29,7 @@ pub(super) struct Words {
 /// A method at a level, over all scenes.
 struct Candidate<'a> {
     method: &'static str,
-    level: u32,
+    level: DrawnLevel,
     runs: Vec<&'a Run>,
 }
 
@@ -162,7 +162,7 @@ fn by_method<'a, 'b>(candidates: &'b [Candidate<'a>]) -> Vec<Vec<&'b Candidate<'
 
 /// "at levels 4 and 8, where as little as 3.90 % of its ink lies on a line": where most ink lies beside it.
 fn flooded(levels: &[&Candidate]) -> Option<String> {
-    let flooded: Vec<u32> = levels.iter().filter(|c| c.floods()).map(|c| c.level).collect();
+    let flooded: Vec<DrawnLevel> = levels.iter().filter(|c| c.floods()).map(|c| c.level).collect();
     let least = 100.0 * levels.iter().map(|c| c.precision()).fold(1.0, f64::min);
     let at = named(&flooded, levels.len());
     (!flooded.is_empty()).then(|| format!("at {at} (as little as {least:.1} % of its ink lies on a line)"))
@@ -178,7 +178,7 @@ fn gaps(levels: &[&Candidate]) -> String {
 }
 
 /// "every level" where there are no others, else "level 4", "levels 2, 4 and 8".
-fn named(levels: &[u32], of: usize) -> String {
+fn named(levels: &[DrawnLevel], of: usize) -> String {
     match levels {
         _ if levels.len() == of => "every level".into(),
         [one] => format!("level {one}"),

@@ -14,6 +14,9 @@
 //! facing bits are four words in a row, and a column of 8 quads is what one invocation works off, vertex by vertex. A
 //! facet's ID in a frame is `slot * 2048 + local`.
 
+use rayon::prelude::*;
+
+use super::quadtree::{Growth, Quadtree};
 use crate::dem::Dem;
 use crate::error::{Error, Result};
 
@@ -31,8 +34,8 @@ pub const CHUNK_VERTICES: u32 = CHUNK_SIDE * CHUNK_SIDE;
 pub const CHUNK_WORDS: u32 = CHUNK_FACETS / 32;
 /// Samples along a side: walks count 64 x 256 steps a cell in 32 bits, and may end a cell beyond it.
 pub const LARGEST_SIDE: usize = 131_000;
-/// No chunk has this slot.
-pub const NO_SLOT: u32 = u32::MAX;
+/// Chunks that have IDs: a pixel holds ID + 1 in 32 bits, so the last ID cannot be used.
+pub const MOST_CHUNKS: u64 = (1 << 32) / CHUNK_FACETS as u64 - 1;
 
 /// Subdivisions of a cell's edge: 1, 2, 4 ... 64.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -82,72 +85,108 @@ pub struct Chunk {
     pub origin: [u32; 2],
     /// Lattice units between its vertices.
     pub step: u32,
-    /// Fills the struct to 16 bytes.
-    pub pad: u32,
+    /// Sides beyond which a chunk of twice the step lies: [`NORTH`] | [`EAST`] | [`SOUTH`] | [`WEST`].
+    pub coarser: u32,
 }
 
-/// All chunks of a DEM, each in its slot: row by row from the north-west, chunks of voids alone left out.
+/// A side of a chunk; see [`Chunk::coarser`].
+pub const NORTH: u32 = 1;
+/// A side of a chunk.
+pub const EAST: u32 = 2;
+/// A side of a chunk.
+pub const SOUTH: u32 = 4;
+/// A side of a chunk.
+pub const WEST: u32 = 8;
+
+impl Chunk {
+    /// Lattice units along its edge.
+    pub fn size(&self) -> u32 {
+        CHUNK_QUADS * self.step
+    }
+
+    /// The vertex of the lattice at column and row `at` of the chunk. Beside a coarser chunk every other one is the one
+    /// before it, so that both chunks have the same vertices on the side they share.
+    pub fn vertex(&self, [column, row]: [u32; 2]) -> LatticePoint {
+        let shared =
+            |first, last, at| self.coarser & first != 0 && at == 0 || self.coarser & last != 0 && at == CHUNK_QUADS;
+        let x = if shared(NORTH, SOUTH, row) { column & !1 } else { column };
+        let y = if shared(WEST, EAST, column) { row & !1 } else { row };
+        LatticePoint { x: self.origin[0] + x * self.step, y: self.origin[1] + y * self.step }
+    }
+}
+
+/// The chunks of a frame, each in its slot, and a quadtree that finds them by their place.
 #[derive(Debug, Clone)]
 pub struct Lattice {
-    level: Level,
-    grid: [u32; 2],
     chunks: Vec<Chunk>,
-    slots: Vec<u32>,
+    tree: Quadtree,
 }
 
 impl Lattice {
-    /// The chunks of `dem` at one level.
+    /// The chunks of `dem` at one level, row by row from the north-west; chunks of voids alone are left out.
     ///
     /// # Errors
     /// [`Error::Limit`] when facets outnumber 32-bit IDs or a side has more than [`LARGEST_SIDE`] samples.
     pub fn uniform(dem: &Dem, level: Level) -> Result<Self> {
-        if dem.columns().max(dem.rows()) > LARGEST_SIDE {
-            return Err(Error::Limit {
-                what: format!(
-                    "{} x {} samples are longer than the {LARGEST_SIDE} a side holds",
-                    dem.columns(),
-                    dem.rows()
-                ),
-                remedy: "use a --crop".into(),
-            });
-        }
+        check_sides(dem)?;
         let quads = |samples: usize| (samples as u64 - 1) * u64::from(level.subdivisions());
         let across = |samples: usize| quads(samples).div_ceil(u64::from(CHUNK_QUADS));
         let (columns, rows) = (across(dem.columns()), across(dem.rows()));
-        // A pixel holds ID + 1 in 32 bits: the last ID cannot be used.
-        if columns * rows * u64::from(CHUNK_FACETS) >= 1 << 32 {
+        if columns * rows > MOST_CHUNKS {
             return Err(Error::Limit {
                 what: format!(
-                    "level {} gives {} facets in {} chunks, fewer than {} chunks of {CHUNK_FACETS} have IDs",
+                    "level {} gives {} facets in {} chunks, at most {MOST_CHUNKS} chunks of {CHUNK_FACETS} have IDs",
                     level.subdivisions(),
                     2 * quads(dem.columns()) * quads(dem.rows()),
                     columns * rows,
-                    (1_u64 << 32) / u64::from(CHUNK_FACETS)
                 ),
-                remedy: "use a lower --level or a --crop".into(),
+                remedy: "use --level auto, a lower --level or a --crop".into(),
             });
         }
-        let mut lattice = Self { level, grid: [columns as u32, rows as u32], chunks: Vec::new(), slots: Vec::new() };
-        let size = CHUNK_QUADS * level.step();
-        for y in 0..lattice.grid[1] {
-            for x in 0..lattice.grid[0] {
-                let chunk = Chunk { origin: [x * size, y * size], step: level.step(), pad: 0 };
-                let kept = !is_void(dem, &chunk);
-                lattice.slots.push(if kept { lattice.chunks.len() as u32 } else { NO_SLOT });
-                lattice.chunks.extend(kept.then_some(chunk));
-            }
+        let mut tree = Quadtree::new([columns as u32, rows as u32], CHUNK_QUADS * level.step());
+        let chunk = |origin| Chunk { origin, step: level.step(), coarser: 0 };
+        let chunks = tree.number(|origin, _| !is_void(dem, &chunk(origin)));
+        Ok(Self { chunks: chunks.into_iter().map(|(origin, _)| chunk(origin)).collect(), tree })
+    }
+
+    /// The chunks of a DEM at levels of their own: from the coarsest on, each is split into four as `growth` says, seen
+    /// from lattice place `from`, and further until neighbours, across corners too, differ by one level at most. Of these
+    /// the ones for which `keep` by their origin and step, in the order of the quadtree.
+    ///
+    /// # Errors
+    /// As [`Self::uniform`].
+    pub fn adaptive(
+        dem: &Dem,
+        coarsest_step: u32,
+        from: [f64; 2],
+        growth: &mut impl Growth,
+        keep: impl Fn([u32; 2], u32) -> bool,
+    ) -> Result<Self> {
+        let mut tree = Self::empty(dem, coarsest_step)?.tree;
+        let step = |size: u32| size / CHUNK_QUADS;
+        tree.grow(from, growth);
+        tree.balance();
+        let sides = tree.larger_neighbours();
+        let kept = tree.number(|origin, size| keep(origin, step(size)));
+        if kept.len() as u64 > MOST_CHUNKS {
+            return Err(Error::Limit {
+                what: format!("the page needs {} chunks of facets, at most {MOST_CHUNKS} have IDs", kept.len()),
+                remedy: "use a larger --error-px or a --crop".into(),
+            });
         }
-        Ok(lattice)
+        let chunk = |(origin, size)| Chunk { origin, step: step(size), coarser: sides[&origin] };
+        Ok(Self { chunks: kept.into_iter().map(chunk).collect(), tree })
     }
 
-    /// The level of every chunk.
-    pub fn level(&self) -> Level {
-        self.level
-    }
-
-    /// Chunks across and down.
-    pub fn grid(&self) -> [u32; 2] {
-        self.grid
+    /// No chunks yet, of a DEM whose coarsest ones have this step.
+    ///
+    /// # Errors
+    /// As [`Self::uniform`].
+    pub fn empty(dem: &Dem, coarsest_step: u32) -> Result<Self> {
+        check_sides(dem)?;
+        let size = CHUNK_QUADS * coarsest_step;
+        let across = |samples: usize| ((samples as u32 - 1) * CELL_STEPS).div_ceil(size);
+        Ok(Self { chunks: Vec::new(), tree: Quadtree::new([across(dem.columns()), across(dem.rows())], size) })
     }
 
     /// The chunks by slot.
@@ -155,23 +194,48 @@ impl Lattice {
         &self.chunks
     }
 
-    /// Slot of each place of `grid`, row by row; [`NO_SLOT`] where there is no chunk.
-    pub fn slots(&self) -> &[u32] {
-        &self.slots
+    /// Where chunks lie; its leaves are their slots.
+    pub fn tree(&self) -> &Quadtree {
+        &self.tree
     }
 
-    /// The three vertices of a facet, counter-clockwise seen from above.
+    /// Whether chunks of different levels meet.
+    pub fn has_seams(&self) -> bool {
+        self.chunks.iter().any(|chunk| chunk.coarser != 0)
+    }
+
+    /// How many facets exist, of the patches of `dem` and not collapsed. Cost: a look at each.
+    pub fn facets(&self, dem: &Dem) -> u64 {
+        let last = [dem.columns(), dem.rows()].map(|samples| (samples as u32 - 1) * CELL_STEPS);
+        let exists = |id: &u32| {
+            let [a, b, c] = self.facet(*id);
+            let inside = [a, b, c].iter().all(|v| v.x <= last[0] && v.y <= last[1]);
+            inside && a != b && b != c && c != a && lies_on_patch(dem, [a, b, c])
+        };
+        let ids = 0..self.chunks.len() as u32 * CHUNK_FACETS;
+        ids.into_par_iter().filter(exists).count() as u64
+    }
+
+    /// The three vertices of a facet, counter-clockwise seen from above; two are the same where it has collapsed beside
+    /// a coarser chunk.
     pub fn facet(&self, id: u32) -> [LatticePoint; 3] {
         let chunk = self.chunks[(id / CHUNK_FACETS) as usize];
         let (block, quad) = (id % CHUNK_FACETS / 128, id % 128 / 2);
         let column = block % 4 * 8 + quad / 8;
         let row = block / 4 * 8 + quad % 8;
-        let at = |dx: u32, dy: u32| LatticePoint {
-            x: chunk.origin[0] + (column + dx) * chunk.step,
-            y: chunk.origin[1] + (row + dy) * chunk.step,
-        };
+        let at = |dx: u32, dy: u32| chunk.vertex([column + dx, row + dy]);
         if id.is_multiple_of(2) { [at(0, 0), at(0, 1), at(1, 1)] } else { [at(0, 0), at(1, 1), at(1, 0)] }
     }
+}
+
+fn check_sides(dem: &Dem) -> Result<()> {
+    if dem.columns().max(dem.rows()) <= LARGEST_SIDE {
+        return Ok(());
+    }
+    Err(Error::Limit {
+        what: format!("{} x {} samples are longer than the {LARGEST_SIDE} a side holds", dem.columns(), dem.rows()),
+        remedy: "use a --crop".into(),
+    })
 }
 
 /// Whether no patch under `chunk` has all its corners.
@@ -189,6 +253,14 @@ fn is_void(dem: &Dem, chunk: &Chunk) -> bool {
 pub fn patch_exists(dem: &Dem, c: usize, r: usize, patch: usize) -> bool {
     let third = if patch == 0 { dem.height(c, r + 1) } else { dem.height(c + 1, r) };
     dem.height(c, r).and(dem.height(c + 1, r + 1)).and(third).is_some()
+}
+
+/// Whether the patch in which the middle of a facet lies exists.
+fn lies_on_patch(dem: &Dem, vertices: [LatticePoint; 3]) -> bool {
+    let sum = |of: fn(LatticePoint) -> u32| vertices.map(of).iter().map(|at| *at as usize).sum::<usize>();
+    let (x, y) = (sum(|v| v.x), sum(|v| v.y));
+    let cell = 3 * CELL_STEPS as usize;
+    patch_exists(dem, x / cell, y / cell, usize::from(x % cell > y % cell))
 }
 
 /// Which of its two patches each cell of row `r` has, from the west; see [`patch_exists`].

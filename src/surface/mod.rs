@@ -1,10 +1,14 @@
 //! The smooth surface: vertex normals on the CPU, PN-triangle patches, and the integer lattice that names facets.
 
-pub mod bounds;
 pub mod lattice;
 pub mod normals;
 pub mod patch;
+pub mod pyramid;
+pub mod quadtree;
 pub mod rim;
+pub mod tile;
 
 pub use lattice::{Chunk, Lattice, LatticePoint, Level};
 pub use patch::{Patch, Surface};
+pub use pyramid::Pyramid;
+pub use tile::Tile;

@@ -4,11 +4,14 @@
 //! points lie in the tangent planes of the nearer corner. Only the geometry is cubic; facing comes from the facets.
 //! Cost: about 150 operations a point. It does not handle creases: one sample has one normal.
 
+use std::sync::OnceLock;
+
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 use super::lattice::{CELL_STEPS, LatticePoint, Level, patches_of_row};
 use super::normals::gradients;
+use super::pyramid::Pyramid;
 use crate::dem::Dem;
 
 /// A DEM with its vertex normals: everything a place on the surface depends on.
@@ -16,12 +19,13 @@ use crate::dem::Dem;
 pub struct Surface {
     dem: Dem,
     gradients: [Vec<f32>; 2],
+    pyramid: OnceLock<Pyramid>,
 }
 
 impl Surface {
     /// Computes the normals of `dem`.
     pub fn new(dem: Dem) -> Self {
-        Self { gradients: gradients(&dem), dem }
+        Self { gradients: gradients(&dem), dem, pyramid: OnceLock::new() }
     }
 
     /// The grid below the surface.
@@ -32,6 +36,11 @@ impl Surface {
     /// Gradients of all samples, dz/d east and dz/d north, see [`gradients`].
     pub fn gradients(&self) -> [&[f32]; 2] {
         self.gradients.each_ref().map(Vec::as_slice)
+    }
+
+    /// Its bounds and the deviations of its facets, made when first asked for.
+    pub fn pyramid(&self) -> &Pyramid {
+        self.pyramid.get_or_init(|| Pyramid::new(self))
     }
 
     /// Gradient of sample (c, r): dz/d east, dz/d north.
@@ -60,6 +69,17 @@ impl Surface {
             normals[i] = (-self.gradient(c, r)).extend(1.0).normalize();
         }
         Some(Patch::new(points, normals).point(weights))
+    }
+
+    /// Patch 0 (NW, SW, SE) or 1 (NW, SE, NE) of cell (c, r), heights of voids being 0. World metres.
+    pub fn patch(&self, c: usize, r: usize, half: usize) -> Patch {
+        let corner = |dc: usize, dr: usize| {
+            let normal = (-self.gradient(c + dc, r + dr)).extend(1.0).normalize();
+            (self.dem.position(c + dc, r + dr), normal)
+        };
+        let (nw, se) = (corner(0, 0), corner(1, 1));
+        let [a, b, d] = if half == 0 { [nw, corner(0, 1), se] } else { [nw, se, corner(1, 0)] };
+        Patch::new([a.0, b.0, d.0], [a.1, b.1, d.1])
     }
 
     /// How many patches exist.
@@ -129,6 +149,39 @@ impl Patch {
     /// The control points, whose hull holds the patch.
     pub fn control(&self) -> &[DVec3; 10] {
         &self.control
+    }
+
+    /// Largest second difference of the control points along the three sides, per axis.
+    pub fn largest_second_difference(&self) -> DVec3 {
+        let mut largest = DVec3::ZERO;
+        for [j, k] in [[0, 0], [1, 0], [0, 1]] {
+            let at = |corners: [usize; 2]| {
+                let count = |corner| corners.iter().filter(|c| **c == corner).count();
+                self.control[Self::index(j + count(1), k + count(2))]
+            };
+            for [m, n] in [[0, 1], [1, 2], [2, 0]] {
+                largest = largest.max((at([m, m]) - at([m, n]) * 2.0 + at([n, n])).abs());
+            }
+        }
+        largest
+    }
+
+    /// The six differences of control points in the direction from one corner to another.
+    pub fn differences(&self, [from, to]: [usize; 2]) -> [DVec3; 6] {
+        const PLACES: [[usize; 2]; 6] = [[0, 0], [1, 0], [2, 0], [0, 1], [1, 1], [0, 2]];
+        PLACES.map(|[j, k]| {
+            let beside =
+                |corner: usize| self.control[Self::index(j + usize::from(corner == 1), k + usize::from(corner == 2))];
+            beside(to) - beside(from)
+        })
+    }
+
+    /// How far the patch leaves its flat triangle, metres; facets of level n leave the patch by 1 / n^2 of it.
+    ///
+    /// Between the ends of a side a curve with second derivatives of at most M leaves its chord by M / 8, and M is six
+    /// second differences. Between three sides that bend to different sides it may be up to 2.2 times as much.
+    pub fn bulge(&self) -> f64 {
+        0.75 * self.largest_second_difference().length()
     }
 
     /// The point with barycentric weights `[a, b, c]`. A corner of weight 0 has no influence.

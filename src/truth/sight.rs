@@ -80,7 +80,7 @@ impl Sight<'_> {
     }
 
     fn patch_blocks(&self, patch: &Patch, half: usize, ray: &Ray) -> bool {
-        let bulge = largest_second_difference(patch) * BULGE;
+        let bulge = patch.largest_second_difference() * BULGE;
         let corner = |at: [u32; 2]| point(patch, half, at.map(|k| f64::from(k) / f64::from(self.level)));
         let corners = vertices(half, 0, 0).map(|[i, j]| corner([i * self.level, j * self.level]));
         Part { half, i: 0, j: 0, size: self.level, corners }.blocks(ray, bulge, &corner)
@@ -156,20 +156,4 @@ impl Ray {
         // 0 < at / along < 1; a facet seen edge-on hides nothing that its neighbours do not hide.
         along != 0.0 && at * along > 0.0 && at.abs() < along.abs()
     }
-}
-
-/// Largest second difference of the control points along the three sides, per axis.
-fn largest_second_difference(patch: &Patch) -> DVec3 {
-    let control = patch.control();
-    let mut largest = DVec3::ZERO;
-    for [j, k] in [[0, 0], [1, 0], [0, 1]] {
-        let at = |corners: [usize; 2]| {
-            let count = |corner| corners.iter().filter(|c| **c == corner).count();
-            control[Patch::index(j + count(1), k + count(2))]
-        };
-        for [m, n] in [[0, 1], [1, 2], [2, 0]] {
-            largest = largest.max((at([m, m]) - at([m, n]) * 2.0 + at([n, n])).abs());
-        }
-    }
-    largest
 }

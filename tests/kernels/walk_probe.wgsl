@@ -1,7 +1,7 @@
 // One invocation a segment: what a walk from its first point to its second meets.
 
-@group(0) @binding(24) var<storage, read> segments: array<vec4<i32>>;
-@group(0) @binding(25) var<storage, read_write> out_results: array<vec4<u32>>;
+@group(0) @binding(25) var<storage, read> segments: array<vec4<i32>>;
+@group(0) @binding(26) var<storage, read_write> out_results: array<vec4<u32>>;
 
 @compute @workgroup_size(64)
 fn walk_probe(@builtin(global_invocation_id) invocation: vec3<u32>) {
@@ -10,5 +10,5 @@ fn walk_probe(@builtin(global_invocation_id) invocation: vec3<u32>) {
         return;
     }
     let meeting = walk_between(segments[i].xy, segments[i].zw);
-    out_results[i] = vec4<u32>(u32(meeting.met), meeting.facet.origin, meeting.facet.half);
+    out_results[i] = vec4<u32>(u32(meeting.met), meeting.id, 0u, 0u);
 }

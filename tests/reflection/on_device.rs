@@ -5,11 +5,13 @@ use glam::DVec2;
 use hachure::dem::Dem;
 use hachure::gpu::uniforms::SceneUniform;
 use hachure::gpu::{Gpu, Pass};
-use hachure::surface::lattice::{CHUNK_FACETS, NO_SLOT};
+use hachure::surface::lattice::CHUNK_FACETS;
+use hachure::surface::quadtree::NO_SLOT;
 use hachure::surface::{Lattice, LatticePoint};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
 use crate::common::gpu;
+use crate::kernels::chunk_uniforms;
 use crate::scenes::level;
 
 /// Eight words a facet: its three vertices, its ID again by way of its place, its half.
@@ -26,14 +28,14 @@ const DECODE: &str = concat!(
         }
         let f = facet_of(id);
         for (var k = 0u; k < 3u; k++) {
-            let v = f.origin + corner(f.half, k) * f.step;
+            let v = array<vec2<u32>, 3>(f.a, f.b, f.c)[k];
             out_values[8u * id + 2u * k] = v.x;
             out_values[8u * id + 2u * k + 1u] = v.y;
         }
-        let quad = f.origin / f.step;
-        let local = quad_local(quad % CHUNK_QUADS) + f.half;
-        out_values[8u * id + 6u] = slot_of(vec2<i32>(quad)) * CHUNK_FACETS + local;
-        out_values[8u * id + 7u] = slot_of(vec2<i32>(quad) - 32768);
+        let step = chunks[id / CHUNK_FACETS].step;
+        let local = quad_local(f.a / step % CHUNK_QUADS) + id % 2u;
+        out_values[8u * id + 6u] = slot_at(vec2<i32>(f.a)) * CHUNK_FACETS + local;
+        out_values[8u * id + 7u] = slot_at(vec2<i32>(f.a) - 2097152);
     }"
 );
 
@@ -60,8 +62,8 @@ fn lattice() -> (Dem, Lattice) {
     let heights = (0..columns * rows).map(|i| if void(i) { f32::NAN } else { 7.0 }).collect();
     let dem = Dem::from_heights(columns, DVec2::splat(10.0), DVec2::ZERO, heights);
     let lattice = Lattice::uniform(&dem, level(2)).expect("IDs suffice");
-    assert_eq!(lattice.grid(), [3, 2]);
-    assert_eq!(lattice.slots(), [0, NO_SLOT, 1, 2, 3, 4]);
+    assert_eq!(lattice.tree().roots(), [3, 2]);
+    assert_eq!(lattice.tree().nodes(), [0, NO_SLOT, 1, 2, 3, 4]);
     (dem, lattice)
 }
 
@@ -78,8 +80,8 @@ fn run(gpu: &Gpu, name: &'static str, source: &str, pairs: &[[u32; 2]], count: u
     let values = gpu.device.create_buffer(&values);
     let buffers = [
         ("scene", upload(bytemuck::bytes_of(&scene), wgpu::BufferUsages::UNIFORM)),
-        ("chunks", upload(bytemuck::cast_slice(lattice.chunks()), storage)),
-        ("slots", upload(bytemuck::cast_slice(lattice.slots()), storage)),
+        ("chunks", upload(bytemuck::cast_slice(&chunk_uniforms(&lattice)), storage)),
+        ("nodes", upload(bytemuck::cast_slice(lattice.tree().nodes()), storage)),
         ("pairs", upload(bytemuck::cast_slice(pairs), storage)),
         ("values", values),
     ];
@@ -118,7 +120,7 @@ fn facets_are_the_same_on_device_and_cpu() {
 
 /// IDs by place: quad across and down, and which half.
 fn by_place(lattice: &Lattice) -> std::collections::HashMap<[u32; 3], u32> {
-    let step = lattice.level().step();
+    let step = lattice.chunks()[0].step;
     let place = |id| {
         let nw = lattice.facet(id)[0];
         [nw.x / step, nw.y / step, id % 2]

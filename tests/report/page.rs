@@ -3,7 +3,7 @@
 use std::io::Cursor;
 
 use hachure::error::Error;
-use hachure::report::results::Results;
+use hachure::report::results::{DrawnLevel, Results};
 use hachure::report::{Picture, error_time_svg, report_html};
 use image::{GrayImage, ImageFormat, Luma};
 use serde_json::Value;
@@ -196,7 +196,7 @@ fn the_page_works_in_a_browser() {
         assert_eq!(found["dragged"], serde_json::json!(["90", "150"]));
 
         // Selects change the picture, to the one that stands below.
-        let best = results.runs.iter().find(|run| run.level == 8).expect("a run");
+        let best = results.runs.iter().find(|run| run.level == DrawnLevel::Of(8)).expect("a run");
         assert_eq!(found["choices"][0][0][0], results.scenes[0].picture.as_str());
         assert_eq!(found["choices"][0][1][0], best.mask.as_str());
         assert_eq!(found["choices"][1][0][0], results.runs[2].mask.as_str());

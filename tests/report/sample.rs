@@ -1,8 +1,8 @@
 //! Results of a comparison that never was: two scenes, every method, and all that is awkward to write down.
 
 use hachure::report::results::{
-    AtDistance, Band, Convergence, LevelOffset, Machine, PassTime, Place, Results, Run, SCHEMA, Scene, TruthReport,
-    TruthSummary,
+    AtDistance, Band, Convergence, DrawnLevel, LevelOffset, Machine, PassTime, Place, Results, Run, SCHEMA, Scene,
+    TruthReport, TruthSummary,
 };
 
 /// A name that HTML, CSV, SVG and the shell each have to quote.
@@ -122,7 +122,7 @@ fn run(scene: &Scene, method: &'static str, level: u32, [precision, recall]: [f6
     Run {
         scene: scene.name.clone(),
         method,
-        level,
+        level: DrawnLevel::Of(level),
         width: scene.width,
         height: scene.height,
         precision,

@@ -1,0 +1,104 @@
+// One invocation a pixel with pairs that `walk` has left: with neighbours that show no surface, or with a walk past facets
+// beside a coarser chunk.
+
+@group(0) @binding(25) var<storage, read> rest: PairsRead;
+
+// Where the map projection of a page place's ray leaves the DEM, in walk units; `origin` where it never meets it.
+fn map_exit(px: vec2<f32>, origin: vec2<i32>) -> vec2<i32> {
+    let ray = ray_through(px).xy * vec2<f32>(1.0, -1.0);
+    let eye = vec2<f32>(1.0, -1.0) * camera.eye_offset / scene.cell;
+    let low = vec2<f32>(-camera.eye_cell) - eye;
+    let high = vec2<f32>(vec2<i32>(scene.samples - 1u) - camera.eye_cell) - eye;
+    let heading = ray / scene.cell;
+    let exits = select(high, low, heading < vec2<f32>(0.0)) / heading;
+    let entries = select(low, high, heading < vec2<f32>(0.0)) / heading;
+    let exit = min(select(exits.x, 1e30, heading.x == 0.0), select(exits.y, 1e30, heading.y == 0.0));
+    let entry = max(select(entries.x, -1e30, heading.x == 0.0), select(entries.y, -1e30, heading.y == 0.0));
+    if exit <= max(entry, 0.0) || exit >= 1e30 {
+        return origin;
+    }
+    let end = clamp(heading * exit, low, high) - low;
+    return vec2<i32>(round(end * f32(CELL_STEPS * UNITS)));
+}
+
+// Snapping moves a rim by up to 1/256 px: a pixel without surface may have its centre on the land by that much. The way
+// to it is aimed beyond its centre by this share.
+const OVERSHOOT: f32 = 1.0 / 64.0;
+
+// Where a walk ends, and whether it then follows the ray of the pixel it leads to.
+struct Goal {
+    at: vec2<i32>,
+    goes_on: bool,
+}
+
+// The way to a pixel without surface. It leads to where that pixel's ray meets the plane of the facet at `origin`: if the
+// land ends on the way there, the pixels are parted by a rim, no silhouette. If that place is farther than the facet, the
+// ray has the land below it so far, and the way goes on under the ray to the edge of the map. If it is nearer, the ray
+// passes under the land behind.
+fn open_goal(id: u32, centre: vec2<f32>, to_centre: vec2<f32>, origin: vec2<i32>) -> Goal {
+    let f = facet_of(id);
+    let t = corners_of(chunks[id / CHUNK_FACETS], f);
+    let normal = cross(t.edge_1, t.edge_2);
+    let ray = ray_through(to_centre + (to_centre - centre) * OVERSHOOT);
+    if dot(normal, ray) >= 0.0 {
+        return Goal(map_exit(to_centre, origin), false);
+    }
+    let w = volumes(t, ray);
+    let sum = w.x + w.y + w.z;
+    // In walk units, times `sum`, which may be next to nothing.
+    let d = vec2<f32>(vec2<i32>(f.a * UNITS) - origin) * sum + from_a(f, w.yz) * f32(UNITS);
+    // No farther than one cell beyond the edge of the map.
+    let cell = i32(CELL_STEPS * UNITS);
+    let room = vec2<f32>(select(vec2<i32>(scene.samples) * cell - origin, origin + cell, d < vec2<f32>(0.0)));
+    let reach = select(vec2<f32>(1e30), room / abs(d), abs(d) * 1e30 > room);
+    let at = origin + vec2<i32>(round(d * min(1.0 / sum, min(reach.x, reach.y))));
+    let px = (to_centre - centre) / camera.focal;
+    return Goal(at, dot(normal, camera.right.xyz * px.x - camera.up.xyz * px.y) >= 0.0);
+}
+
+// Inks the nearer pixel of a pair if the walk to the farther one meets an away facet. Says how far it walked.
+fn walk_pair(one: vec2<i32>, other: vec2<i32>) -> u32 {
+    let first = pixels[pixel_index(one)];
+    let second = pixels[pixel_index(other)];
+    let swapped = is_behind(first, second);
+    let p = select(first, second, swapped);
+    let q = select(second, first, swapped);
+    let at = select(one, other, swapped);
+    let centre = vec2<f32>(at) + 0.5;
+    let to_centre = vec2<f32>(select(other, one, swapped)) + 0.5;
+    let origin = facet_hit(p.x - 1u, centre);
+    var goal: Goal;
+    if q.y == 0u || is_away(q.x - 1u) {
+        goal = open_goal(p.x - 1u, centre, to_centre, origin);
+    } else {
+        goal = Goal(facet_hit(q.x - 1u, to_centre), false);
+    }
+    var meeting: Meeting;
+    var start = origin;
+    var longest = 0u;
+    for (var legs = select(1u, 2u, goal.goes_on); legs > 0u; legs--) {
+        meeting = walk_between(start, goal.at);
+        longest = max(longest, meeting.steps);
+        check_done(meeting);
+        if meeting.met || meeting.left_land {
+            break;
+        }
+        start = goal.at;
+        goal.at = map_exit(to_centre, start);
+    }
+    ink(at, meeting);
+    return longest;
+}
+
+@compute @workgroup_size(64)
+fn walk_rest(@builtin(global_invocation_id) invocation: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    var longest = 0u;
+    for (var k = invocation.x; k < rest.count; k += groups.x * 64u) {
+        let i = rest.pixels[k] & 0xffffffu;
+        let at = vec2<i32>(vec2<u32>(i % camera.size.x, i / camera.size.x));
+        for (var left = rest.pixels[k] >> 24u; left != 0u; left &= left - 1u) {
+            longest = max(longest, walk_pair(at, at + neighbour(firstTrailingBit(left))));
+        }
+    }
+    atomicMax(&out_counts.longest_walk, longest);
+}

@@ -1,0 +1,22 @@
+//! Pass `seam`: vertices on sides shared with coarser chunks become theirs.
+
+use super::{Gpu, Pass};
+use crate::error::Result;
+use crate::plan::Batch;
+use crate::surface::lattice::CHUNK_QUADS;
+
+/// The composed shader.
+pub const SOURCE: &str = crate::shader!("scene", "seam");
+
+/// Compiles the pass.
+///
+/// # Errors
+/// See [`Pass::new`].
+pub fn pass(gpu: &Gpu, constants: &[(&str, f64)]) -> Result<Pass> {
+    Pass::new(gpu, "seam", SOURCE, constants)
+}
+
+/// One invocation a vertex that may move, half of those on four sides; one row a chunk.
+pub fn invocations(batch: &Batch) -> [u32; 2] {
+    [2 * CHUNK_QUADS, batch.chunks]
+}

@@ -1,0 +1,70 @@
+//! The passes of a frame, compiled once, with what they bind.
+
+use super::buffers::Buffers;
+use super::work::Stage;
+use super::{Extent, Gpu, Pass};
+use super::{border, compose, facing, rasterize, rasterize_large, seam, silhouette, tessellate};
+use crate::dem::Dem;
+use crate::error::Result;
+use crate::plan::{Batch, Method, Plan, Thrift};
+
+/// The passes of a plan.
+pub struct Stages {
+    /// `tessellate`, `seam`, `facing`, `rasterize`, `rasterize_large`: for each round of each batch.
+    pub per_batch: [Stage; 5],
+    /// Those of the method, and how far each reaches.
+    pub silhouettes: Vec<(Stage, Extent)>,
+    /// Where there is a rim to draw.
+    pub border: Option<Stage>,
+    /// For reading.
+    pub compose: Stage,
+}
+
+impl Stages {
+    /// Compiles what a plan needs. Facing bits lie in so many parts.
+    ///
+    /// # Errors
+    /// See [`Pass::new`].
+    pub fn new(gpu: &Gpu, dem: &Dem, plan: &Plan, has_rim: bool, parts: u32, size: [u32; 2]) -> Result<Self> {
+        let flag = |on: bool| f64::from(u8::from(on));
+        let constants = [
+            ("has_voids", flag(dem.voids() > 0)),
+            ("facing_parts", f64::from(parts)),
+            ("two_depths", flag(matches!(plan.method, Method::TowardAway { .. }))),
+            ("thrifty", flag(plan.thrift == Thrift::LeaveOut)),
+            ("conservative", flag(plan.method == Method::TowardAway { wide: true })),
+        ];
+        let visibility = plan.method.visibility(gpu.int64);
+        let stage = |pass: Pass| Stage { pass, groups: Vec::new() };
+        let silhouettes = silhouette::passes(gpu, plan.method, size, &constants)?.into_iter();
+        Ok(Self {
+            per_batch: [
+                stage(tessellate::pass(gpu, &constants)?),
+                stage(seam::pass(gpu, &constants)?),
+                stage(facing::pass(gpu, &constants)?),
+                stage(rasterize::pass(gpu, visibility, &constants)?),
+                stage(rasterize_large::pass(gpu, visibility, &constants)?),
+            ],
+            silhouettes: silhouettes.map(|(pass, extent)| (stage(pass), extent)).collect(),
+            border: has_rim.then(|| border::pass(gpu, &constants)).transpose()?.map(stage),
+            compose: stage(compose::pass(gpu, &constants)?),
+        })
+    }
+
+    /// Binds all passes to these buffers, for frames of up to so many batches.
+    ///
+    /// # Errors
+    /// See [`Pass::bind`].
+    pub fn bind(&mut self, gpu: &Gpu, buffers: &Buffers, batches: &[Batch], rounds: u32) -> Result<()> {
+        let group = |pass: &Pass, i, round, batch| pass.bind(gpu, |name| buffers.resource(name, i, round, batch));
+        for Stage { pass, groups } in &mut self.per_batch {
+            let each = batches.iter().enumerate().flat_map(|(i, b)| (0..rounds).map(move |round| (i, round, *b)));
+            *groups = each.map(|(i, round, b)| group(pass, i, round, b)).collect::<Result<_>>()?;
+        }
+        let of_page = self.silhouettes.iter_mut().map(|(stage, _)| stage);
+        for Stage { pass, groups } in of_page.chain(&mut self.border).chain([&mut self.compose]) {
+            *groups = vec![group(pass, 0, 0, Batch { first_slot: 0, chunks: 0 })?];
+        }
+        Ok(())
+    }
+}

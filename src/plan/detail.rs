@@ -1,0 +1,168 @@
+//! At which level each chunk is drawn.
+//!
+//! From the eye outwards, each chunk is split until its facets deviate little enough on the page. What is beside the page
+//! or hidden by nearer land stays as coarse as its neighbours allow. The level of a chunk depends on the surface and the
+//! camera alone.
+
+use glam::{DVec2, DVec3};
+
+use super::Thrift;
+use super::horizon::Horizon;
+use crate::error::Result;
+use crate::surface::lattice::{CELL_STEPS, CHUNK_QUADS};
+use crate::surface::pyramid::{FINEST_STEP, Slopes};
+use crate::surface::quadtree::Growth;
+use crate::surface::{Lattice, Level, Surface};
+use crate::view::Camera;
+
+/// Largest deviation of facets on the page unless told otherwise, px.
+pub const ERROR_PX: f64 = 0.25;
+/// How many times as far facets may deviate where all of them face one way, so that no line is near.
+const FAR_FROM_LINES: f64 = 8.0;
+
+/// How fine facets are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Detail {
+    /// Of one level everywhere.
+    Uniform(Level),
+    /// Each chunk of its own level, so that facets deviate from the surface by at most so many pixels on the page.
+    Adaptive {
+        /// Pixels, above 0.
+        error_px: f64,
+    },
+}
+
+/// Adaptive, with [`ERROR_PX`].
+impl Default for Detail {
+    fn default() -> Self {
+        Self::Adaptive { error_px: ERROR_PX }
+    }
+}
+
+impl From<Level> for Detail {
+    fn from(level: Level) -> Self {
+        Self::Uniform(level)
+    }
+}
+
+/// The lattice of a frame: chunks as coarse as `error_px` allows where they can be seen, else as their neighbours allow.
+/// Those that neither appear nor can be crossed by a walk are left out.
+///
+/// # Errors
+/// See [`Lattice::adaptive`].
+pub fn adaptive(surface: &Surface, camera: &Camera, error_px: f64, thrift: Thrift) -> Result<Lattice> {
+    let (dem, pyramid) = (surface.dem(), surface.pyramid());
+    let mut demand = Demand::new(surface, camera, error_px);
+    let wedge =
+        View { eye: demand.view.eye, inward: camera.wedge().into_iter().flatten().map(|n| n.extend(0.0)).collect() };
+    let keeps = |origin, step| {
+        let bounds = pyramid.bounds(origin, step);
+        bounds.is_some_and(|bounds| thrift == Thrift::Nothing || wedge.meets(bounds))
+    };
+    let from = dem.grid_place(camera.eye.truncate()) * f64::from(CELL_STEPS);
+    Lattice::adaptive(dem, pyramid.coarsest_step(), from.to_array(), &mut demand, keeps)
+}
+
+/// What lies on the inner side of planes through the eye. Metres from sample (0, 0).
+struct View {
+    eye: DVec3,
+    inward: Vec<DVec3>,
+}
+
+impl View {
+    /// Whether some of a box may.
+    fn meets(&self, [low, high]: [DVec3; 2]) -> bool {
+        let (middle, reach) = ((low + high) / 2.0 - self.eye, (high - low) / 2.0);
+        self.inward.iter().all(|inward| inward.dot(middle) + inward.abs().dot(reach) >= 0.0)
+    }
+}
+
+/// What a camera asks of chunks.
+struct Demand<'a> {
+    surface: &'a Surface,
+    view: View,
+    /// `None` where all land counts as seen.
+    horizon: Option<Horizon>,
+    /// Largest deviation for each metre of distance, metres.
+    tolerance: f64,
+}
+
+impl<'a> Demand<'a> {
+    fn new(surface: &'a Surface, camera: &Camera, error_px: f64) -> Self {
+        let [right, up, forward] = camera.axes();
+        let half = DVec2::new(f64::from(camera.width), f64::from(camera.height)) / 2.0 + 1.0;
+        let (side, rise) = (right * camera.focal(), up * camera.focal());
+        let sides = [side, -side].map(|side| forward * half.x + side);
+        let ends = [rise, -rise].map(|rise| forward * half.y + rise);
+        // In a corner of the page things look larger than in its middle at the same distance.
+        let corner = camera.focal().hypot(half.length());
+        Self {
+            surface,
+            view: View {
+                eye: camera.eye - surface.dem().position(0, 0).with_z(0.0),
+                inward: [&[forward][..], &sides, &ends].concat(),
+            },
+            horizon: Horizon::new(surface, camera),
+            tolerance: error_px / corner,
+        }
+    }
+
+    /// From the eye to the nearest place of a box, metres.
+    fn distance(&self, [low, high]: [DVec3; 2]) -> f64 {
+        self.view.eye.clamp(low, high).distance(self.view.eye)
+    }
+
+    /// Whether a surface in a box with slopes between these faces the eye everywhere or nowhere.
+    fn faces_one_way(&self, [low, high]: [DVec3; 2], Slopes { least, largest }: Slopes) -> bool {
+        let (from, to) = (self.view.eye - high, self.view.eye - low);
+        // n . (eye - P) with n = (-p, -q, 1) is separable.
+        let products = |p: f32, q: f32, way: f64, other: f64| {
+            let [p, q] = [p, q].map(f64::from);
+            let all = [p * way, p * other, q * way, q * other];
+            [all.into_iter().fold(f64::INFINITY, f64::min), all.into_iter().fold(f64::NEG_INFINITY, f64::max)]
+        };
+        let east = products(least.x, largest.x, from.x, to.x);
+        let north = products(least.y, largest.y, from.y, to.y);
+        from.z > east[1] + north[1] || to.z < east[0] + north[0]
+    }
+
+    /// Raises the horizon by the land of a square, part by part where it is wide.
+    fn raise(&mut self, origin: [u32; 2], step: u32, deviation: f64) {
+        let pyramid = self.surface.pyramid();
+        let (Some(bounds), Some(horizon)) = (pyramid.bounds(origin, step), &mut self.horizon) else { return };
+        let [low, high] = bounds.map(DVec3::truncate);
+        if step > FINEST_STEP && (step > CELL_STEPS || horizon.is_wide(low, high)) {
+            let half = CHUNK_QUADS * step / 2;
+            for [x, y] in [[0, 0], [half, 0], [0, half], [half, half]] {
+                self.raise([origin[0] + x, origin[1] + y], step / 2, deviation);
+            }
+        } else {
+            horizon.raise(low, high, pyramid.fences(origin, step), deviation);
+        }
+    }
+}
+
+impl Growth for Demand<'_> {
+    fn splits(&mut self, origin: [u32; 2], size: u32) -> bool {
+        let (pyramid, step) = (self.surface.pyramid(), size / CHUNK_QUADS);
+        let Some(bounds) = pyramid.bounds(origin, step).filter(|_| step > 1) else { return false };
+        let deviation = pyramid.deviation(origin, step);
+        if deviation.is_infinite() {
+            // Seen or not: where the rim is wrong, so is what a neighbour shares with it.
+            return true;
+        }
+        // Lines run where facing flips: there facets must be good.
+        let slack = if self.faces_one_way(bounds, pyramid.slopes(origin, step)) { FAR_FROM_LINES } else { 1.0 };
+        deviation > self.tolerance * slack * self.distance(bounds)
+            && self.view.meets(bounds)
+            && !self.horizon.as_ref().is_some_and(|horizon| horizon.hides(bounds))
+    }
+
+    fn done(&mut self, origin: [u32; 2], size: u32, split: bool) {
+        let step = size / CHUNK_QUADS;
+        // What is split further is looked at as a square of the finest layer.
+        if step == FINEST_STEP || step > FINEST_STEP && !split {
+            self.raise(origin, step, self.surface.pyramid().deviation(origin, step));
+        }
+    }
+}
