@@ -57,7 +57,7 @@ impl<'a> Renderer<'a> {
     pub fn new(gpu: &'a Gpu, surface: &'a Surface, plan: Plan, size: [u32; 2]) -> Result<Self> {
         let dem = surface.dem();
         let lattice = Lattice::uniform(dem, plan.level)?;
-        let rim = if plan.border == Border::On { rim(dem) } else { Vec::new() };
+        let rim = if plan.border == Border::On { rim(dem)? } else { Vec::new() };
         let visibility = plan.method.visibility(gpu.int64);
         let batches = batches(lattice.chunks().len() as u32);
         let buffers = Buffers::new(gpu, surface, &lattice, &rim, &batches, visibility, size)?;

@@ -48,6 +48,20 @@ pub struct Size {
     pub height: u32,
 }
 
+/// Bytes in units of 1024, as `1GiB`.
+///
+/// # Errors
+/// What was wanted, for clap.
+pub fn bytes(text: &str) -> Result<u64, String> {
+    const UNITS: [&str; 5] = ["B", "KiB", "MiB", "GiB", "TiB"];
+    let end = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
+    let (number, unit) = text.split_at(end);
+    let power = UNITS.iter().position(|known| known.eq_ignore_ascii_case(unit.trim()));
+    let bytes = power.zip(number.parse::<f64>().ok()).map(|(power, number)| number * 1024_f64.powi(power as i32));
+    let bytes = bytes.filter(|bytes| (1.0..=u64::MAX as f64 / 2.0).contains(bytes));
+    bytes.map(|bytes| bytes as u64).ok_or_else(|| "want a number and B, KiB, MiB, GiB or TiB, as 512MiB".to_owned())
+}
+
 fn number(text: &str) -> Result<f64, String> {
     let value: f64 = text.trim().parse().map_err(|_| format!("`{text}` is no number"))?;
     if value.is_finite() && value.abs() <= FARTHEST { Ok(value) } else { Err(format!("{text} is out of range")) }

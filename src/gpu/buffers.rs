@@ -13,7 +13,6 @@ use super::rasterize_large::empty_queue;
 
 use super::sizes::{self, fits};
 use super::uniforms::{BatchUniform, CameraUniform, SceneUniform};
-use crate::dem::Dem;
 use crate::error::{Error, Result};
 use crate::plan::batches::PART_CHUNKS;
 use crate::plan::{Batch, Visibility};
@@ -56,12 +55,12 @@ impl Buffers {
         buffers.upload(gpu, "chunks", bytemuck::cast_slice(lattice.chunks()))?;
         buffers.upload(gpu, "spheres", bytemuck::cast_slice(&spheres(surface, lattice)))?;
         buffers.upload(gpu, "slots", bytemuck::cast_slice(lattice.slots()))?;
-        buffers.upload(gpu, "heights", bytemuck::cast_slice(dem.heights()))?;
-        for (name, gradients) in ["gradients_east", "gradients_north"].into_iter().zip(surface.gradients()) {
+        buffers.upload(gpu, "heights", bytemuck::cast_slice(dem.held()?.heights()))?;
+        for (name, gradients) in ["gradients_east", "gradients_north"].into_iter().zip(surface.gradients()?) {
             buffers.upload(gpu, name, bytemuck::cast_slice(gradients))?;
         }
         let voids = dem.voids() > 0;
-        buffers.upload(gpu, "valid", bytemuck::cast_slice(&if voids { valid_bits(dem) } else { vec![0] }))?;
+        buffers.upload(gpu, "valid", bytemuck::cast_slice(if voids { dem.held()?.valid() } else { &[0] }))?;
         buffers.upload(gpu, "rim", bytemuck::cast_slice(rim))?;
 
         buffers.upload(gpu, "empty_queue", bytemuck::bytes_of(&empty_queue([width, height])))?;
@@ -161,9 +160,4 @@ fn upload_uniforms(gpu: &Gpu, entries: &[BatchUniform]) -> wgpu::Buffer {
         slot[..size_of::<BatchUniform>()].copy_from_slice(bytemuck::bytes_of(entry));
     }
     upload(gpu, "batches", &bytes, wgpu::BufferUsages::UNIFORM)
-}
-
-fn valid_bits(dem: &Dem) -> Vec<u32> {
-    let word = |bits: &[bool]| bits.iter().rev().fold(0, |word, bit| word << 1 | u32::from(*bit));
-    dem.valid().chunks(32).map(word).collect()
 }

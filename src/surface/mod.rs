@@ -7,4 +7,4 @@ pub mod patch;
 pub mod rim;
 
 pub use lattice::{Chunk, Lattice, LatticePoint, Level};
-pub use patch::{Patch, Surface};
+pub use patch::{Patch, Surface, SurfaceBand};
