@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::dem::ElevationUnit;
+use crate::dem::{ElevationUnit, LARGEST_SIDE as MOST_SAMPLES};
 use crate::gpu::AdapterChoice;
 use crate::gpu::sizes::LARGEST_SIDE;
 use crate::plan::Method;
@@ -49,9 +49,6 @@ pub struct Size {
 }
 
 /// Bytes in units of 1024, as `1GiB`.
-///
-/// # Errors
-/// What was wanted, for clap.
 pub fn bytes(text: &str) -> Result<u64, String> {
     const UNITS: [&str; 5] = ["B", "KiB", "MiB", "GiB", "TiB"];
     let end = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
@@ -138,6 +135,14 @@ pub fn size(text: &str) -> Result<Size, String> {
     let (width, height) = text.split_once(['x', 'X']).ok_or_else(form)?;
     let side = |text: &str| text.parse().ok().filter(|n| (1..=LARGEST_SIDE).contains(n)).ok_or_else(form);
     Ok(Size { width: side(width)?, height: side(height)? })
+}
+
+/// `WxH` in samples of a DEM.
+pub fn samples(text: &str) -> Result<[usize; 2], String> {
+    let form = || format!("want WxH in samples, each from 2 to {MOST_SAMPLES}");
+    let (columns, rows) = text.split_once(['x', 'X']).ok_or_else(form)?;
+    let side = |text: &str| text.parse().ok().filter(|n| (2..=MOST_SAMPLES).contains(n)).ok_or_else(form);
+    Ok([side(columns)?, side(rows)?])
 }
 
 /// A level: subdivisions of a cell's edge.

@@ -5,6 +5,7 @@ mod crs;
 mod elevation;
 mod filed;
 mod formats;
+pub mod fractal;
 mod georeference;
 mod grid;
 mod handles;
@@ -22,6 +23,7 @@ mod survey;
 mod target;
 mod tiling;
 mod vrt;
+pub mod write;
 mod xml;
 
 use std::sync::{Arc, OnceLock};

@@ -56,6 +56,15 @@ impl Samples {
         self.is_valid(i).then(|| self.heights[i])
     }
 
+    /// Exaggerated metres of the samples of row `r` from column `c` on, `None` at voids; nothing outside.
+    pub fn row_from(&self, c: usize, r: usize) -> impl Iterator<Item = Option<f32>> {
+        let (first, end) = match self.index(c, r) {
+            Some(first) => (first, first + self.window.size[0] - (c - self.window.first[0])),
+            None => (0, 0),
+        };
+        (first..end).map(|i| self.is_valid(i).then(|| self.heights[i]))
+    }
+
     /// How many samples are void.
     pub fn voids(&self) -> usize {
         let valid: usize = self.valid.par_iter().with_min_len(WORDS).map(|word| word.count_ones() as usize).sum();
@@ -76,11 +85,16 @@ impl Samples {
         })
     }
 
-    /// The heights of a window inside it, NaN at voids.
+    /// The heights of a window, NaN at voids and outside.
     pub(super) fn part(&self, window: Window) -> Vec<f32> {
-        let [c, r] = window.first;
-        let places = (r..r + window.size[1]).flat_map(|r| (c..c + window.size[0]).map(move |c| (c, r)));
-        places.map(|(c, r)| self.height(c, r).unwrap_or(f32::NAN)).collect()
+        let mut heights = vec![f32::NAN; window.samples() as usize];
+        let west = window.first[0].max(self.window.first[0]);
+        for (row, heights) in heights.chunks_exact_mut(window.size[0].max(1)).enumerate() {
+            let from = self.row_from(west, window.first[1] + row);
+            let onto = heights.iter_mut().skip(west - window.first[0]);
+            onto.zip(from).for_each(|(onto, height)| *onto = height.unwrap_or(f32::NAN));
+        }
+        heights
     }
 
     /// Place of a sample in `heights`.

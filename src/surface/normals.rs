@@ -92,8 +92,12 @@ pub(super) fn of_samples(samples: &Samples, first: [usize; 2], size: [usize; 2],
 
 /// Heights of `columns` samples of row `r` from column `first` on, with one more at either end; NaN where there is none.
 fn padded_row(samples: &Samples, first: usize, columns: usize, r: usize) -> Vec<f64> {
-    let height = |i: usize| samples.height((first + i).wrapping_sub(1), r).map_or(f64::NAN, f64::from);
-    (0..columns + 2).map(height).collect()
+    let mut row = vec![f64::NAN; columns + 2];
+    let west = usize::from(first > samples.first()[0]);
+    for (padded, height) in row[1 - west..].iter_mut().zip(samples.row_from(first - west, r)) {
+        *padded = height.map_or(f64::NAN, f64::from);
+    }
+    row
 }
 
 /// Gradient at the middle of a block of 3 x 3 heights, rows from the north; NaN where there is none.

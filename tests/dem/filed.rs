@@ -179,6 +179,11 @@ fn bands_and_parts_are_the_whole() {
     let part = surfaces[1].part([190, 140], [33, 33]).unwrap();
     assert_eq!(part.gradient(199, 149), surfaces[0].gradient(199, 149));
     assert_eq!((part.dem().height(188, 140), part.dem().columns()), (None, 200));
+    let beyond = part.dem().window([150, 120], [50, 30]).unwrap();
+    for (c, r) in [(150, 120), (188, 149), (189, 138), (189, 139), (199, 149)] {
+        let inside = c >= 189 && r >= 139;
+        assert_eq!(beyond.height(c, r), surfaces[0].dem().height(c, r).filter(|_| inside), "{c}, {r}");
+    }
     let level = crate::scenes::level(4);
     let places = [[503_000.0, 4_198_000.0], [500_200.0, 4_199_800.0]].map(DVec2::from_array);
     for place in places {

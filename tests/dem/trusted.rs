@@ -180,6 +180,17 @@ fn gdal_itself_is_restricted() {
         local.held().unwrap().heights(),
         "the next file may be trusted"
     );
+    // Samples that stay in their files are read on any thread: there, too.
+    let dem = read(dir.path().join("served.tif"), &ReadOptions { memory: 1, ..Default::default() }).unwrap();
+    let url = format!("/vsicurl/{}", server.url("hill.tif"));
+    let asked = server.asked();
+    let opened = |reads: bool| {
+        let work = || (reads && dem.window([0, 0], [1, 1]).is_err(), Dataset::open(&url).is_ok());
+        std::thread::scope(|scope| scope.spawn(work).join().unwrap())
+    };
+    assert_eq!(opened(true), (false, false));
+    assert_eq!(server.asked(), asked);
+    assert_eq!(opened(false), (false, true), "a thread that reads no DEM is free: the check can fail");
     for driver in ["WMS", "WCS", "WMTS", "HTTP", "STACIT", "PostGISRaster", "PCIDSK", "ERS", "MRF", "Zarr"] {
         assert!(DriverManager::get_driver_by_name(driver).is_err(), "{driver}");
     }
