@@ -11,7 +11,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let [dem, picture] = [1, 2].map(|i| env::args().nth(i));
     let (dem, picture) = dem.zip(picture).ok_or("give a DEM and a .png")?;
     let surface = Surface::new(read(dem, &ReadOptions::default())?);
-    let camera = choose(surface.dem(), Fixed::default(), 60.0, 1200, 600);
+    let camera = choose(surface.dem(), Fixed::default(), 60.0, 1200, 600)?;
     let gpu = Gpu::open(&AdapterChoice::Best, Int64::IfPresent)?;
     let frame = Renderer::new(&gpu, &surface, Plan::default(), [1200, 600])?.draw(&camera)?;
     let drawing = ink::draw(&frame.raster, &ink::Style::for_page(1200));

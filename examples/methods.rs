@@ -15,7 +15,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let [dem, folder] = [1, 2].map(|i| env::args().nth(i).map(PathBuf::from));
     let (dem, folder) = dem.zip(folder).ok_or("give a DEM and a folder for the masks")?;
     let surface = Surface::new(read(dem, &ReadOptions::default())?);
-    let camera = choose(surface.dem(), Fixed::default(), 60.0, 1200, 600);
+    let camera = choose(surface.dem(), Fixed::default(), 60.0, 1200, 600)?;
     let gpu = Gpu::open(&AdapterChoice::Best, Int64::IfPresent)?;
     let methods = [
         ("walk", Method::Walk),

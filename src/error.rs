@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 pub type Result<T> = std::result::Result<T, Error>;
 
 /// Everything this library can fail with. `Display` is one line: what, where, remedy.
-#[derive(Debug, thiserror::Error)]
+#[derive(Debug, Clone, thiserror::Error)]
 pub enum Error {
     /// A file that cannot be used as a DEM.
     #[error("{}: {what}; {remedy}", path.display())]

@@ -9,7 +9,7 @@
 //! use hachure::{ink, plan::Plan, render::Renderer, surface::Surface};
 //!
 //! let surface = Surface::new(read("dem/golden-gate.tif", &ReadOptions::default())?);
-//! let camera = choose(surface.dem(), Fixed::default(), 60.0, 1200, 600);
+//! let camera = choose(surface.dem(), Fixed::default(), 60.0, 1200, 600)?;
 //! let gpu = Gpu::open(&AdapterChoice::Best, Int64::IfPresent)?;
 //! let frame = Renderer::new(&gpu, &surface, Plan::default(), [1200, 600])?.draw(&camera)?;
 //! let drawing = ink::draw(&frame.raster, &ink::Style::for_page(1200));

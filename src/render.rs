@@ -70,9 +70,9 @@ impl<'a> Renderer<'a> {
                 let room = Room::of(&lattice);
                 (lattice, room)
             }
-            Detail::Adaptive { .. } => (Lattice::empty(dem, surface.pyramid().coarsest_step())?, FIRST_ROOM),
+            Detail::Adaptive { .. } => (Lattice::empty(dem, surface.pyramid()?.coarsest_step())?, FIRST_ROOM),
         };
-        let rim = if plan.border == Border::On { rim(dem) } else { Vec::new() };
+        let rim = if plan.border == Border::On { rim(dem)? } else { Vec::new() };
         let visibility = plan.method.visibility(gpu.int64);
         let buffers = Buffers::new(gpu, surface, &lattice, room, &rim, visibility, size)?;
         let parts = batches(room.chunks).last().map_or(1, |b| b.part() + 1);

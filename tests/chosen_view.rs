@@ -14,7 +14,7 @@ use crate::scenes::{count_ink, draw, level, rough};
 const PAGE: [u32; 2] = [480, 270];
 
 fn chosen(dem: &Dem, fixed: Fixed) -> Camera {
-    choose(dem, fixed, 60.0, PAGE[0], PAGE[1])
+    choose(dem, fixed, 60.0, PAGE[0], PAGE[1]).expect("in memory")
 }
 
 /// Silhouette pixels in the chosen view of a DEM, after checks of the eye.

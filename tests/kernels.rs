@@ -209,14 +209,13 @@ pub fn chunk_uniforms(lattice: &Lattice) -> Vec<ChunkUniform> {
 fn walk(field: &Field, segments: &[[i32; 4]]) -> Vec<Option<[u32; 3]>> {
     let scene = SceneUniform::new(&field.dem, &field.lattice);
     let chunks = chunk_uniforms(&field.lattice);
-    let bits = |word: &[bool]| word.iter().rev().fold(0_u32, |bits, v| bits << 1 | u32::from(*v));
-    let valid: Vec<u32> = field.dem.valid().chunks(32).map(bits).collect();
+    let valid = field.dem.held().expect("in memory").valid();
     let data: [(&str, &[u8]); 10] = [
         ("scene", bytemuck::bytes_of(&scene)),
         ("chunks", bytemuck::cast_slice(&chunks)),
         ("nodes", bytemuck::cast_slice(field.lattice.tree().nodes())),
         ("summaries", bytemuck::cast_slice(&field.summaries)),
-        ("valid", bytemuck::cast_slice(&valid)),
+        ("valid", bytemuck::cast_slice(valid)),
         ("facing_0", bytemuck::cast_slice(&field.facing)),
         ("facing_1", &[]),
         ("facing_2", &[]),

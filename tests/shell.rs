@@ -153,6 +153,26 @@ fn completions_and_man_pages_hold_every_flag() {
 }
 
 #[test]
+fn terrain_is_made_of_any_size_and_the_same_again() {
+    let place = Place::new();
+    for name in ["a.tif", "b.tif"] {
+        succeeds(place.run(&["generate", "dem", "-o", name, "--size", "700x530"]));
+    }
+    let [a, b] = ["a.tif", "b.tif"].map(|name| fs::read(place.path(name)).expect(name));
+    assert!(a == b && a.len() > 100_000, "{} and {} bytes", a.len(), b.len());
+    let told = stdout(&succeeds(place.run(&["info", "--memory", "64KiB", "a.tif"])));
+    assert!(told.contains("700 columns x 530 rows") && told.contains("cell       30 m x 30 m"), "{told}");
+    for wrong in ["1x5", "131001x5", "5", "-5x5", ""] {
+        assert_eq!(place.run(&["generate", "dem", "-o", "c.tif", "--size", wrong]).status.code(), Some(2), "{wrong}");
+    }
+    for wrong in ["64", "GiB", "-1GiB", "0B", "1e9GiB", "NaNB", "1 XB"] {
+        assert_eq!(place.run(&["info", "--memory", wrong, "a.tif"]).status.code(), Some(2), "{wrong}");
+    }
+    let failed = place.run(&["generate", "dem", "-o", "nowhere/c.tif", "--size", "9x9"]);
+    assert!(stderr(&failed).starts_with("error: nowhere/c.tif: cannot be written"), "{}", stderr(&failed));
+}
+
+#[test]
 fn examples_in_help_are_commands() {
     let mut command = Arguments::command();
     command.build();

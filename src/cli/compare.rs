@@ -128,7 +128,10 @@ pub fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
     };
     let (mut scenes, mut runs, mut pictures) = (Vec::new(), Vec::new(), Vec::new());
     for job in &jobs {
-        let surface = Surface::new(arguments.terrain.read(&job.files, arguments.exaggeration, talk)?);
+        let dem = arguments.terrain.read(&job.files, arguments.exaggeration, talk)?;
+        // Truth looks at every sample again and again.
+        dem.held()?;
+        let surface = Surface::new(dem);
         let terrain = Terrain::new(&surface);
         for (named, size) in job.views.iter().flat_map(|view| sizes.iter().map(move |size| (view, *size))) {
             // Heights above ground are above the level of `hachure draw`.

@@ -143,6 +143,7 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     let mut outputs = arguments.outputs.open(&arguments.terrain.dems)?;
     let started = Instant::now();
     let dem = arguments.terrain.read(&arguments.terrain.dems, arguments.exaggeration, talk)?;
+    // The renderer holds all samples on the device.
     talk.progress("computing normals", 0.1);
     let surface = Surface::new(dem);
     let view = arguments.view.view(&surface, arguments.level.near())?;

@@ -1,4 +1,5 @@
-//! `hachure generate`: completions and man pages, made from the flags. For those who package hachure, so hidden.
+//! `hachure generate`: completions and man pages, made from the flags, and large terrain, made of noise. For those who
+//! package hachure or test it, so hidden.
 
 use std::path::PathBuf;
 
@@ -6,7 +7,9 @@ use clap::{CommandFactory, Subcommand};
 use clap_complete::{Generator, Shell};
 use clap_mangen::Man;
 
-use super::Arguments;
+use super::talk::Talk;
+use super::{Arguments, values};
+use crate::dem::{fractal, write};
 use crate::error::Result;
 use crate::ink::Output;
 
@@ -30,13 +33,22 @@ enum What {
         #[arg(short, long, value_name = "DIR")]
         output: Option<PathBuf>,
     },
+    /// A DEM of fractal relief, the same on every machine, cells of 30 m: a tiled GeoTIFF
+    Dem {
+        /// The file
+        #[arg(short, long, value_name = "OUT.tif")]
+        output: PathBuf,
+        /// Samples across and down
+        #[arg(long, value_name = "WxH", value_parser = values::samples, default_value = "20000x20000")]
+        size: [usize; 2],
+    },
 }
 
 /// Makes them.
 ///
 /// # Errors
 /// [`crate::error::Error::Output`] where they cannot be written.
-pub fn run(arguments: &GenerateArguments) -> Result<()> {
+pub fn run(arguments: &GenerateArguments, talk: &Talk) -> Result<()> {
     match &arguments.what {
         What::Completions { shell } => {
             let mut command = Arguments::command().bin_name("hachure");
@@ -55,6 +67,13 @@ pub fn run(arguments: &GenerateArguments) -> Result<()> {
             out.write(|file| page.render(file))?;
             out.publish()
         }),
+        What::Dem { output, size } => {
+            let mut out = Output::create(output)?;
+            let progress = |share| talk.progress("writing", share);
+            let row = |r| fractal::row(size[0], r);
+            out.write_by_name(|path| write::write(path, *size, fractal::CELL, row, &progress))?;
+            out.publish()
+        }
     }
 }
 

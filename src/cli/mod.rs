@@ -44,7 +44,7 @@ enum Command {
     Compare(Box<compare::CompareArguments>),
     /// Say what a DEM holds
     Info(info::InfoArguments),
-    /// Make completions and man pages
+    /// Make completions, man pages, and terrain to test with
     #[command(hide = true)]
     Generate(generate::GenerateArguments),
 }
@@ -68,7 +68,7 @@ impl Arguments {
             Command::Draw(arguments) => draw::run(arguments, talk),
             Command::Compare(arguments) => compare::run(arguments, talk),
             Command::Info(arguments) => info::run(arguments, talk),
-            Command::Generate(arguments) => generate::run(arguments),
+            Command::Generate(arguments) => generate::run(arguments, talk),
         }
     }
 }

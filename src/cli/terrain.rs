@@ -35,6 +35,9 @@ pub struct TerrainArguments {
     /// Open files on a network, and VRTs that refer to files outside their folder
     #[arg(long, help_heading = "Surface")]
     allow_remote: bool,
+    /// Memory for samples and normals, in B, KiB, MiB, GiB or TiB; of a larger DEM samples are read as they are needed
+    #[arg(long, value_name = "SIZE", value_parser = values::bytes, default_value = "1GiB", help_heading = "Surface")]
+    memory: u64,
 }
 
 impl TerrainArguments {
@@ -49,6 +52,7 @@ impl TerrainArguments {
             fill_voids: self.fill_voids,
             elevation_unit: self.elevation_unit,
             allow_remote: self.allow_remote,
+            memory: self.memory,
         }
     }
 

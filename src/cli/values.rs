@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 
 use glam::DVec2;
 
-use crate::dem::ElevationUnit;
+use crate::dem::{ElevationUnit, LARGEST_SIDE as MOST_SAMPLES};
 use crate::gpu::AdapterChoice;
 use crate::gpu::sizes::LARGEST_SIDE;
 use crate::plan::{Detail, Method};
@@ -53,6 +53,17 @@ pub struct Size {
 
 /// Deviations that make sense: below, facets fill the memory; above, nothing is left of the land.
 const ERRORS_PX: RangeInclusive<f64> = 0.01..=100.0;
+
+/// Bytes in units of 1024, as `1GiB`.
+pub fn bytes(text: &str) -> Result<u64, String> {
+    const UNITS: [&str; 5] = ["B", "KiB", "MiB", "GiB", "TiB"];
+    let end = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
+    let (number, unit) = text.split_at(end);
+    let power = UNITS.iter().position(|known| known.eq_ignore_ascii_case(unit.trim()));
+    let bytes = power.zip(number.parse::<f64>().ok()).map(|(power, number)| number * 1024_f64.powi(power as i32));
+    let bytes = bytes.filter(|bytes| (1.0..=u64::MAX as f64 / 2.0).contains(bytes));
+    bytes.map(|bytes| bytes as u64).ok_or_else(|| "want a number and B, KiB, MiB, GiB or TiB, as 512MiB".to_owned())
+}
 
 fn number(text: &str) -> Result<f64, String> {
     let value: f64 = text.trim().parse().map_err(|_| format!("`{text}` is no number"))?;
@@ -130,6 +141,14 @@ pub fn size(text: &str) -> Result<Size, String> {
     let (width, height) = text.split_once(['x', 'X']).ok_or_else(form)?;
     let side = |text: &str| text.parse().ok().filter(|n| (1..=LARGEST_SIDE).contains(n)).ok_or_else(form);
     Ok(Size { width: side(width)?, height: side(height)? })
+}
+
+/// `WxH` in samples of a DEM.
+pub fn samples(text: &str) -> Result<[usize; 2], String> {
+    let form = || format!("want WxH in samples, each from 2 to {MOST_SAMPLES}");
+    let (columns, rows) = text.split_once(['x', 'X']).ok_or_else(form)?;
+    let side = |text: &str| text.parse().ok().filter(|n| (2..=MOST_SAMPLES).contains(n)).ok_or_else(form);
+    Ok([side(columns)?, side(rows)?])
 }
 
 /// A level: subdivisions of a cell's edge.

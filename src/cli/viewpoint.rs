@@ -163,7 +163,7 @@ impl ViewArguments {
             })?;
             (fixed.azimuth, fixed.altitude) = (Some(azimuth), Some(altitude));
         }
-        let mut camera = choose(surface.dem(), fixed, self.fov, self.size.width, self.size.height);
+        let mut camera = choose(surface.dem(), fixed, self.fov, self.size.width, self.size.height)?;
         let file = match place {
             Some((_, file)) => file,
             None => {
@@ -173,6 +173,7 @@ impl ViewArguments {
             }
         };
         let lonlat = georeference.lonlat(camera.eye.truncate())?;
+        surface.dem().check()?;
         Ok(View { camera, file, lonlat })
     }
 

@@ -52,7 +52,7 @@ impl Info {
 /// Those of [`read_all`](super::read_all()).
 pub fn info(paths: &[PathBuf], options: &ReadOptions, progress: &dyn Fn(Stage, f64)) -> Result<Info> {
     let reading = Reading::new(paths, options)?;
-    let (driver, files) = (reading.mosaic.format(), reading.mosaic.grid.clone());
+    let (driver, files) = (reading.mosaic.format.clone(), reading.mosaic.grid.clone());
     let source = reading.target.warps.then(|| {
         let (cell, units) = (files.cell(), files.crs.units());
         let [west, south, east, north] = files.extent();
@@ -66,6 +66,9 @@ pub fn info(paths: &[PathBuf], options: &ReadOptions, progress: &dyn Fn(Stage, f
         )
     });
     let dem = reading.finish(options, progress)?;
+    let survey = dem.survey(&|done| progress(Stage::Read, done))?;
+    let mut history = dem.history().clone();
+    survey.assumed().into_iter().for_each(|clause| history.assume(clause));
     let [west, south, east, north] = dem.extent();
     let middle = dem.georeference().lonlat(glam::DVec2::new((west + east) / 2.0, (south + north) / 2.0))?;
     Ok(Info {
@@ -78,9 +81,9 @@ pub fn info(paths: &[PathBuf], options: &ReadOptions, progress: &dyn Fn(Stage, f
         extent: dem.extent(),
         middle: middle.map(|place| place.to_array()),
         cell: dem.cell().to_array(),
-        range: dem.range().unwrap_or_default(),
-        voids: dem.voids(),
-        history: dem.history().clone(),
+        range: survey.range.unwrap_or_default(),
+        voids: survey.voids,
+        history,
     })
 }
 

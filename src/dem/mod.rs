@@ -1,61 +1,93 @@
 //! The elevation grid: what every later stage reads. GDAL is known in this folder alone.
 
+mod bands;
 mod crs;
 mod elevation;
+mod filed;
 mod formats;
+pub mod fractal;
 mod georeference;
 mod grid;
+mod handles;
 mod history;
 pub mod info;
 mod inscribed;
+mod limits;
 mod mosaic;
 mod name;
 mod raster;
 pub mod read;
+mod samples;
 mod source;
+mod survey;
 mod target;
+mod tiling;
 mod vrt;
+pub mod write;
 mod xml;
+
+use std::sync::{Arc, OnceLock};
 
 use glam::{DVec2, DVec3};
 
+use crate::error::{Error, Result};
+use filed::Filed;
+use grid::Window;
+
+pub use bands::Band;
 pub use crs::Crs;
 pub use elevation::ElevationUnit;
 pub use georeference::Georeference;
 pub use history::History;
 pub use info::{Info, info};
+pub use limits::{LARGEST_SIDE, MAX_SAMPLES};
 pub use read::{ReadOptions, Stage, read, read_all};
-pub use target::MAX_SAMPLES;
+pub use samples::Samples;
+pub use survey::Survey;
 
 /// A north-up grid of elevations in metres.
 ///
-/// Sample (c, r) counts columns east and rows south from the north-west corner; `heights` is row-major. Heights are
-/// in metres and already multiplied by the exaggeration. Where `valid` is false the height is 0 and must not be used.
+/// Sample (c, r) counts columns east and rows south from the north-west corner. Heights are in metres and already
+/// multiplied by the exaggeration. A void has no height: 0, where one must be given.
+///
+/// The samples are *held* in memory, or *filed*: they stay in their files and are read as they are asked for. Reading may
+/// fail at any time, and what gives a `Result` says so. What gives none takes a sample that cannot be read for a void and
+/// keeps the error: whoever relied on it asks [`Dem::check`] before showing anything.
 #[derive(Debug, Clone)]
 pub struct Dem {
     columns: usize,
     rows: usize,
     cell: DVec2,
     origin: DVec2,
-    heights: Vec<f32>,
-    valid: Vec<bool>,
+    store: Store,
+    survey: OnceLock<Survey>,
     georeference: Georeference,
     history: History,
 }
 
+#[derive(Debug, Clone)]
+enum Store {
+    /// All samples, or those of a part.
+    Held(Samples),
+    Filed(Arc<Filed>),
+}
+
 impl Dem {
-    /// A grid of `columns` x (heights.len() / columns) samples. `cell`: metres between columns and rows, both positive.
-    /// `origin`: easting and northing of sample (0, 0), metres. A height that is not finite becomes a void.
+    /// A grid of `columns` x (heights.len() / columns) samples, held. `cell`: metres between columns and rows, both
+    /// positive. `origin`: easting and northing of sample (0, 0), metres. A height that is not finite becomes a void.
     ///
     /// # Panics
     /// When `heights` is no whole number of rows, or there are fewer than 2 x 2 samples.
-    pub fn from_heights(columns: usize, cell: DVec2, origin: DVec2, mut heights: Vec<f32>) -> Self {
+    pub fn from_heights(columns: usize, cell: DVec2, origin: DVec2, heights: Vec<f32>) -> Self {
         assert!(columns >= 2 && heights.len() >= 2 * columns && heights.len().is_multiple_of(columns));
-        let valid = heights.iter().map(|h| h.is_finite()).collect();
-        heights.iter_mut().filter(|h| !h.is_finite()).for_each(|h| *h = 0.0);
-        let rows = heights.len() / columns;
-        let georeference = Georeference::unknown();
-        Self { columns, rows, cell, origin, heights, valid, georeference, history: History::default() }
+        let size = [columns, heights.len() / columns];
+        let samples = Samples::new(Window { first: [0, 0], size }, heights);
+        Self::new(size, cell, origin, Store::Held(samples))
+    }
+
+    fn new([columns, rows]: [usize; 2], cell: DVec2, origin: DVec2, store: Store) -> Self {
+        let (georeference, history) = (Georeference::unknown(), History::default());
+        Self { columns, rows, cell, origin, store, survey: OnceLock::new(), georeference, history }
     }
 
     /// The same grid with where it lies on Earth and how it came about.
@@ -88,26 +120,99 @@ impl Dem {
         &self.history
     }
 
-    /// Exaggerated metres, row-major from the north-west; 0 at voids.
-    pub fn heights(&self) -> &[f32] {
-        &self.heights
+    /// All samples, which a held DEM has in memory.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] for a filed DEM.
+    pub fn held(&self) -> Result<&Samples> {
+        match &self.store {
+            Store::Held(samples) => Ok(samples),
+            Store::Filed(_) => Err(self.not_held()),
+        }
     }
 
-    /// Whether each sample holds an elevation, in the order of `heights`.
-    pub fn valid(&self) -> &[bool] {
-        &self.valid
+    /// The error of those who need all samples in memory.
+    pub(crate) fn not_held(&self) -> Error {
+        limits::not_held([self.columns, self.rows])
     }
 
-    /// Exaggerated metres of sample (c, r), `None` at a void.
+    /// Whether the samples stay in their files.
+    pub fn is_filed(&self) -> bool {
+        matches!(self.store, Store::Filed(_))
+    }
+
+    /// The samples of a window of `size` columns and rows, cut to the DEM.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when they cannot be read.
+    pub fn window(&self, first: [usize; 2], size: [usize; 2]) -> Result<Samples> {
+        let whole = [self.columns, self.rows];
+        let first = [0, 1].map(|i| first[i].min(whole[i]));
+        let window = Window { first, size: [0, 1].map(|i| size[i].min(whole[i] - first[i])) };
+        let heights = match &self.store {
+            Store::Held(samples) => samples.part(window),
+            Store::Filed(filed) => filed.read(window, &|_| ())?,
+        };
+        Ok(Samples::new(window, heights))
+    }
+
+    /// The same DEM with these samples of it in memory and all others void.
+    pub(crate) fn with_samples(&self, samples: Samples) -> Self {
+        let (georeference, history) = (self.georeference.clone(), self.history.clone());
+        Self {
+            georeference,
+            history,
+            ..Self::new([self.columns, self.rows], self.cell, self.origin, Store::Held(samples))
+        }
+    }
+
+    /// Exaggerated metres of sample (c, r), `None` at a void, outside, and where it cannot be read: see [`Self::check`].
     pub fn height(&self, c: usize, r: usize) -> Option<f32> {
-        let i = r * self.columns + c;
-        self.valid[i].then(|| self.heights[i])
+        match &self.store {
+            Store::Held(samples) => samples.height(c, r),
+            Store::Filed(filed) if c < self.columns && r < self.rows => {
+                self.kept(filed.height([c, r])).filter(|height| height.is_finite())
+            }
+            Store::Filed(_) => None,
+        }
     }
 
-    /// World position of sample (c, r): easting, northing, exaggerated height, metres. Height 0 at a void.
+    /// The first error of those who gave a void in the place of a sample.
+    ///
+    /// # Errors
+    /// [`Error::Input`]; always the same.
+    pub fn check(&self) -> Result<()> {
+        match &self.store {
+            Store::Held(_) => Ok(()),
+            Store::Filed(filed) => filed.check(),
+        }
+    }
+
+    /// What was read, or nothing: then the error is kept for [`Self::check`].
+    pub(crate) fn kept<T>(&self, read: Result<T>) -> Option<T> {
+        match (read, &self.store) {
+            (Ok(read), _) => Some(read),
+            (Err(error), Store::Filed(filed)) => {
+                filed.fail(error);
+                None
+            }
+            (Err(_), Store::Held(_)) => None,
+        }
+    }
+
+    /// A stamp of a filed DEM: as long as it stays the same, so do the samples, as far as names, sizes and times of the
+    /// files and the way of reading them tell. `None` for held DEMs and for files that are not on the disk.
+    pub fn stamp(&self) -> Option<u128> {
+        match &self.store {
+            Store::Held(_) => None,
+            Store::Filed(filed) => filed.stamp(),
+        }
+    }
+
+    /// World position of sample (c, r): easting, northing, exaggerated height, metres. Height 0 where there is none.
     pub fn position(&self, c: usize, r: usize) -> DVec3 {
         let xy = self.origin + DVec2::new(c as f64, -(r as f64)) * self.cell;
-        xy.extend(f64::from(self.heights[r * self.columns + c]))
+        xy.extend(f64::from(self.height(c, r).unwrap_or(0.0)))
     }
 
     /// Column and row, fractional, of a world place in metres; outside the grid they run on.
@@ -119,18 +224,5 @@ impl Dem {
     pub fn extent(&self) -> [f64; 4] {
         let far = self.origin + DVec2::new((self.columns - 1) as f64, -((self.rows - 1) as f64)) * self.cell;
         [self.origin.x, far.y, far.x, self.origin.y]
-    }
-
-    /// Lowest and highest valid height in exaggerated metres, `None` when all is void.
-    pub fn range(&self) -> Option<[f32; 2]> {
-        let valid = self.heights.iter().zip(&self.valid).filter(|(_, v)| **v).map(|(h, _)| *h);
-        valid.fold(None, |range: Option<[f32; 2]>, h| {
-            Some(range.map_or([h, h], |[low, high]| [low.min(h), high.max(h)]))
-        })
-    }
-
-    /// How many samples are void.
-    pub fn voids(&self) -> usize {
-        self.valid.iter().filter(|v| !**v).count()
     }
 }

@@ -2,19 +2,21 @@
 //!
 //! Each file's numbers become metres by its own rules, voids marked, before anything is laid over anything: a tile in
 //! feet may stand beside one in metres, and a void covers nothing. Of files that overlap the last wins. A file whose
-//! samples fall on those of the first is copied; another is warped, by cubic convolution. Only what a window needs is read.
+//! samples fall on those of the first is copied; another is warped, by cubic convolution. Only what a window needs is
+//! read, on the thread that asks; several may ask at once.
 
 use std::path::{Path, PathBuf};
 
 use gdal::raster::{GdalType, RasterBand};
 use glam::DVec2;
-use rayon::prelude::*;
 
 use super::crs::Way;
 use super::elevation::{Elevation, Reading};
 use super::grid::{Grid, Window, span};
+use super::handles::Handles;
 use super::raster::Raster;
 use super::source::{Source, heard};
+use super::tiling::Tiling;
 use super::{History, ReadOptions};
 use crate::error::{Error, Result};
 
@@ -22,6 +24,9 @@ use crate::error::{Error, Result};
 const ALIGNED_CELLS: f64 = 0.01;
 /// Samples read at once: 8 MiB of f64.
 const BLOCK_SAMPLES: usize = 1 << 20;
+/// Formats whose blocks are unpacked one by one and cost time: there, threads gain by reading at once. Others are read
+/// as fast by one thread, or only in the order in which they are written.
+const PARALLEL: [&str; 3] = ["GTiff", "COG", "VRT"];
 /// Samples around a window that cubic convolution reaches, and one more.
 const MARGIN: usize = 3;
 
@@ -29,15 +34,23 @@ const MARGIN: usize = 3;
 pub(super) struct Mosaic {
     /// North-up wherever that takes no resampling.
     pub grid: Grid,
+    /// The format of the first file, in GDAL's words.
+    pub format: String,
     sources: Vec<Placed>,
 }
 
 /// A file and where it lies in the mosaic.
 struct Placed {
-    source: Source,
+    handles: Handles,
     elevation: Elevation,
     grid: Grid,
     lie: Lie,
+    /// Columns and rows of the blocks in which the file stores its samples.
+    stored: [usize; 2],
+    /// Whether several threads gain by reading it at once.
+    parallel: bool,
+    /// The format in GDAL's words.
+    format: String,
 }
 
 /// How the samples of a file lie to those of the mosaic.
@@ -76,17 +89,38 @@ impl Mosaic {
         if sources.len() > 1 {
             history.convert(format!("{} files laid together: {columns} x {rows} samples", sources.len()));
         }
-        Ok(Self { grid: Grid { to_crs, columns, rows, ..base }, sources })
+        let format = sources[0].format.clone();
+        Ok(Self { grid: Grid { to_crs, columns, rows, ..base }, format, sources })
     }
 
     /// The first file, for messages.
     pub fn path(&self) -> &Path {
-        &self.sources[0].source.path
+        self.sources[0].handles.path()
     }
 
-    /// The format of the first file, in GDAL's words.
-    pub fn format(&self) -> String {
-        self.sources[0].source.dataset.driver().long_name()
+    /// A file whose samples lie between those of the mosaic, so that it must be warped as a whole.
+    pub fn apart(&self) -> Option<&Path> {
+        let apart = self.sources.iter().find(|placed| matches!(placed.lie, Lie::Apart { .. }));
+        apart.map(|placed| placed.handles.path())
+    }
+
+    /// Whether several threads gain by reading at once.
+    pub fn is_parallel(&self) -> bool {
+        self.sources.iter().all(|placed| placed.parallel)
+    }
+
+    /// The tiles in which a window is best read: about those of the first file.
+    pub fn tiling(&self, window: Window) -> Tiling {
+        let Placed { lie, grid, stored, .. } = &self.sources[0];
+        let (first, _) = lie.bounds(grid);
+        Tiling::of(*stored, [0, 1].map(|i| window.first[i] as i64 - first[i]), window.size)
+    }
+
+    /// What tells one state of the files from another, and how they are read; `None` where one is not on the disk.
+    pub fn stamp(&self) -> Option<String> {
+        let of =
+            |placed: &Placed| Some(format!("{:?} {:?} {:?}", placed.handles.stamp()?, placed.elevation, placed.lie));
+        self.sources.iter().map(of).collect()
     }
 
     /// Samples to be read of each file that is warped, for `window` of the mosaic.
@@ -94,26 +128,21 @@ impl Mosaic {
         let target = self.grid.part(window);
         self.sources.iter().filter(|placed| matches!(placed.lie, Lie::Apart { .. })).map(move |placed| {
             let samples = reach(&target, &placed.grid).map_or(0, Window::samples);
-            (placed.source.path.as_path(), samples)
+            (placed.handles.path(), samples)
         })
     }
 
-    /// Reads the samples of `window`. `progress` hears the share done.
-    pub fn read(&self, window: Window, history: &mut History, progress: &dyn Fn(f64)) -> Result<Raster> {
+    /// Reads the samples of `window`, and how many of them are void by their impossible value alone. `progress` hears the
+    /// share done.
+    pub fn read(&self, window: Window, progress: &dyn Fn(f64)) -> Result<(Raster, usize)> {
         let mut raster = Raster::void(self.grid.part(window))?;
-        let mut sentinels = 0;
+        let mut marks = 0;
         for (i, placed) in self.sources.iter().enumerate() {
             let share = |done: f64| progress((i as f64 + done) / self.sources.len() as f64);
-            sentinels += placed.read(window, &mut raster, &share)?;
-        }
-        if sentinels > 0 {
-            history.assume(format!(
-                "{sentinels} samples at or below -32767 or above 100000 m are voids \
-                 (no such nodata is declared; declare it with `gdal_translate -a_nodata N IN OUT.tif`)"
-            ));
+            marks += placed.read(window, &mut raster, &share)?;
         }
         progress(1.0);
-        Ok(raster)
+        Ok((raster, marks))
     }
 }
 
@@ -139,7 +168,11 @@ impl Placed {
             own.convert("warped to the grid of the first file, cubic".into());
         }
         history.take(own, base.is_some().then_some(path));
-        Ok(Self { source, elevation, grid, lie })
+        let (width, height) = source.band()?.block_size();
+        let driver = source.dataset.driver();
+        let (parallel, format) = (PARALLEL.contains(&driver.short_name().as_str()), driver.long_name());
+        let handles = Handles::new(source, options.allow_remote);
+        Ok(Self { handles, elevation, grid, lie, stored: [width, height], parallel, format })
     }
 
     /// Lays what falls into `window` of the mosaic over `raster`, which holds just that; returns how many samples
@@ -148,23 +181,31 @@ impl Placed {
         match self.lie {
             Lie::Aligned { first, flip } => {
                 let first = [0, 1].map(|i| first[i] - window.first[i] as i64);
-                self.copy(first, flip, raster, progress)
+                self.handles.read(|source| self.copy(source, first, flip, raster, progress))
             }
             Lie::Apart { .. } => {
                 let Some(part) = reach(&raster.grid, &self.grid) else { return Ok(0) };
                 let mut own = Raster::void(self.grid.part(part))?;
                 let first = part.first.map(|first| -(first as i64));
-                let sentinels = self.copy(first, [false; 2], &mut own, &|done| progress(done / 2.0))?;
+                let share = |done: f64| progress(done / 2.0);
+                let marks = self.handles.read(|source| self.copy(source, first, [false; 2], &mut own, &share))?;
                 raster.lay(&own, &|done| progress((1.0 + done) / 2.0))?;
-                Ok(sentinels)
+                Ok(marks)
             }
         }
     }
 
     /// Copies the samples, as metres, to where `raster` has them: the file's first column and row, after flipping, at
     /// `first`. Voids cover nothing.
-    fn copy(&self, first: [i64; 2], flip: [bool; 2], raster: &mut Raster, progress: &dyn Fn(f64)) -> Result<usize> {
-        let band = self.source.band()?;
+    fn copy(
+        &self,
+        source: &Source,
+        first: [i64; 2],
+        flip: [bool; 2],
+        raster: &mut Raster,
+        progress: &dyn Fn(f64),
+    ) -> Result<usize> {
+        let band = source.band()?;
         let masked = band.mask_flags().is_ok_and(|flags| flags.is_per_dataset());
         let mask = if masked { band.open_mask_band().ok() } else { None };
         let (own, there) = ([self.grid.columns, self.grid.rows], [raster.grid.columns, raster.grid.rows]);
@@ -174,63 +215,63 @@ impl Placed {
             return Ok(0);
         }
         let window = Window { first: low.map(|v| v as usize), size: [0, 1].map(|i| (end[i] - low[i]) as usize) };
-        let (mut sentinels, mut done) = (0, 0);
-        for Window { first: at, size } in window.blocks(block_size(&band)) {
+        let (mut marks, mut done) = (0, 0);
+        for Window { first: at, size } in window.blocks(block_size(self.stored, own[0])) {
             // The first sample of the block in the file, counted backwards where flipped.
             let from = [0, 1].map(|i| {
                 let offset = (at[i] as i64 - first[i]) as usize;
                 if flip[i] { own[i] - offset - size[i] } else { offset }
             });
-            let mut raw = self.numbers(&band, mask.as_ref(), from, size)?;
+            let mut raw = numbers(source, &band, mask.as_ref(), from, size)?;
             turn(&mut raw, size[0], flip);
-            let mut metres = raster.block(at, size)?;
-            sentinels += self.cover(&mut metres, &raw);
-            raster.put(at, size, metres)?;
+            for (row, raw) in raw.chunks_exact(size[0]).enumerate() {
+                let place = (at[1] + row) * there[0] + at[0];
+                marks += self.cover(&mut raster.metres[place..place + size[0]], raw);
+            }
             done += size[0] * size[1];
             progress(done as f64 / window.samples() as f64);
         }
-        Ok(sentinels)
+        Ok(marks)
     }
 
     /// Covers `metres` with those of the numbers `raw`; returns how many are marks that nobody declared.
     fn cover(&self, metres: &mut [f32], raw: &[f64]) -> usize {
-        let elevation = self.elevation;
-        let cover = move |(metres, raw): (&mut f32, &f64)| match elevation.reading(*raw) {
-            Reading::Metres(value) => {
-                *metres = value as f32;
-                0
+        let mut marks = 0;
+        for (metres, raw) in metres.iter_mut().zip(raw) {
+            match self.elevation.reading(*raw) {
+                Reading::Metres(value) => *metres = value as f32,
+                Reading::Void => {}
+                Reading::Sentinel => marks += 1,
             }
-            Reading::Void => 0,
-            Reading::Sentinel => 1,
-        };
-        metres.par_iter_mut().zip(raw).map(cover).sum()
-    }
-
-    /// A block of the file's numbers, NaN where the file masks them.
-    fn numbers(
-        &self,
-        band: &RasterBand,
-        mask: Option<&RasterBand>,
-        from: [usize; 2],
-        size: [usize; 2],
-    ) -> Result<Vec<f64>> {
-        let mut raw = self.block::<f64>(band, from, size)?;
-        if let Some(mask) = mask {
-            let seen = self.block::<u8>(mask, from, size)?;
-            raw.iter_mut().zip(seen).filter(|(_, seen)| *seen == 0).for_each(|(raw, _)| *raw = f64::NAN);
         }
-        Ok(raw)
+        marks
     }
+}
 
-    /// One block of numbers, or the error for a damaged file.
-    fn block<T: GdalType + Copy>(&self, band: &RasterBand, from: [usize; 2], size: [usize; 2]) -> Result<Vec<T>> {
-        let (place, size) = ((from[0] as isize, from[1] as isize), (size[0], size[1]));
-        let (block, complaint) = heard(|| band.read_as::<T>(place, size, size, None));
-        match (block, complaint) {
-            (Ok(block), None) => Ok(block.into_shape_and_vec().1),
-            // A driver that complains and goes on has made the numbers up.
-            (_, words) => Err(self.source.unreadable(words.as_deref())),
-        }
+/// A block of a file's numbers, NaN where the file masks them.
+fn numbers(
+    source: &Source,
+    band: &RasterBand,
+    mask: Option<&RasterBand>,
+    from: [usize; 2],
+    size: [usize; 2],
+) -> Result<Vec<f64>> {
+    let mut raw = block::<f64>(source, band, from, size)?;
+    if let Some(mask) = mask {
+        let seen = block::<u8>(source, mask, from, size)?;
+        raw.iter_mut().zip(seen).filter(|(_, seen)| *seen == 0).for_each(|(raw, _)| *raw = f64::NAN);
+    }
+    Ok(raw)
+}
+
+/// One block of numbers, or the error for a damaged file.
+fn block<T: GdalType + Copy>(source: &Source, band: &RasterBand, from: [usize; 2], size: [usize; 2]) -> Result<Vec<T>> {
+    let (place, size) = ((from[0] as isize, from[1] as isize), (size[0], size[1]));
+    let (block, complaint) = heard(|| band.read_as::<T>(place, size, size, None));
+    match (block, complaint) {
+        (Ok(block), None) => Ok(block.into_shape_and_vec().1),
+        // A driver that complains and goes on has made the numbers up.
+        (_, words) => Err(source.unreadable(words.as_deref())),
     }
 }
 
@@ -300,13 +341,12 @@ pub(super) fn reach(target: &Grid, source: &Grid) -> Option<Window> {
     meet.then(|| Window { first: first.map(|v| v as usize), size: [0, 1].map(|i| (end[i] - first[i]) as usize) })
 }
 
-/// Columns and rows to read at once: whole blocks of the file, about [`BLOCK_SAMPLES`] in all, so that none is unpacked
-/// twice.
-fn block_size(band: &RasterBand) -> [usize; 2] {
-    let (width, height) = band.block_size();
+/// Columns and rows to read at once of a file of `columns` stored in such blocks: whole ones, about [`BLOCK_SAMPLES`] in
+/// all, so that none is unpacked twice.
+fn block_size([width, height]: [usize; 2], columns: usize) -> [usize; 2] {
     let height = height.clamp(1, BLOCK_SAMPLES / width.clamp(1, BLOCK_SAMPLES));
     let across = (BLOCK_SAMPLES / height / width.max(1)).max(1) * width;
-    let across = across.min(band.x_size());
+    let across = across.min(columns);
     [across, (BLOCK_SAMPLES / height / across).max(1) * height]
 }
 

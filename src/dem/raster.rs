@@ -1,11 +1,12 @@
 //! Elevations under way: metres on a grid in memory, which GDAL can warp and fill.
 //!
-//! Memory: 4 bytes a sample. The unsafe calls of this crate stand here: GDAL's warper and filler have no safe wrapper.
+//! Memory: 4 bytes a sample; GDAL works on them where they lie. Unsafe calls stand here: GDAL's warper and filler have
+//! no safe wrapper.
 
 use std::ffi::{CString, c_char, c_int, c_void};
 use std::ptr::null_mut;
 
-use gdal::raster::Buffer;
+use gdal::errors::GdalError;
 use gdal::{Dataset, DriverManager};
 use glam::DVec2;
 
@@ -27,57 +28,23 @@ const WARP_MEMORY: &str = "32";
 pub(super) struct Raster {
     /// Where the samples lie.
     pub grid: Grid,
-    dataset: Dataset,
+    /// Metres, row-major.
+    pub metres: Vec<f32>,
 }
 
 impl Raster {
     /// All void.
     pub fn void(grid: Grid) -> Result<Self> {
-        let make = || {
-            let memory = DriverManager::get_driver_by_name("MEM")?;
-            let mut dataset = memory.create_with_band_type::<f32, _>("", grid.columns, grid.rows, 1)?;
-            let ([x, y], m) = (grid.to_crs.translation.to_array(), grid.to_crs.matrix2);
-            dataset.set_geo_transform(&[x, m.x_axis.x, m.y_axis.x, y, m.x_axis.y, m.y_axis.y])?;
-            if let Some(reference) = grid.crs.reference() {
-                dataset.set_spatial_ref(&reference)?;
-            }
-            let mut band = dataset.rasterband(1)?;
-            band.set_no_data_value(Some(f64::NAN))?;
-            band.fill(f64::NAN, None)?;
-            Ok::<_, gdal::errors::GdalError>(dataset)
-        };
-        let (made, words) = heard(make);
-        match made {
-            Ok(dataset) => Ok(Self { grid, dataset }),
-            Err(e) => Err(out_of_memory(&grid, &words.unwrap_or_else(|| e.to_string()))),
-        }
-    }
-
-    /// The block of samples at `first` (column, row) of `size` columns and rows, row-major.
-    pub fn block(&self, first: [usize; 2], size: [usize; 2]) -> Result<Vec<f32>> {
-        let (place, size) = ((first[0] as isize, first[1] as isize), (size[0], size[1]));
-        let read = || self.dataset.rasterband(1)?.read_as::<f32>(place, size, size, None);
-        let (block, words) = heard(read);
-        block.map(|b| b.into_shape_and_vec().1).map_err(|e| self.failed(words, &e.to_string()))
-    }
-
-    /// All samples, row-major.
-    pub fn heights(&self) -> Result<Vec<f32>> {
-        self.block([0, 0], [self.grid.columns, self.grid.rows])
+        let samples = grid.columns * grid.rows;
+        let mut metres = Vec::new();
+        metres.try_reserve_exact(samples).map_err(|e| out_of_memory(&grid, &e.to_string()))?;
+        metres.resize(samples, f32::NAN);
+        Ok(Self { grid, metres })
     }
 
     /// How many samples are void.
-    pub fn voids(&self) -> Result<usize> {
-        let rows = (0..self.grid.rows).map(|row| self.block([0, row], [self.grid.columns, 1]));
-        rows.map(|row| row.map(|row| row.iter().filter(|height| height.is_nan()).count())).sum()
-    }
-
-    /// Puts a block of samples at `first` (column, row), `size` columns and rows, row-major.
-    pub fn put(&mut self, first: [usize; 2], size: [usize; 2], samples: Vec<f32>) -> Result<()> {
-        let (place, size) = ((first[0] as isize, first[1] as isize), (size[0], size[1]));
-        let mut block = Buffer::new(size, samples);
-        let (put, words) = heard(|| self.dataset.rasterband(1)?.write(place, size, &mut block));
-        put.map_err(|e| self.failed(words, &e.to_string()))
+    pub fn voids(&self) -> usize {
+        self.metres.iter().filter(|height| height.is_nan()).count()
     }
 
     /// Lays `from` over what is here, by cubic convolution in the systems and grids of both; voids of `from` cover
@@ -91,12 +58,15 @@ impl Raster {
         let words = [&["-r", "cubic", "-novshift", "-wo", &x, "-wo", &y], &quick[..]].concat();
         let words: Vec<_> = words.into_iter().map(|word| CString::new(word).unwrap_or_default()).collect();
         let mut list = pointers(&words);
-        let mut sources = [from.dataset.c_dataset()];
-        let onto = self.dataset.c_dataset();
+        let onto_metres = self.metres.as_mut_ptr();
+        let (from, laid) = (from.dataset(from.metres.as_ptr().cast_mut())?, self.dataset(onto_metres)?);
+        let mut sources = [from.c_dataset()];
+        let onto = laid.c_dataset();
         let work = || {
             let mut misused: c_int = 0;
-            // SAFETY: `list` ends with null and its strings outlive the call, as do both datasets and `progress`,
-            // which `share` alone reads, on this thread while GDALWarp runs. The result is `onto` itself or null.
+            // SAFETY: `list` ends with null and its strings outlive the call, as do both datasets with their samples (those
+            // of `onto` borrowed for writing) and `progress`, which `share` alone reads, on this thread while GDALWarp
+            // runs. The result is `onto` itself or null.
             unsafe {
                 let options = gdal_sys::GDALWarpAppOptionsNew(list.as_mut_ptr(), null_mut());
                 gdal_sys::GDALWarpAppOptionsSetProgress(options, Some(share), argument(&progress));
@@ -114,7 +84,9 @@ impl Raster {
         // Its working rasters would otherwise be files in the folder where hachure is started.
         let words = [c"TEMP_FILE_DRIVER=MEM".to_owned()];
         let mut list = pointers(&words);
-        let dataset = self.dataset.c_dataset();
+        let metres = self.metres.as_mut_ptr();
+        let filled = self.dataset(metres)?;
+        let dataset = filled.c_dataset();
         let work = || {
             // SAFETY: as in `lay`; band 1 is there, and without a mask GDAL takes the band's own, NaN.
             unsafe {
@@ -126,6 +98,34 @@ impl Raster {
         };
         let (done, words) = heard(work);
         if done == gdal_sys::CPLErr::CE_None { Ok(()) } else { Err(self.failed(words, "the filler gave up")) }
+    }
+
+    /// GDAL's dataset over `metres`, a pointer to the samples: it must not outlive them, nor write to those that are
+    /// borrowed for reading.
+    fn dataset(&self, metres: *mut f32) -> Result<Dataset> {
+        let grid = &self.grid;
+        let words = [CString::new(format!("DATAPOINTER=0x{:x}", metres as usize)).unwrap_or_default()];
+        let make = || {
+            let memory = DriverManager::get_driver_by_name("MEM")?;
+            let mut dataset = memory.create_with_band_type::<f32, _>("", grid.columns, grid.rows, 0)?;
+            let mut list = pointers(&words);
+            // SAFETY: `list` ends with null and its string outlives the call; the pointer leads to as many samples.
+            let class = unsafe {
+                gdal_sys::GDALAddBand(dataset.c_dataset(), gdal_sys::GDALDataType::GDT_Float32, list.as_mut_ptr())
+            };
+            if class != gdal_sys::CPLErr::CE_None {
+                return Err(GdalError::CplError { class, number: 0, msg: "no band can be added".into() });
+            }
+            let ([x, y], m) = (grid.to_crs.translation.to_array(), grid.to_crs.matrix2);
+            dataset.set_geo_transform(&[x, m.x_axis.x, m.y_axis.x, y, m.x_axis.y, m.y_axis.y])?;
+            if let Some(reference) = grid.crs.reference() {
+                dataset.set_spatial_ref(&reference)?;
+            }
+            dataset.rasterband(1)?.set_no_data_value(Some(f64::NAN))?;
+            Ok::<_, GdalError>(dataset)
+        };
+        let (made, words) = heard(make);
+        made.map_err(|e| self.failed(words, &e.to_string()))
     }
 
     fn failed(&self, words: Option<String>, otherwise: &str) -> Error {

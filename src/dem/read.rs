@@ -1,15 +1,21 @@
 //! Reads rasters as one DEM: the whole way from files to metres.
 //!
-//! Cost: one pass over the samples that the drawn part needs, and the warp where there is one. Memory at most 13 bytes
-//! a sample of the DEM: the rasters under way are gone before normals are computed.
+//! Cost: one pass over the samples that the drawn part needs, and the warp where there is one; nothing yet where they
+//! stay in their files. Memory of a held DEM at most 12 1/8 bytes a sample: the rasters under way are gone before normals
+//! are computed.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use super::elevation::ElevationUnit;
+use super::filed::{Filed, exaggerate};
+use super::grid::Grid;
+use super::limits::are_held;
 use super::mosaic::Mosaic;
 use super::raster::{FILL_REACH, Raster};
-use super::target::{Target, check_read};
-use super::{Dem, Georeference, History};
+use super::survey::marked;
+use super::target::Target;
+use super::{Dem, Georeference, History, Samples, Store};
 use crate::error::{Error, Result};
 
 /// Largest exaggeration: above it the highest mountain stands higher than the Earth is wide.
@@ -37,6 +43,9 @@ pub struct ReadOptions {
     pub elevation_unit: Option<ElevationUnit>,
     /// Open files on a network, and VRTs that refer to files outside their folder. Default false.
     pub allow_remote: bool,
+    /// Bytes of memory for samples and normals. A DEM that takes more stays in its files, and half of them keep what was
+    /// read last. Default 1 GiB.
+    pub memory: u64,
 }
 
 impl Default for ReadOptions {
@@ -50,6 +59,7 @@ impl Default for ReadOptions {
             fill_voids: false,
             elevation_unit: None,
             allow_remote: false,
+            memory: 1 << 30,
         }
     }
 }
@@ -65,8 +75,7 @@ pub enum Stage {
     Fill,
 }
 
-/// Reads `path` as a DEM of at least 2 x 2 and at most [`MAX_SAMPLES`](super::MAX_SAMPLES) samples, metres, north-up.
-/// See [`read_all`].
+/// Reads `path` as a DEM of at least 2 x 2 samples, metres, north-up. See [`read_all`].
 ///
 /// # Errors
 /// As [`read_all`].
@@ -74,7 +83,10 @@ pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Dem> {
     read_all(&[path.as_ref().to_owned()], options, &|_, _| ())
 }
 
-/// Reads `paths` as one DEM of at least 2 x 2 and at most [`MAX_SAMPLES`](super::MAX_SAMPLES) samples, metres, north-up.
+/// Reads `paths` as one DEM of at least 2 x 2 samples, metres, north-up.
+///
+/// Up to [`MAX_SAMPLES`](super::MAX_SAMPLES) are held, if `options.memory` suffices. More stay in their files, up to
+/// [`LARGEST_SIDE`](super::LARGEST_SIDE) along a side, where nothing is warped or filled.
 ///
 /// Sample (c, r) lies in the middle of its pixel. Scale, offset and unit of the band are applied, then the exaggeration.
 /// Voids are the declared nodata value, masked and transparent samples, numbers that are not finite, and marks for no
@@ -98,6 +110,7 @@ pub(super) struct Reading {
     pub mosaic: Mosaic,
     pub target: Target,
     pub history: History,
+    held: bool,
 }
 
 impl Reading {
@@ -107,55 +120,57 @@ impl Reading {
         let mut history = History::default();
         let mosaic = Mosaic::open(paths, options, &mut history)?;
         let target = Target::of(&mosaic.grid, mosaic.path(), options, &mut history)?;
-        let held = target.window.samples();
-        mosaic.warped_parts(target.window).try_for_each(|(path, read)| check_read(path, read, held))?;
-        Ok(Self { mosaic, target, history })
+        let held = are_held(&mosaic, &target, options)?;
+        Ok(Self { mosaic, target, history, held })
     }
 
-    /// Reads the samples.
-    pub fn finish(mut self, options: &ReadOptions, progress: &dyn Fn(Stage, f64)) -> Result<Dem> {
-        let mut raster =
-            self.mosaic.read(self.target.window, &mut self.history, &|done| progress(Stage::Read, done))?;
-        if self.target.warps {
-            let mut onto = Raster::void(self.target.grid.clone())?;
-            onto.lay(&raster, &|done| progress(Stage::Warp, done))?;
-            raster = onto;
-        }
-        let before = if options.fill_voids { raster.voids()? } else { 0 };
-        if before > 0 {
-            raster.fill(&|done| progress(Stage::Fill, done))?;
-            self.history.convert(filled(before, raster.voids()?));
-        }
-        let mut heights = raster.heights()?;
-        drop(raster);
-        if heights.iter().all(|height| height.is_nan()) {
-            return Err(self.all_void(heights.len(), options));
-        }
-        heights.iter_mut().for_each(|height| *height = (f64::from(*height) * options.exaggeration) as f32);
-        Ok(self.dem(heights))
-    }
-
-    fn dem(self, heights: Vec<f32>) -> Dem {
-        let grid = self.target.grid;
+    /// Reads the samples, if they are to be held.
+    pub fn finish(self, options: &ReadOptions, progress: &dyn Fn(Stage, f64)) -> Result<Dem> {
+        let Self { mosaic, target: Target { grid, window, warps }, mut history, held } = self;
+        let georeference = Georeference::new(mosaic.grid.crs.clone(), grid.crs.clone());
+        let store = if held {
+            let warped = warps.then_some(&grid);
+            Store::Held(hold(Filed::new(mosaic, window, 1.0, 0), warped, options, &mut history, progress)?)
+        } else {
+            let budget = usize::try_from(options.memory).unwrap_or(usize::MAX);
+            Store::Filed(Arc::new(Filed::new(mosaic, window, options.exaggeration, budget)))
+        };
         let metres = grid.crs.metres_per_unit().unwrap_or(1.0);
-        let mut history = self.history;
         if metres != 1.0 {
             history.convert(format!("coordinates x {metres} to metres ({})", grid.crs.units()));
         }
-        let georeference = Georeference::new(self.mosaic.grid.crs.clone(), grid.crs.clone());
-        let origin = grid.sample(0.0, 0.0) * metres;
-        let dem = Dem::from_heights(grid.columns, grid.cell() * metres, origin, heights);
-        dem.with_source(georeference, history)
+        let (cell, origin) = (grid.cell() * metres, grid.sample(0.0, 0.0) * metres);
+        Ok(Dem::new([grid.columns, grid.rows], cell, origin, store).with_source(georeference, history))
     }
+}
 
-    fn all_void(&self, samples: usize, options: &ReadOptions) -> Error {
-        let inside = if options.crop.is_some() { " inside the crop" } else { "" };
-        Error::input(
-            self.mosaic.path(),
-            format!("holds no elevation{inside}, all {samples} samples are void"),
-            "check the band and its nodata value with `gdalinfo -stats`, choose another --band, or move --crop",
-        )
+/// Reads all samples of `files`, which are neither exaggerated nor kept there, and does with them what GDAL does to
+/// samples in memory. `warped` is the grid they are warped to.
+fn hold(
+    files: Filed,
+    warped: Option<&Grid>,
+    options: &ReadOptions,
+    history: &mut History,
+    progress: &dyn Fn(Stage, f64),
+) -> Result<Samples> {
+    let (mut raster, marks) = files.raster(&|done| progress(Stage::Read, done))?;
+    marked(marks).into_iter().for_each(|clause| history.assume(clause));
+    if let Some(grid) = warped {
+        let mut onto = Raster::void(grid.clone())?;
+        onto.lay(&raster, &|done| progress(Stage::Warp, done))?;
+        raster = onto;
     }
+    let before = if options.fill_voids { raster.voids() } else { 0 };
+    if before > 0 {
+        raster.fill(&|done| progress(Stage::Fill, done))?;
+        history.convert(filled(before, raster.voids()));
+    }
+    let Raster { grid, mut metres } = raster;
+    if metres.iter().all(|height| height.is_nan()) {
+        return Err(files.all_void(metres.len()));
+    }
+    exaggerate(&mut metres, options.exaggeration);
+    Ok(Samples::new(grid.whole(), metres))
 }
 
 /// What filling did, in words.

@@ -12,18 +12,12 @@ use glam::DVec2;
 use super::crs::{Crs, Way};
 use super::grid::{Grid, Window, span};
 use super::inscribed::largest;
+use super::limits::{MAX_SAMPLES, Whole, too_many};
 use super::mosaic::reach;
 use super::source::MIN_SIDE;
 use super::{History, ReadOptions};
 use crate::error::{Error, Result};
 
-/// Most samples of a DEM: 128 MiB of heights, the largest buffer that every GPU binds.
-pub const MAX_SAMPLES: usize = 1 << 25;
-/// Most samples that are read to be warped: 1 GiB.
-const MAX_READ: u64 = 1 << 28;
-/// Bytes a sample of the files at work, and of the DEM with its normals.
-const READ_BYTES: u64 = 4;
-const DEM_BYTES: u64 = 13;
 /// Pixels from the border of the files to where cubic convolution has all its samples.
 const BORDER: f64 = 1.5;
 /// Samples along a side from which something is left when it is warped.
@@ -49,7 +43,7 @@ pub(super) struct Target {
 }
 
 impl Target {
-    /// For the grid of the files; `path` is the first, for messages. Fails when too little is left, or too much.
+    /// For the grid of the files; `path` is the first, for messages. Fails when too little is left.
     pub fn of(files: &Grid, path: &Path, options: &ReadOptions, history: &mut History) -> Result<Self> {
         let window = match options.crop {
             None => files.whole(),
@@ -61,7 +55,7 @@ impl Target {
         } else {
             Self::warped(files, window, path, options, history)?
         };
-        target.check_size(files, path)?;
+        check_sides([target.grid.columns, target.grid.rows], files, path)?;
         if let Some(stretch) = target.stretch().filter(|stretch| (stretch - 1.0).abs() > TRUE_SCALE) {
             let wrong = if stretch > 1.0 { "too flat" } else { "too steep" };
             history.assume(format!(
@@ -117,27 +111,12 @@ impl Target {
         Ok(Self { grid, window, warps: true })
     }
 
-    /// At least 2 x 2 samples, at most [`MAX_SAMPLES`], and memory for all.
-    fn check_size(&self, files: &Grid, path: &Path) -> Result<()> {
-        let Grid { columns, rows, .. } = self.grid;
-        check_sides([columns, rows], files, path)?;
-        let samples = columns as u64 * rows as u64;
-        if samples > MAX_SAMPLES as u64 {
-            return Err(too_many(path, [columns, rows], self.metres_to_fit(samples, MAX_SAMPLES as u64)));
-        }
-        let read = self.window.samples();
-        let work = if self.warps { read * READ_BYTES } else { 0 };
-        if self.warps {
-            check_read(path, read, 0)?;
-        }
-        check_memory(path, (work + samples * READ_BYTES).max(samples * DEM_BYTES), available_memory())
-    }
-
-    /// Cell size in metres at which no more than `fit` of `samples` are left.
-    fn metres_to_fit(&self, samples: u64, fit: u64) -> f64 {
+    /// Cell size in metres at which no more than `fit` samples are left.
+    pub fn metres_to_fit(&self, fit: u64) -> f64 {
         let cell = self.grid.cell() * self.grid.crs.metres_per_unit().unwrap_or(1.0);
+        let samples = self.grid.columns as f64 * self.grid.rows as f64;
         // A percent more, for rows and columns are whole.
-        rounded_up((cell.x * cell.y * samples as f64 / fit as f64).sqrt() * 1.01)
+        rounded_up((cell.x * cell.y * samples / fit as f64).sqrt() * 1.01)
     }
 }
 
@@ -253,15 +232,7 @@ fn check_extent(all: &Grid, metres: f64, path: &Path) -> Result<()> {
         return Ok(());
     }
     let fit = rounded_up(metres * (samples / MAX_SAMPLES as f64).sqrt());
-    Err(too_many(path, [all.columns, all.rows], fit))
-}
-
-fn too_many(path: &Path, [columns, rows]: [usize; 2], metres: f64) -> Error {
-    let samples = columns as u64 * rows as u64;
-    Error::Limit {
-        what: format!("{}: {columns} x {rows} = {samples} samples, at most {MAX_SAMPLES} fit", path.display()),
-        remedy: format!("use --crop to take a part, or --resample {metres} for cells of {metres} m"),
-    }
+    Err(too_many(path, all, &Whole::Warped, fit))
 }
 
 fn lost(path: &Path) -> Error {
@@ -291,35 +262,6 @@ fn outside(files: &Grid, path: &Path) -> Error {
     )
 }
 
-/// As many samples of a file as may be read to be warped, beside `held` others.
-pub(super) fn check_read(path: &Path, read: u64, held: u64) -> Result<()> {
-    if read > MAX_READ {
-        return Err(Error::Limit {
-            what: format!("{}: {read} samples would be read to be warped, at most {MAX_READ} fit", path.display()),
-            remedy: "use --crop to take a part, or make it coarser with `gdalwarp -tr M M -r average IN OUT.tif`"
-                .into(),
-        });
-    }
-    check_memory(path, (read + held) * READ_BYTES, available_memory())
-}
-
-fn check_memory(path: &Path, needed: u64, available: Option<u64>) -> Result<()> {
-    match available {
-        Some(available) if available < needed => Err(Error::Limit {
-            what: format!("{}: needs {} MiB of memory, {} MiB are free", path.display(), needed >> 20, available >> 20),
-            remedy: "use --crop to take a part, or --resample M for larger cells".into(),
-        }),
-        _ => Ok(()),
-    }
-}
-
-/// Bytes of memory that new work may take, where the system says so (Linux).
-fn available_memory() -> Option<u64> {
-    let text = std::fs::read_to_string("/proc/meminfo").ok()?;
-    let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
-    line.trim().trim_end_matches(" kB").parse::<u64>().ok().map(|kib| kib * 1024)
-}
-
 /// To so many significant digits.
 fn rounded(value: f64, digits: i32) -> f64 {
     let scale = 10f64.powi(digits - 1 - value.abs().log10().floor() as i32);
@@ -345,15 +287,6 @@ mod tests {
         assert_eq!(zone(241.0, 37.0), 32611);
         assert_eq!(zone(0.0, 85.0), 3413);
         assert_eq!(zone(0.0, -85.0), 3031);
-    }
-
-    #[test]
-    fn memory_is_checked_before_it_is_taken() {
-        let path = Path::new("a.tif");
-        assert!(check_memory(path, 100 << 20, Some(100 << 20)).is_ok());
-        assert!(check_memory(path, 100 << 20, None).is_ok());
-        let said = check_memory(path, 200 << 20, Some(100 << 20)).unwrap_err().to_string();
-        assert_eq!(said.split(';').next(), Some("a.tif: needs 200 MiB of memory, 100 MiB are free"));
     }
 
     #[test]

@@ -3,6 +3,7 @@
 //! A frame uploads the camera, its lattice, and those tiles of samples that are not there yet. No binding exceeds
 //! 128 MiB, whatever the level: vertices and the queue are sized by a batch, facing bits lie in up to four parts.
 
+use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 
 use bytemuck::Zeroable;
@@ -13,7 +14,7 @@ use super::pool::{Placed, Pool};
 use super::rasterize_large::empty_queue;
 use super::sizes::{self, fits};
 use super::uniforms::{BatchUniform, CameraUniform, ChunkUniform, SceneUniform};
-use crate::dem::Dem;
+use crate::dem::{Band, Dem};
 use crate::error::{Error, Result};
 use crate::plan::batches::PART_CHUNKS;
 use crate::plan::{Batch, Visibility, batches};
@@ -88,8 +89,8 @@ impl Buffers {
         let dem = surface.dem();
         buffers.uniform(gpu, "scene", bytemuck::bytes_of(&SceneUniform::new(dem, lattice)));
         buffers.uniform(gpu, "camera", bytemuck::bytes_of(&CameraUniform::zeroed()));
-        let voids = dem.voids() > 0;
-        buffers.upload(gpu, "valid", bytemuck::cast_slice(&if voids { valid_bits(dem) } else { vec![0] }))?;
+        let valid = if dem.voids() > 0 { valid_bits(dem)? } else { Cow::Borrowed(&[0][..]) };
+        buffers.upload(gpu, "valid", bytemuck::cast_slice(&valid))?;
         buffers.upload(gpu, "rim", bytemuck::cast_slice(rim))?;
         buffers.upload(gpu, "empty_queue", bytemuck::bytes_of(&empty_queue([width, height])))?;
         buffers.upload(gpu, "no_pixels", bytemuck::bytes_of(&NO_PIXELS))?;
@@ -114,7 +115,7 @@ impl Buffers {
         };
         for batch in missing.chunks(TILES_AT_ONCE) {
             for (place, tile) in batch {
-                let TileSamples { heights, gradients: [east, north] } = tile.read(surface);
+                let TileSamples { heights, gradients: [east, north] } = tile.read(surface)?;
                 for (name, samples) in [("heights", heights), ("gradients_east", east), ("gradients_north", north)] {
                     let offset = u64::from(*place) * u64::from(TILE_SAMPLES) * 4;
                     gpu.queue.write_buffer(self.get(name)?, offset, bytemuck::cast_slice(&samples));
@@ -126,8 +127,9 @@ impl Buffers {
                 gpu.wait()?;
             }
         }
+        let pyramid = surface.pyramid()?;
         let chunks = lattice.chunks().iter().zip(places);
-        let chunks: Vec<_> = chunks.map(|(chunk, tile)| ChunkUniform::new(*chunk, surface.pyramid(), tile)).collect();
+        let chunks: Vec<_> = chunks.map(|(chunk, tile)| ChunkUniform::new(*chunk, pyramid, tile)).collect();
         gpu.queue.write_buffer(self.get("chunks")?, 0, bytemuck::cast_slice(&chunks));
         gpu.queue.write_buffer(self.get("nodes")?, 0, bytemuck::cast_slice(lattice.tree().nodes()));
         gpu.check()?;
@@ -224,7 +226,20 @@ fn upload_uniforms(gpu: &Gpu, entries: &[BatchUniform]) -> wgpu::Buffer {
     upload(gpu, "batches", &bytes, wgpu::BufferUsages::UNIFORM)
 }
 
-fn valid_bits(dem: &Dem) -> Vec<u32> {
-    let word = |bits: &[bool]| bits.iter().rev().fold(0, |word, bit| word << 1 | u32::from(*bit));
-    dem.valid().chunks(32).map(word).collect()
+/// A bit a sample, row by row, whether it holds an elevation.
+fn valid_bits(dem: &Dem) -> Result<Cow<'_, [u32]>> {
+    if let Ok(samples) = dem.held() {
+        return Ok(Cow::Borrowed(samples.valid()));
+    }
+    let mut bits = vec![0_u32; (dem.columns() * dem.rows()).div_ceil(32)];
+    for band in dem.bands(0) {
+        let Band { rows, samples } = band?;
+        for r in rows {
+            for (c, height) in samples.row_from(0, r).enumerate() {
+                let i = r * dem.columns() + c;
+                bits[i / 32] |= u32::from(height.is_some()) << (i % 32);
+            }
+        }
+    }
+    Ok(Cow::Owned(bits))
 }

@@ -95,6 +95,18 @@ impl Output {
         written.map_err(|e| Error::Output { path: self.path.clone(), what: e.to_string() })
     }
 
+    /// Lets `write` make the file by its temporary name, for libraries that open files themselves.
+    ///
+    /// [`Error::Output`] where that fails.
+    pub fn write_by_name(&mut self, write: impl FnOnce(&Path) -> io::Result<()>) -> Result<()> {
+        self.close();
+        let written = match &self.place {
+            Place::File { temporary, .. } => write(temporary),
+            Place::Stdout(_) => Err(io::Error::other("it has no name")),
+        };
+        written.map_err(|e| Error::Output { path: self.path.clone(), what: e.to_string() })
+    }
+
     /// Closes the file: for many outputs that wait for each other, of which a system lets only so many be open.
     pub fn close(&mut self) {
         if let Place::File { file, .. } = &mut self.place {

@@ -12,7 +12,7 @@ use crate::error::Result;
 use crate::surface::lattice::{CELL_STEPS, CHUNK_QUADS};
 use crate::surface::pyramid::{FINEST_STEP, Slopes};
 use crate::surface::quadtree::Growth;
-use crate::surface::{Lattice, Level, Surface};
+use crate::surface::{Lattice, Level, Pyramid, Surface};
 use crate::view::Camera;
 
 /// Largest deviation of facets on the page unless told otherwise, px.
@@ -51,8 +51,8 @@ impl From<Level> for Detail {
 /// # Errors
 /// See [`Lattice::adaptive`].
 pub fn adaptive(surface: &Surface, camera: &Camera, error_px: f64, thrift: Thrift) -> Result<Lattice> {
-    let (dem, pyramid) = (surface.dem(), surface.pyramid());
-    let mut demand = Demand::new(surface, camera, error_px);
+    let (dem, pyramid) = (surface.dem(), surface.pyramid()?);
+    let mut demand = Demand::new(surface, pyramid, camera, error_px);
     let wedge =
         View { eye: demand.view.eye, inward: camera.wedge().into_iter().flatten().map(|n| n.extend(0.0)).collect() };
     let keeps = |origin, step| {
@@ -79,7 +79,7 @@ impl View {
 
 /// What a camera asks of chunks.
 struct Demand<'a> {
-    surface: &'a Surface,
+    pyramid: &'a Pyramid,
     view: View,
     /// `None` where all land counts as seen.
     horizon: Option<Horizon>,
@@ -88,7 +88,7 @@ struct Demand<'a> {
 }
 
 impl<'a> Demand<'a> {
-    fn new(surface: &'a Surface, camera: &Camera, error_px: f64) -> Self {
+    fn new(surface: &Surface, pyramid: &'a Pyramid, camera: &Camera, error_px: f64) -> Self {
         let [right, up, forward] = camera.axes();
         let half = DVec2::new(f64::from(camera.width), f64::from(camera.height)) / 2.0 + 1.0;
         let (side, rise) = (right * camera.focal(), up * camera.focal());
@@ -97,7 +97,7 @@ impl<'a> Demand<'a> {
         // In a corner of the page things look larger than in its middle at the same distance.
         let corner = camera.focal().hypot(half.length());
         Self {
-            surface,
+            pyramid,
             view: View {
                 eye: camera.eye - surface.dem().position(0, 0).with_z(0.0),
                 inward: [&[forward][..], &sides, &ends].concat(),
@@ -128,7 +128,7 @@ impl<'a> Demand<'a> {
 
     /// Raises the horizon by the land of a square, part by part where it is wide.
     fn raise(&mut self, origin: [u32; 2], step: u32, deviation: f64) {
-        let pyramid = self.surface.pyramid();
+        let pyramid = self.pyramid;
         let (Some(bounds), Some(horizon)) = (pyramid.bounds(origin, step), &mut self.horizon) else { return };
         let [low, high] = bounds.map(DVec3::truncate);
         if step > FINEST_STEP && (step > CELL_STEPS || horizon.is_wide(low, high)) {
@@ -144,7 +144,7 @@ impl<'a> Demand<'a> {
 
 impl Growth for Demand<'_> {
     fn splits(&mut self, origin: [u32; 2], size: u32) -> bool {
-        let (pyramid, step) = (self.surface.pyramid(), size / CHUNK_QUADS);
+        let (pyramid, step) = (self.pyramid, size / CHUNK_QUADS);
         let Some(bounds) = pyramid.bounds(origin, step).filter(|_| step > 1) else { return false };
         let deviation = pyramid.deviation(origin, step);
         if deviation.is_infinite() {
@@ -162,7 +162,7 @@ impl Growth for Demand<'_> {
         let step = size / CHUNK_QUADS;
         // What is split further is looked at as a square of the finest layer.
         if step == FINEST_STEP || step > FINEST_STEP && !split {
-            self.raise(origin, step, self.surface.pyramid().deviation(origin, step));
+            self.raise(origin, step, self.pyramid.deviation(origin, step));
         }
     }
 }

@@ -83,7 +83,8 @@ impl Cache {
     /// The truth of a view, from the folder or made and kept. `warn` hears of a damaged file and of a folder that cannot
     /// be written; both cost time, nothing else.
     pub fn truth(&self, terrain: &Terrain<'_>, camera: &Camera, level: Level, warn: &dyn Fn(&str)) -> Kept {
-        let path = self.folder.as_ref().map(|folder| folder.join(name(terrain.surface, camera, level)));
+        let name = || name(terrain.surface, camera, level);
+        let path = self.folder.as_ref().and_then(|folder| Some(folder.join(name()?)));
         if let Some(bytes) = path.as_ref().and_then(|path| fs::read(path).ok()) {
             match from_bytes(&bytes) {
                 Some(kept) => return kept,
@@ -108,20 +109,22 @@ fn keep(path: &Path, kept: &Kept) -> Result<()> {
     output.publish()
 }
 
-fn name(surface: &Surface, camera: &Camera, level: Level) -> String {
+/// The file of a truth; none where the samples it depends on are not in memory.
+fn name(surface: &Surface, camera: &Camera, level: Level) -> Option<String> {
     let dem = surface.dem();
+    let samples = dem.held().ok()?;
     let mut hash = Xxh3::new();
     hash.update(env!("CARGO_PKG_VERSION").as_bytes());
     hash.update(CODE.as_bytes());
-    hash.update(bytemuck::cast_slice(dem.heights()));
-    dem.valid().chunks(1 << 16).for_each(|valid| hash.update(&valid.iter().map(|v| u8::from(*v)).collect::<Vec<_>>()));
+    hash.update(bytemuck::cast_slice(samples.heights()));
+    hash.update(bytemuck::cast_slice(samples.valid()));
     let corner = dem.position(0, 0);
     let numbers = [corner.x, corner.y, dem.cell().x, dem.cell().y, camera.eye.x, camera.eye.y, camera.eye.z];
     hash.update(bytemuck::cast_slice(&numbers));
     hash.update(bytemuck::cast_slice(&[camera.azimuth, camera.altitude, camera.fov]));
     let counts = [dem.columns() as u64, u64::from(camera.width), u64::from(camera.height), level.subdivisions().into()];
     hash.update(bytemuck::cast_slice(&counts));
-    format!("truth-{:032x}", hash.digest128())
+    Some(format!("truth-{:032x}", hash.digest128()))
 }
 
 fn to_bytes(kept: &Kept) -> Vec<u8> {

@@ -17,7 +17,7 @@
 use rayon::prelude::*;
 
 use super::quadtree::{Growth, Quadtree};
-use crate::dem::Dem;
+use crate::dem::{Dem, LARGEST_SIDE};
 use crate::error::{Error, Result};
 
 /// Lattice steps along a cell's edge: the finest level.
@@ -32,8 +32,6 @@ pub const CHUNK_SIDE: u32 = CHUNK_QUADS + 1;
 pub const CHUNK_VERTICES: u32 = CHUNK_SIDE * CHUNK_SIDE;
 /// Words of facing bits of a chunk.
 pub const CHUNK_WORDS: u32 = CHUNK_FACETS / 32;
-/// Samples along a side: walks count 64 x 256 steps a cell in 32 bits, and may end a cell beyond it.
-pub const LARGEST_SIDE: usize = 131_000;
 /// Chunks that have IDs: a pixel holds ID + 1 in 32 bits, so the last ID cannot be used.
 pub const MOST_CHUNKS: u64 = (1 << 32) / CHUNK_FACETS as u64 - 1;
 
@@ -265,9 +263,5 @@ fn lies_on_patch(dem: &Dem, vertices: [LatticePoint; 3]) -> bool {
 
 /// Which of its two patches each cell of row `r` has, from the west; see [`patch_exists`].
 pub fn patches_of_row(dem: &Dem, r: usize) -> impl Iterator<Item = [bool; 2]> {
-    let valid = |r: usize| dem.valid()[r * dem.columns()..][..dem.columns()].windows(2);
-    valid(r).zip(valid(r + 1)).map(|(north, south)| {
-        let diagonal = north[0] && south[1];
-        [diagonal && south[0], diagonal && north[1]]
-    })
+    (0..dem.columns() - 1).map(move |c| [0, 1].map(|half| patch_exists(dem, c, r, half)))
 }

@@ -9,6 +9,6 @@ pub mod rim;
 pub mod tile;
 
 pub use lattice::{Chunk, Lattice, LatticePoint, Level};
-pub use patch::{Patch, Surface};
+pub use patch::{Patch, Surface, SurfaceBand};
 pub use pyramid::Pyramid;
 pub use tile::Tile;

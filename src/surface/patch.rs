@@ -4,28 +4,44 @@
 //! points lie in the tangent planes of the nearer corner. Only the geometry is cubic; facing comes from the facets.
 //! Cost: about 150 operations a point. It does not handle creases: one sample has one normal.
 
+use std::borrow::Cow;
+use std::ops::Range;
 use std::sync::OnceLock;
 
 use glam::{DVec2, DVec3};
-use rayon::prelude::*;
 
-use super::lattice::{CELL_STEPS, LatticePoint, Level, patches_of_row};
-use super::normals::gradients;
+use super::lattice::{CELL_STEPS, LatticePoint, Level};
+use super::normals::{Gradients, cut, gradients, of_samples, with_one_around};
 use super::pyramid::Pyramid;
-use crate::dem::Dem;
+use crate::dem::{Band, Dem};
+use crate::error::Result;
 
 /// A DEM with its vertex normals: everything a place on the surface depends on.
+///
+/// Of a held DEM all normals are in memory; of a filed one they are computed where they are asked for, one at a time or,
+/// far quicker, by [`Surface::part`] and [`Surface::bands`].
 #[derive(Debug, Clone)]
 pub struct Surface {
     dem: Dem,
-    gradients: [Vec<f32>; 2],
+    gradients: Option<Gradients>,
     pyramid: OnceLock<Pyramid>,
 }
 
+/// Rows of a surface, in memory with some rows around them.
+#[derive(Debug)]
+pub struct SurfaceBand<'a> {
+    /// The rows it is about.
+    pub rows: Range<usize>,
+    /// The surface there: samples and gradients elsewhere must not be asked for.
+    pub surface: Cow<'a, Surface>,
+}
+
 impl Surface {
-    /// Computes the normals of `dem`.
+    /// Computes the normals of `dem`, if it is held.
     pub fn new(dem: Dem) -> Self {
-        Self { gradients: gradients(&dem), dem, pyramid: OnceLock::new() }
+        let whole = [dem.columns(), dem.rows()];
+        let gradients = dem.held().ok().map(|samples| of_samples(samples, [0, 0], whole, dem.cell()));
+        Self { gradients, dem, pyramid: OnceLock::new() }
     }
 
     /// The grid below the surface.
@@ -33,20 +49,68 @@ impl Surface {
         &self.dem
     }
 
-    /// Gradients of all samples, dz/d east and dz/d north, see [`gradients`].
-    pub fn gradients(&self) -> [&[f32]; 2] {
-        self.gradients.each_ref().map(Vec::as_slice)
+    /// Gradients of all samples, dz/d east and dz/d north, see [`Gradients::components`].
+    ///
+    /// # Errors
+    /// [`Error::Limit`](crate::error::Error::Limit) for a filed DEM.
+    pub fn gradients(&self) -> Result<[&[f32]; 2]> {
+        match &self.gradients {
+            Some(gradients) => Ok(gradients.components()),
+            None => Err(self.dem.not_held()),
+        }
     }
 
     /// Its bounds and the deviations of its facets, made when first asked for.
-    pub fn pyramid(&self) -> &Pyramid {
-        self.pyramid.get_or_init(|| Pyramid::new(self))
+    ///
+    /// # Errors
+    /// As [`Pyramid::new`].
+    pub fn pyramid(&self) -> Result<&Pyramid> {
+        match self.pyramid.get() {
+            Some(pyramid) => Ok(pyramid),
+            None => {
+                let pyramid = Pyramid::new(self)?;
+                Ok(self.pyramid.get_or_init(|| pyramid))
+            }
+        }
     }
 
-    /// Gradient of sample (c, r): dz/d east, dz/d north.
+    /// Gradient of sample (c, r): dz/d east, dz/d north. (0, 0) where it cannot be read, see [`Dem::check`].
     pub fn gradient(&self, c: usize, r: usize) -> DVec2 {
-        let i = r * self.dem.columns() + c;
-        DVec2::from_array(self.gradients.each_ref().map(|of| f64::from(of[i])))
+        match &self.gradients {
+            Some(gradients) => gradients.get(c, r).unwrap_or_default(),
+            None => self.dem.kept(gradients(&self.dem, [c, r], [1, 1])).and_then(|g| g.get(c, r)).unwrap_or_default(),
+        }
+    }
+
+    /// The same surface with the samples of a window and their gradients in memory: bit by bit those of the whole, for
+    /// work that looks at each of them. Samples farther out than one read as voids.
+    ///
+    /// # Errors
+    /// As [`Dem::window`].
+    pub fn part(&self, first: [usize; 2], size: [usize; 2]) -> Result<Self> {
+        let samples = with_one_around(&self.dem, first, size)?;
+        let gradients = of_samples(&samples, first, cut(&self.dem, first, size), self.dem.cell());
+        Ok(Self { dem: self.dem.with_samples(samples), gradients: Some(gradients), pyramid: OnceLock::new() })
+    }
+
+    /// All rows once, in order, with `halo` rows above and below each band: see [`Dem::bands`].
+    ///
+    /// # Errors
+    /// Each band may fail as [`Dem::window`].
+    pub fn bands(&self, halo: usize) -> impl Iterator<Item = Result<SurfaceBand<'_>>> {
+        self.dem.bands(halo + 1).map(move |band| {
+            let Band { rows, samples } = band?;
+            let surface = match samples {
+                Cow::Borrowed(_) => Cow::Borrowed(self),
+                Cow::Owned(samples) => {
+                    let first = [0, rows.start.saturating_sub(halo)];
+                    let size = [self.dem.columns(), (rows.end + halo).min(self.dem.rows()) - first[1]];
+                    let gradients = Some(of_samples(&samples, first, size, self.dem.cell()));
+                    Cow::Owned(Self { dem: self.dem.with_samples(samples), gradients, pyramid: OnceLock::new() })
+                }
+            };
+            Ok(SurfaceBand { rows, surface })
+        })
     }
 
     /// World position in metres of a lattice vertex; `None` where a sample it depends on is void or outside.
@@ -82,10 +146,9 @@ impl Surface {
         Patch::new([a.0, b.0, d.0], [a.1, b.1, d.1])
     }
 
-    /// How many patches exist.
+    /// How many patches exist, see [`Dem::patches`].
     pub fn patches(&self) -> u64 {
-        let in_row = |r| patches_of_row(&self.dem, r).map(|[a, b]| u64::from(a) + u64::from(b)).sum::<u64>();
-        (0..self.dem.rows() - 1).into_par_iter().map(in_row).sum()
+        self.dem.patches()
     }
 
     /// Height in exaggerated metres of the highest facet of `level` over a map place in metres; `None` over voids and

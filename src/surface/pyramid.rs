@@ -5,13 +5,15 @@
 //! or is cut by an edge of the DEM between its vertices, has no coarse facets: its deviation is infinite. Cost: two
 //! patches a cell, then one look at each sample for every coarser level. Memory: 1.4 bytes a sample.
 
+use std::ops::Range;
+
 use glam::{DVec2, DVec3, Vec2};
 use rayon::prelude::*;
 
-use super::Surface;
-use super::lattice::{CELL_STEPS, CHUNK_QUADS, patches_of_row};
-use super::patch::Patch;
-use crate::dem::Dem;
+use super::lattice::{CELL_STEPS, CHUNK_QUADS};
+use super::patch::{Patch, Surface, SurfaceBand};
+use crate::dem::Samples;
+use crate::error::Result;
 
 /// Lattice units between vertices of a chunk that fills a square of the finest layer.
 pub const FINEST_STEP: u32 = FINEST_CELLS as u32 * CELL_STEPS / CHUNK_QUADS;
@@ -33,6 +35,8 @@ pub struct Pyramid {
 #[derive(Debug, Clone)]
 struct Layer {
     columns: usize,
+    /// Cells along a square.
+    size: usize,
     squares: Vec<Square>,
 }
 
@@ -115,29 +119,31 @@ impl Square {
 }
 
 impl Pyramid {
-    /// Bounds a surface, on every core.
-    pub fn new(surface: &Surface) -> Self {
+    /// Bounds a surface, on every core, band by band.
+    ///
+    /// # Errors
+    /// As [`Surface::bands`].
+    pub fn new(surface: &Surface) -> Result<Self> {
         let dem = surface.dem();
-        let (columns, rows) = ((dem.columns() - 1).div_ceil(FINEST_CELLS), (dem.rows() - 1).div_ceil(FINEST_CELLS));
-        let squares = (0..rows).into_par_iter().flat_map_iter(|y| finest_row(surface, y, columns)).collect();
-        let mut layers = vec![Layer { columns, squares }];
-        fence(dem, &mut layers[0], FINEST_CELLS);
-        let longest = dem.columns().max(dem.rows()) - 1;
-        loop {
-            let layer = layers.len();
-            let (size, quad) = (FINEST_CELLS << layer, 1 << layer.saturating_sub(LEVEL_1));
-            if layer > LEVEL_1 && (size / 2 >= longest || quad > COARSEST_CELLS) {
-                break;
+        let cells = [dem.columns() - 1, dem.rows() - 1];
+        let longest = cells[0].max(cells[1]);
+        let reaches = |layer: &usize| FINEST_CELLS << layer < longest && quad(layer + 1) <= COARSEST_CELLS;
+        let layers = (0..).take_while(|layer| *layer < LEVEL_1 || reaches(layer)).count() + 1;
+        let mut layers: Vec<Layer> = (0..layers).map(|layer| Layer::new(cells, FINEST_CELLS << layer)).collect();
+        for band in surface.bands(1) {
+            let SurfaceBand { rows, surface } = band?;
+            let samples = surface.dem().held()?;
+            layers[0].bound(&surface, &rows);
+            layers[..=LEVEL_1].iter_mut().for_each(|layer| layer.fence(samples, &rows));
+            for (number, layer) in layers.iter_mut().enumerate().skip(LEVEL_1 + 1) {
+                layer.measure(samples, &rows, quad(number), cells);
             }
-            let mut halved = layers[layer - 1].halved();
-            if layer > LEVEL_1 {
-                measure(dem, &mut halved, size, quad);
-            } else {
-                fence(dem, &mut halved, size);
-            }
-            layers.push(halved);
         }
-        Self { layers, samples: [dem.columns(), dem.rows()], cell: dem.cell() }
+        for number in 1..layers.len() {
+            let (below, above) = layers.split_at_mut(number);
+            above[0].gather(&below[number - 1], number > LEVEL_1);
+        }
+        Ok(Self { layers, samples: [dem.columns(), dem.rows()], cell: dem.cell() })
     }
 
     /// Lattice units between the vertices of the coarsest chunks.
@@ -192,34 +198,76 @@ impl Pyramid {
     }
 }
 
-impl Layer {
-    /// The layer of squares twice as wide.
-    fn halved(&self) -> Self {
-        let rows = self.squares.len() / self.columns;
-        let (columns, halved_rows) = (self.columns.div_ceil(2), rows.div_ceil(2));
-        let square = |i: usize| {
-            let (x, y) = (i % columns * 2, i / columns * 2);
-            let inside = [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)];
-            let inside = inside.into_iter().filter(|&(x, y)| x < self.columns && y < rows);
-            inside.map(|(x, y)| self.squares[y * self.columns + x]).fold(Square::EMPTY, Square::with)
-        };
-        Self { columns, squares: (0..columns * halved_rows).map(square).collect() }
-    }
+/// Cells along the facets of chunks that fill the squares of a layer.
+fn quad(layer: usize) -> usize {
+    1 << layer.saturating_sub(LEVEL_1)
 }
 
-/// Row `y` of the finest layer.
-fn finest_row(surface: &Surface, y: usize, columns: usize) -> Vec<Square> {
-    let dem = surface.dem();
-    let mut squares = vec![Square::EMPTY; columns];
-    for r in y * FINEST_CELLS..((y + 1) * FINEST_CELLS).min(dem.rows() - 1) {
-        for (c, exists) in patches_of_row(dem, r).enumerate() {
-            let square = &mut squares[c / FINEST_CELLS];
-            for half in (0..2).filter(|half| exists[*half]) {
-                *square = square.with(of_patch(&surface.patch(c, r, half), half));
+impl Layer {
+    /// Squares of `size` cells over so many, nothing known of them.
+    fn new(cells: [usize; 2], size: usize) -> Self {
+        let [columns, rows] = cells.map(|cells| cells.div_ceil(size));
+        Self { columns, size, squares: vec![Square::EMPTY; columns * rows] }
+    }
+
+    /// The rows of squares that have one of these rows of cells, and the first row of each.
+    fn rows(&mut self, rows: &Range<usize>) -> impl IndexedParallelIterator<Item = (usize, &mut [Square])> {
+        let (columns, size) = (self.columns, self.size);
+        let (first, end) = (rows.start / size, rows.end.div_ceil(size).min(self.squares.len() / columns));
+        let squares = &mut self.squares[(first * columns).min(end * columns)..end * columns];
+        squares.par_chunks_mut(columns).enumerate().map(move |(y, squares)| ((first + y) * size, squares))
+    }
+
+    /// Takes in the patches of these rows of cells.
+    fn bound(&mut self, surface: &Surface, rows: &Range<usize>) {
+        let size = self.size;
+        self.rows(rows).for_each(|(first, squares)| {
+            for r in first.max(rows.start)..(first + size).min(rows.end) {
+                for (c, exists) in surface.dem().held().into_iter().flat_map(|samples| samples.patches(r)).enumerate() {
+                    let square = &mut squares[c / size];
+                    for half in (0..2).filter(|half| exists[*half]) {
+                        *square = square.with(of_patch(&surface.patch(c, r, half), half));
+                    }
+                }
             }
+        });
+    }
+
+    /// Finds the fences of squares that lie in these rows whole.
+    fn fence(&mut self, samples: &Samples, rows: &Range<usize>) {
+        let size = self.size;
+        self.rows(rows).for_each(|(first, squares)| {
+            for (x, square) in squares.iter_mut().enumerate() {
+                square.fences = fences(samples, [x * size, first], size);
+            }
+        });
+    }
+
+    /// Measures how far facets whose sides are `quad` cells long leave the samples of these rows.
+    fn measure(&mut self, samples: &Samples, rows: &Range<usize>, quad: usize, cells: [usize; 2]) {
+        let (size, whole) = (self.size, samples.voids() == 0);
+        self.rows(rows).for_each(|(first, squares)| {
+            for r in (first.max(rows.start)..(first + size).min(rows.end).min(cells[1])).step_by(quad) {
+                for c in (0..cells[0]).step_by(quad) {
+                    let square = &mut squares[c / size];
+                    square.deviation = square.deviation.max(deviation_of_quad(samples, [c, r], quad, whole));
+                }
+            }
+        });
+    }
+
+    /// Takes in what is known of the squares of half the size; and whether deviations are measured, above their bulges.
+    fn gather(&mut self, below: &Self, measured: bool) {
+        let rows = below.squares.len() / below.columns;
+        for (i, square) in self.squares.iter_mut().enumerate() {
+            let (x, y) = (i % self.columns * 2, i / self.columns * 2);
+            let inside = [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)];
+            let inside = inside.into_iter().filter(|&(x, y)| x < below.columns && y < rows);
+            let all = inside.map(|(x, y)| below.squares[y * below.columns + x]).fold(Square::EMPTY, Square::with);
+            let deviation = if measured { square.deviation + all.bulge } else { all.deviation };
+            *square = Square { deviation, fences: square.fences, ..all };
         }
     }
-    squares
 }
 
 fn of_patch(patch: &Patch, half: usize) -> Square {
@@ -245,77 +293,36 @@ fn slopes(patch: &Patch, half: usize) -> Slopes {
     slopes.fold(Slopes::NONE, |all, slope| all.with(Slopes { least: slope, largest: slope }))
 }
 
-/// Finds the fences of a layer's squares of `size` cells.
-fn fence(dem: &Dem, layer: &mut Layer, size: usize) {
-    let columns = layer.columns;
-    layer.squares.par_chunks_mut(columns).enumerate().for_each(|(y, squares)| {
-        for (x, square) in squares.iter_mut().enumerate() {
-            square.fences = fences(dem, [x * size, y * size], size);
-        }
-    });
-}
-
-fn fences(dem: &Dem, [c, r]: [usize; 2], size: usize) -> Fences {
-    if c + size >= dem.columns() || r + size >= dem.rows() {
-        return Fences::NONE;
-    }
+/// The fences of the square of `size` cells at sample (c, r); none where it has voids or leaves the samples.
+fn fences(samples: &Samples, [c, r]: [usize; 2], size: usize) -> Fences {
     let mut along_east = f32::NEG_INFINITY;
     let mut columns = [f32::INFINITY; (FINEST_CELLS << LEVEL_1) + 1];
     for row in r..=r + size {
-        let first = row * dem.columns() + c;
-        let (heights, valid) = (&dem.heights()[first..=first + size], &dem.valid()[first..=first + size]);
-        if !valid.iter().all(|v| *v) {
+        let (mut lowest, mut found) = (f32::INFINITY, 0);
+        for (least, height) in columns[..=size].iter_mut().zip(samples.row_from(c, row).map_while(|height| height)) {
+            lowest = lowest.min(height);
+            *least = least.min(height);
+            found += 1;
+        }
+        if found <= size {
             return Fences::NONE;
         }
-        along_east = along_east.max(heights.iter().copied().fold(f32::INFINITY, f32::min));
-        columns.iter_mut().zip(heights).for_each(|(least, height)| *least = least.min(*height));
+        along_east = along_east.max(lowest);
     }
     Fences { along_east, along_north: columns[..=size].iter().copied().fold(f32::NEG_INFINITY, f32::max) }
 }
 
-/// Measures the deviations of a layer's chunks: squares of `size` cells whose facets have sides of `quad` cells.
-fn measure(dem: &Dem, layer: &mut Layer, size: usize, quad: usize) {
-    let columns = layer.columns;
-    layer.squares.par_chunks_mut(columns).enumerate().for_each(|(y, squares)| {
-        for (x, square) in squares.iter_mut().enumerate() {
-            let first = [x * size, y * size];
-            square.deviation = if is_whole(dem, first, size, quad) {
-                square.bulge + farthest_sample(dem, first, size, quad)
-            } else {
-                f32::INFINITY
-            };
-        }
-    });
-}
-
-/// Whether the samples of a square are all valid, and the edges of the DEM between its vertices.
-fn is_whole(dem: &Dem, [c, r]: [usize; 2], size: usize, quad: usize) -> bool {
-    let fits = |first: usize, samples: usize| first + size < samples || (samples - 1 - first).is_multiple_of(quad);
-    let last = |first: usize, samples: usize| (first + size).min(samples - 1);
-    let row = |r: usize| &dem.valid()[r * dem.columns() + c..=r * dem.columns() + last(c, dem.columns())];
-    // A square beyond the samples has no patch.
-    c + 1 >= dem.columns()
-        || r + 1 >= dem.rows()
-        || fits(c, dem.columns()) && fits(r, dem.rows()) && (r..=last(r, dem.rows())).all(|r| row(r).iter().all(|v| *v))
-}
-
-/// Largest vertical distance between a sample of a square and the facet over or under it, metres.
-fn farthest_sample(dem: &Dem, [first_c, first_r]: [usize; 2], size: usize, quad: usize) -> f32 {
-    let rows = (first_r..(first_r + size).min(dem.rows() - 1)).step_by(quad);
-    let columns = || (first_c..(first_c + size).min(dem.columns() - 1)).step_by(quad);
-    let mut farthest = 0.0_f32;
-    for r in rows {
-        for c in columns() {
-            farthest = farthest.max(farthest_of_quad(dem, c, r, quad));
-        }
+/// Largest vertical distance between a sample and the facet over or under it, within the quad of `side` cells at sample
+/// (c, r), metres; infinite where it has voids or leaves the samples.
+fn deviation_of_quad(samples: &Samples, [c, r]: [usize; 2], side: usize, whole: bool) -> f32 {
+    let ([first_c, first_r], [width, height]) = (samples.first(), samples.size());
+    let (c, r) = (c - first_c, r - first_r);
+    let void = |r: usize| samples.row_from(c + first_c, r + first_r).take(side + 1).any(|height| height.is_none());
+    if c + side >= width || r + side >= height || !whole && (r..=r + side).any(void) {
+        return f32::INFINITY;
     }
-    farthest
-}
-
-/// The same within the quad of `side` cells at sample (c, r).
-fn farthest_of_quad(dem: &Dem, c: usize, r: usize, side: usize) -> f32 {
-    let row = |r: usize| &dem.heights()[r * dem.columns() + c..][..=side];
-    let ([nw, .., ne], [sw, .., se]) = (row(r), row(r + side)) else { return 0.0 };
+    let row = |r: usize| &samples.heights()[r * width + c..][..=side];
+    let ([nw, .., ne], [sw, .., se]) = (row(r), row(r + side)) else { return f32::INFINITY };
     let share = 1.0 / side as f32;
     let (east_above, east_below) = ((ne - nw) * share, (se - sw) * share);
     let mut farthest = 0.0_f32;

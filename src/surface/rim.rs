@@ -2,8 +2,8 @@
 
 use rayon::prelude::*;
 
-use super::lattice::patches_of_row;
-use crate::dem::Dem;
+use crate::dem::{Band, Dem, Samples};
+use crate::error::Result;
 
 /// A patch edge of the rim, laid out as the shaders read it.
 #[repr(C)]
@@ -18,12 +18,20 @@ pub struct RimEdge {
 }
 
 /// Every rim edge, row by row. Cost: three edges a sample.
-pub fn rim(dem: &Dem) -> Vec<RimEdge> {
-    (0..dem.rows()).into_par_iter().flat_map_iter(|r| edges_of_row(dem, r)).collect()
+///
+/// # Errors
+/// As [`Dem::window`].
+pub fn rim(dem: &Dem) -> Result<Vec<RimEdge>> {
+    let mut edges = Vec::new();
+    for band in dem.bands(1) {
+        let Band { rows, samples } = band?;
+        edges.par_extend(rows.into_par_iter().flat_map_iter(|r| edges_of_row(&samples, r)));
+    }
+    Ok(edges)
 }
 
-fn edges_of_row(dem: &Dem, r: usize) -> Vec<RimEdge> {
-    let (above, here) = (padded_row(dem, r.wrapping_sub(1)), padded_row(dem, r));
+fn edges_of_row(samples: &Samples, r: usize) -> Vec<RimEdge> {
+    let (above, here) = (padded_row(samples, r.wrapping_sub(1)), padded_row(samples, r));
     let mut edges = Vec::new();
     for (c, (above, here)) in (0..).zip(above.windows(2).zip(here.windows(2))) {
         // For each direction, whether patches of half 0 and half 1 have the edge.
@@ -38,10 +46,8 @@ fn edges_of_row(dem: &Dem, r: usize) -> Vec<RimEdge> {
 }
 
 /// Patches of the cells of row `r` with one more cell at either end; none where there is no cell.
-fn padded_row(dem: &Dem, r: usize) -> Vec<[bool; 2]> {
-    let mut row = vec![[false; 2]; dem.columns() + 1];
-    if r < dem.rows() - 1 {
-        row[1..].iter_mut().zip(patches_of_row(dem, r)).for_each(|(padded, patches)| *padded = patches);
-    }
+fn padded_row(samples: &Samples, r: usize) -> Vec<[bool; 2]> {
+    let mut row = vec![[false; 2]; samples.size()[0] + 1];
+    row[1..].iter_mut().zip(samples.patches(r)).for_each(|(padded, patches)| *padded = patches);
     row
 }

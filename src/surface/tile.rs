@@ -3,8 +3,11 @@
 //! A chunk coarser than the grid has a tile of its own vertices. Finer chunks share the tile of the chunk of level 1 that
 //! they lie in, for their patches need its samples with their gradients.
 
+use std::borrow::Cow;
+
 use super::Surface;
 use super::lattice::{CELL_STEPS, CHUNK_QUADS, CHUNK_SIDE, Chunk};
+use crate::error::Result;
 
 /// Samples along a tile's edge.
 pub const TILE_SIDE: u32 = CHUNK_SIDE;
@@ -25,7 +28,7 @@ pub struct Tile {
 pub struct TileSamples {
     /// Exaggerated metres.
     pub heights: Vec<f32>,
-    /// dz/d east and dz/d north.
+    /// dz/d east and dz/d north; 0 where samples are not neighbours.
     pub gradients: [Vec<f32>; 2],
 }
 
@@ -38,21 +41,28 @@ impl Tile {
     }
 
     /// Reads its samples.
-    pub fn read(&self, surface: &Surface) -> TileSamples {
-        let dem = surface.dem();
-        let [mut heights, mut east, mut north] = [(); 3].map(|()| vec![0.0; TILE_SAMPLES as usize]);
-        let [c, r] = self.first.map(|at| at as usize);
+    ///
+    /// # Errors
+    /// As [`Surface::part`].
+    pub fn read(&self, surface: &Surface) -> Result<TileSamples> {
         let spacing = self.spacing as usize;
-        let rows = (r..dem.rows()).step_by(spacing).take(TILE_SIDE as usize);
-        for (row, at) in rows.zip((0..).step_by(TILE_SIDE as usize)) {
-            let first = row * dem.columns() + c.min(dem.columns());
-            let end = (row + 1) * dem.columns();
-            let sources = [dem.heights(), surface.gradients()[0], surface.gradients()[1]];
-            for (samples, source) in [&mut heights, &mut east, &mut north].into_iter().zip(sources) {
-                let row = samples[at..].iter_mut().take(TILE_SIDE as usize);
-                row.zip(source[first..end].iter().step_by(spacing)).for_each(|(to, from)| *to = *from);
+        let first = self.first.map(|at| at as usize);
+        let side = (TILE_SIDE as usize - 1) * spacing + 1;
+        let part =
+            if surface.dem().is_filed() { Cow::Owned(surface.part(first, [side; 2])?) } else { Cow::Borrowed(surface) };
+        let dem = part.dem();
+        let [mut heights, mut east, mut north] = [(); 3].map(|()| vec![0.0; TILE_SAMPLES as usize]);
+        let places = (0..TILE_SAMPLES as usize).map(|i| [i % TILE_SIDE as usize, i / TILE_SIDE as usize]);
+        for (i, [c, r]) in places.map(|at| [first[0] + at[0] * spacing, first[1] + at[1] * spacing]).enumerate() {
+            if c < dem.columns() && r < dem.rows() {
+                heights[i] = dem.height(c, r).unwrap_or(0.0);
+                // Coarser facets are planes between samples.
+                if spacing == 1 {
+                    let gradient = part.gradient(c, r);
+                    (east[i], north[i]) = (gradient.x as f32, gradient.y as f32);
+                }
             }
         }
-        TileSamples { heights, gradients: [east, north] }
+        Ok(TileSamples { heights, gradients: [east, north] })
     }
 }

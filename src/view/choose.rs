@@ -10,6 +10,7 @@ use rayon::prelude::*;
 
 use super::Camera;
 use crate::dem::Dem;
+use crate::error::Result;
 
 /// Directions of the rings.
 const DIRECTIONS: usize = 24;
@@ -42,39 +43,43 @@ pub struct Fixed {
 /// Completes a view. A given eye looks at the middle of the DEM, level, unless told otherwise. The result is rounded to a
 /// power of ten below a tenth of a cell, 1 m at most, and tenths of degrees, so that the flags printed for it repeat it.
 ///
-/// `dem` must hold a valid sample.
-pub fn choose(dem: &Dem, fixed: Fixed, fov: f64, width: u32, height: u32) -> Camera {
+/// `dem` must hold a valid sample. Of a filed DEM a thinned one is looked at.
+///
+/// # Errors
+/// As [`Dem::survey`].
+pub fn choose(dem: &Dem, fixed: Fixed, fov: f64, width: u32, height: u32) -> Result<Camera> {
     let [west, south, east, north] = dem.extent();
     let middle = DVec2::new(west + east, south + north) / 2.0;
     let camera = |eye, azimuth, altitude| Camera { eye, azimuth, altitude, fov, width, height };
     if let Some(eye) = fixed.eye {
         let azimuth = fixed.azimuth.unwrap_or_else(|| tenth(heading(middle - eye.truncate())).rem_euclid(360.0));
-        return camera(eye, azimuth, fixed.altitude.unwrap_or(0.0));
+        return Ok(camera(eye, azimuth, fixed.altitude.unwrap_or(0.0)));
     }
     let grain = 10_f64.powf((dem.cell().min_element() / 10.0).log10().floor()).min(1.0);
     // Through its decimals, so that it prints short.
     let round = |x: f64| (x / grain).round() / (1.0 / grain).round();
-    let [low, high] = dem.range().unwrap_or([0.0; 2]).map(f64::from);
+    let [low, high] = dem.survey(&|_| ())?.range.unwrap_or_default().map(f64::from);
+    let thinned = dem.thinned()?;
     let radius = DVec2::new(east - west, north - south).min_element() / 2.0;
     let eyes = (0..DIRECTIONS * RINGS.len() * HEIGHTS.len()).into_par_iter().filter_map(|i| {
         let azimuth = fixed.azimuth.unwrap_or((i % DIRECTIONS) as f64 * 360.0 / DIRECTIONS as f64);
         let back = DVec2::new(azimuth.to_radians().sin(), azimuth.to_radians().cos());
         let place = middle - back * radius * RINGS[i / DIRECTIONS % RINGS.len()];
         let place = DVec2::new(round(place.x), round(place.y));
-        let ground = height_at(dem, place).unwrap_or(low);
+        let ground = height_at(&thinned, place).unwrap_or(low);
         let clearance = (high - low).max(radius / 20.0) * HEIGHTS[i / DIRECTIONS / RINGS.len()];
         let eye = place.extend(round(ground + clearance));
-        let (score, skyline) = look(dem, eye, azimuth, fov, radius)?;
+        let (score, skyline) = look(&thinned, eye, azimuth, fov, radius)?;
         Some((score, std::cmp::Reverse(i), eye, azimuth, skyline))
     });
     let best = eyes.max_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     let Some((_, _, eye, azimuth, skyline)) = best else {
         let eye = DVec3::new(round(middle.x), round(middle.y - radius * 1.3), round(high + radius / 2.0));
-        return camera(eye, fixed.azimuth.unwrap_or(0.0), fixed.altitude.unwrap_or(-20.0));
+        return Ok(camera(eye, fixed.azimuth.unwrap_or(0.0), fixed.altitude.unwrap_or(-20.0)));
     };
     let half_height = (fov.to_radians() / 2.0).tan() * f64::from(height) / f64::from(width);
     let altitude = (skyline.atan() - (half_height * (1.0 - 2.0 * SKYLINE)).atan()).to_degrees();
-    camera(eye, azimuth, fixed.altitude.unwrap_or_else(|| tenth(altitude.clamp(-60.0, 20.0))))
+    Ok(camera(eye, azimuth, fixed.altitude.unwrap_or_else(|| tenth(altitude.clamp(-60.0, 20.0)))))
 }
 
 /// Azimuth in degrees of a direction in the map; 0 for none.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use gdal::Dataset;
-use hachure::dem::{MAX_SAMPLES, ReadOptions, info, read};
+use hachure::dem::{LARGEST_SIDE, MAX_SAMPLES, ReadOptions, info, read};
 
 use super::{Raster, copy, cropped, folder, hill, read_all, sized_vrt, vrt};
 /// Reading `path` fails with one line that names the file, holds all `words`, and exit code 1; so does `info`.
@@ -128,14 +128,14 @@ fn what_is_no_surface_is_refused() {
 fn too_many_samples_are_refused_before_they_are_read() {
     let dir = folder();
     let huge = sized_vrt(&dir.path().join("huge.vrt"), 1_000_000, 1_000_000, "", "<Scale>1</Scale>");
-    refused(
-        &huge,
-        &["1000000 x 1000000 = 1000000000000 samples", &format!("at most {MAX_SAMPLES} fit"), "--crop", "--resample"],
-    );
+    let longest = format!("at most {LARGEST_SIDE} along a side fit");
+    refused(&huge, &["1000000 x 1000000 samples", &longest, "--crop", "--resample"]);
     let part = read(&huge, &cropped([20_000_000.0, -9_000_000.0, 20_000_900.0, -8_999_400.0])).unwrap();
     assert_eq!((part.columns(), part.rows()), (30, 30));
     let most = sized_vrt(&dir.path().join("most.vrt"), 8193, 4096, "", "<Scale>1</Scale>");
-    let line = refused(&most, &["8193 x 4096 = 33558528 samples"]);
+    let filled = ReadOptions { fill_voids: true, ..Default::default() };
+    let fit = format!("at most {MAX_SAMPLES} fit where voids are filled");
+    let line = refused_with(&most, &filled, &["8193 x 4096 = 33558528 samples", &fit, "gdal_fillnodata.py"]);
     // The remedy is one.
     let metres: f64 = line.rsplit("--resample ").next().unwrap().split(' ').next().unwrap().parse().unwrap();
     let coarser = ReadOptions { resample: Some(metres), ..Default::default() };
@@ -145,7 +145,7 @@ fn too_many_samples_are_refused_before_they_are_read() {
     refused_with(&wide, &coarse, &["1600000000 samples would be read to be warped", "--crop"]);
     let degrees = "<SRS>EPSG:4326</SRS><GeoTransform>8, 1e-5, 0, 47, 0, -1e-5</GeoTransform>";
     let fine = sized_vrt(&dir.path().join("fine.vrt"), 1_000_000, 1_000_000, degrees, "<Scale>1</Scale>");
-    refused(&fine, &["samples, at most", "--crop", "--resample"]);
+    refused(&fine, &["samples, at most", "fit where they are warped", "gdalwarp", "--crop", "--resample"]);
     let part = read(&fine, &cropped([9.0, 46.0, 9.001, 46.001])).unwrap();
     assert!((80..=100).contains(&part.columns()), "{}", part.columns());
 }

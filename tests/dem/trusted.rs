@@ -55,7 +55,11 @@ fn a_file_on_a_network_is_read_with_the_flag_alone() {
     }
     assert_eq!(server.asked(), [""; 0], "nothing is asked of a server that is not trusted");
     for name in &names[..3] {
-        assert_eq!(trusted(name).heights(), read_all(&dir.path().join("served.tif")).heights(), "{name}");
+        assert_eq!(
+            trusted(name).held().unwrap().heights(),
+            read_all(&dir.path().join("served.tif")).held().unwrap().heights(),
+            "{name}"
+        );
     }
     assert!(server.asked().iter().any(|line| line.contains("hill.tif")), "{:?}", server.asked());
     refused_with(Path::new(&server.url("gone.tif")), &trusting(), &["cannot be opened", "gdalinfo"]);
@@ -136,7 +140,7 @@ fn archives_and_grids_of_local_files_are_read() {
         at("NETCDF:\"", "hill.nc", "\":Band1"),
         at("GPKG:", "hill.gpkg", ":hill"),
     ] {
-        assert_eq!(read_all(Path::new(&name)).heights(), truth.heights(), "{name}");
+        assert_eq!(read_all(Path::new(&name)).held().unwrap().heights(), truth.held().unwrap().heights(), "{name}");
     }
     let beside = Path::new("NETCDF:Cargo.toml:Band1");
     refused(beside, &["Cargo.toml", "cannot be opened"]);
@@ -171,7 +175,22 @@ fn gdal_itself_is_restricted() {
     assert!(Dataset::open(format!("/vsicurl/{}", server.url("hill.tif"))).is_err());
     assert!(Dataset::open(dir.path().join("service.xml")).is_err());
     assert_eq!(server.asked(), [""; 0]);
-    assert_eq!(trusted(&server.url("hill.tif")).heights(), local.heights(), "the next file may be trusted");
+    assert_eq!(
+        trusted(&server.url("hill.tif")).held().unwrap().heights(),
+        local.held().unwrap().heights(),
+        "the next file may be trusted"
+    );
+    // Samples that stay in their files are read on any thread: there, too.
+    let dem = read(dir.path().join("served.tif"), &ReadOptions { memory: 1, ..Default::default() }).unwrap();
+    let url = format!("/vsicurl/{}", server.url("hill.tif"));
+    let asked = server.asked();
+    let opened = |reads: bool| {
+        let work = || (reads && dem.window([0, 0], [1, 1]).is_err(), Dataset::open(&url).is_ok());
+        std::thread::scope(|scope| scope.spawn(work).join().unwrap())
+    };
+    assert_eq!(opened(true), (false, false));
+    assert_eq!(server.asked(), asked);
+    assert_eq!(opened(false), (false, true), "a thread that reads no DEM is free: the check can fail");
     for driver in ["WMS", "WCS", "WMTS", "HTTP", "STACIT", "PostGISRaster", "PCIDSK", "ERS", "MRF", "Zarr"] {
         assert!(DriverManager::get_driver_by_name(driver).is_err(), "{driver}");
     }

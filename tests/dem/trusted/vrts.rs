@@ -34,7 +34,11 @@ fn a_vrt_names_files_of_its_folder() {
         ("", at("GTIFF_DIR:1:", "hill.tif", "")),
         ("", at("/vsigzip/", "hill.asc.gz", "")),
     ] {
-        assert_eq!(read_all(&of_source(&path, attributes, &name)).heights(), truth.heights(), "{name}");
+        assert_eq!(
+            read_all(&of_source(&path, attributes, &name)).held().unwrap().heights(),
+            truth.held().unwrap().heights(),
+            "{name}"
+        );
     }
     let outside = ["lies outside its folder", "--allow-remote"];
     for (attributes, name) in [
@@ -52,11 +56,14 @@ fn a_vrt_names_files_of_its_folder() {
     let command = Command::new(env!("CARGO_BIN_EXE_hachure")).args(["info", "hill.vrt"]).current_dir(&inner).output();
     let said = String::from_utf8(command.unwrap().stderr).unwrap();
     assert!(said.contains("another file in each working folder; write it with relativeToVRT=\"1\""), "{said}");
-    let raw: Vec<_> = truth.heights().iter().flat_map(|height| height.to_le_bytes()).collect();
+    let raw: Vec<_> = truth.held().unwrap().heights().iter().flat_map(|height| height.to_le_bytes()).collect();
     fs::write(inner.join("raw"), raw).unwrap();
     let band = "dataType=\"Float32\" band=\"1\" subClass=\"VRTRawRasterBand\"><ByteOrder>LSB</ByteOrder>\
                 <SourceFilename relativeToVRT=\"1\">raw</SourceFilename>";
-    assert_eq!(read_all(&vrt(&inner.join("raw.vrt"), "", band)).heights(), truth.heights());
+    assert_eq!(
+        read_all(&vrt(&inner.join("raw.vrt"), "", band)).held().unwrap().heights(),
+        truth.held().unwrap().heights()
+    );
     // A part that is cut short is noticed, each time.
     let bytes = fs::read(&tif).unwrap();
     fs::write(inner.join("cut.tif"), &bytes[..bytes.len() - 20]).unwrap();
@@ -64,7 +71,10 @@ fn a_vrt_names_files_of_its_folder() {
     fs::write(inner.join("cut.tif"), &bytes[..9]).unwrap();
     refused_with(&of_source(&path, RELATIVE, "cut.tif"), &trusting(), &["damaged or cut short"]);
     refused_with(&of_source(&path, RELATIVE, "cut.tif"), &trusting(), &["damaged or cut short"]);
-    assert_eq!(trusted(of_source(&path, RELATIVE, "../secret.tif").to_str().unwrap()).heights(), truth.heights());
+    assert_eq!(
+        trusted(of_source(&path, RELATIVE, "../secret.tif").to_str().unwrap()).held().unwrap().heights(),
+        truth.held().unwrap().heights()
+    );
     #[cfg(unix)]
     {
         std::os::unix::fs::symlink(&secret, inner.join("link.tif")).unwrap();
@@ -72,7 +82,7 @@ fn a_vrt_names_files_of_its_folder() {
         // A link to a VRT: what it names lies beside the VRT, not beside the link.
         let real = of_source(&path, RELATIVE, "hill.tif");
         std::os::unix::fs::symlink(&real, dir.path().join("link.vrt")).unwrap();
-        assert_eq!(read_all(&dir.path().join("link.vrt")).heights(), truth.heights());
+        assert_eq!(read_all(&dir.path().join("link.vrt")).held().unwrap().heights(), truth.held().unwrap().heights());
     }
 }
 
@@ -105,7 +115,10 @@ fn a_vrt_names_nothing_but_local_rasters() {
     assert_eq!(server.asked(), [""; 0], "nothing is asked of a server that is not trusted");
     refused_with(&of_source(&path, "", &url), &trusting(), &["write `/vsicurl/http://127.0.0.1:"]);
     let remote = of_source(&path, "", &format!("/vsicurl/{url}"));
-    assert_eq!(trusted(remote.to_str().unwrap()).heights(), read_all(&dir.path().join("served.tif")).heights());
+    assert_eq!(
+        trusted(remote.to_str().unwrap()).held().unwrap().heights(),
+        read_all(&dir.path().join("served.tif")).held().unwrap().heights()
+    );
     refused_always(of_source(&path, " relativeToVRT=\"2\"", "served.tif").to_str().unwrap(), &["neither 0 nor 1"]);
 }
 
@@ -167,7 +180,10 @@ fn code_options_and_unknown_kinds_are_refused() {
     assert!(!written.exists());
     let own = python.replace("Python", "C").replace("<PixelFunctionType>f", "<PixelFunctionType>mod");
     let own = format!("{}{source}", own.split("<PixelFunctionCode>").next().unwrap());
-    assert_eq!(read_all(&vrt(&path, "", &own)).heights(), read_all(&dir.path().join("hill.tif")).heights());
+    assert_eq!(
+        read_all(&vrt(&path, "", &own)).held().unwrap().heights(),
+        read_all(&dir.path().join("hill.tif")).held().unwrap().heights()
+    );
     let options =
         source.replace("</SimpleSource>", "<OpenOptions><OOI key=\"ROOT_PATH\">/</OOI></OpenOptions></SimpleSource>");
     read_all(&vrt(&path, "", &options.replace("ROOT_PATH\">/", "OVERVIEW_LEVEL\">NONE")));
@@ -187,7 +203,7 @@ fn vrts_in_vrts_are_looked_into() {
     for depth in 1..9 {
         of_source(&at(&format!("{depth}.vrt")), RELATIVE, &format!("{}.vrt", depth - 1));
     }
-    assert_eq!(read_all(&at("7.vrt")).heights(), read_all(&tif).heights());
+    assert_eq!(read_all(&at("7.vrt")).held().unwrap().heights(), read_all(&tif).held().unwrap().heights());
     refused_always(at("8.vrt").to_str().unwrap(), &["its part \"0.vrt\"", "more than 8 deep"]);
     of_source(&at("0.vrt"), "", "/vsicurl/http://127.0.0.1:1/x.tif");
     refused(&at("3.vrt"), &["its part \"0.vrt\" names", "lies on a network"]);
@@ -270,7 +286,7 @@ fn a_vrt_on_a_network_names_what_lies_beside_it() {
     for name in ["near/hill.vrt", "near/outer.vrt"] {
         refused(Path::new(&server.url(name)), &["--allow-remote"]);
         assert_eq!(server.asked().iter().filter(|line| line.contains(name)).count(), 0);
-        assert_eq!(trusted(&server.url(name)).heights(), truth.heights(), "{name}");
+        assert_eq!(trusted(&server.url(name)).held().unwrap().heights(), truth.held().unwrap().heights(), "{name}");
     }
     for name in ["local.vrt", "plain.vrt", "grid.vrt"] {
         refused_with(Path::new(&server.url(name)), &trusting(), &["does not lie beside it on the network", "download"]);

@@ -1,0 +1,208 @@
+//! Samples that stay in their files, read tile by tile as they are asked for.
+//!
+//! Tiles read are kept while they fit a budget; the one that was asked for longest ago goes first. Any number of threads
+//! may ask at once: a tile that two want is read by one, the other waits. No core's work is stolen by a reading (nothing
+//! in it is parallel), so that waiting cannot turn in a circle. Memory beside the budget: GDAL's own cache (32 MiB) and
+//! a few tiles on their way.
+
+use std::collections::{HashMap, HashSet};
+use std::fmt::{self, Debug, Formatter};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
+
+use xxhash_rust::xxh3::xxh3_128;
+
+use super::grid::Window;
+use super::mosaic::Mosaic;
+use super::raster::Raster;
+use super::tiling::{Tiling, gather};
+use crate::error::{Error, Result};
+
+/// A window of a mosaic whose samples are read on demand.
+pub(super) struct Filed {
+    mosaic: Mosaic,
+    window: Window,
+    exaggeration: f64,
+    tiling: Tiling,
+    /// Bytes of memory that all work with the samples may take.
+    budget: usize,
+    stamp: Option<u128>,
+    kept: Mutex<Kept>,
+    marks: Mutex<Marks>,
+    failure: OnceLock<Error>,
+}
+
+/// Exaggerated metres of a tile, NaN at voids, once they are read.
+type Tile = Arc<Mutex<Option<Arc<[f32]>>>>;
+
+/// Tiles by their first samples, each with the number of the request that came last, and the bytes of all.
+#[derive(Default)]
+struct Kept {
+    tiles: HashMap<[usize; 2], (Tile, u64, usize)>,
+    requests: u64,
+    bytes: usize,
+}
+
+/// How many samples of the tiles read so far are void by their impossible value alone.
+#[derive(Default)]
+struct Marks {
+    of: HashSet<[usize; 2]>,
+    count: usize,
+}
+
+impl Filed {
+    /// `window` of `mosaic`, with up to half of `budget` bytes of tiles kept.
+    pub fn new(mosaic: Mosaic, window: Window, exaggeration: f64, budget: usize) -> Self {
+        let tiling = mosaic.tiling(window);
+        let stamp = mosaic.stamp().map(|files| xxh3_128(format!("{files} {window:?} {exaggeration}").as_bytes()));
+        Self {
+            mosaic,
+            window,
+            exaggeration,
+            tiling,
+            budget,
+            stamp,
+            kept: Mutex::default(),
+            marks: Mutex::default(),
+            failure: OnceLock::new(),
+        }
+    }
+
+    /// Rows of a tile.
+    pub fn tile_rows(&self) -> usize {
+        self.tiling.size[1]
+    }
+
+    /// Bytes of memory that all work with the samples may take.
+    pub fn budget(&self) -> usize {
+        self.budget
+    }
+
+    /// What tells one state of the files and one way of reading them from another; `None` where one is not on the disk.
+    pub fn stamp(&self) -> Option<u128> {
+        self.stamp
+    }
+
+    /// All samples, metres, and how many of them are void by their impossible value alone. `progress` hears the share done.
+    pub fn raster(&self, progress: &dyn Fn(f64)) -> Result<(Raster, usize)> {
+        if self.mosaic.apart().is_some() {
+            return self.mosaic.read(self.window, progress);
+        }
+        let metres = self.read(Window { first: [0, 0], ..self.window }, progress)?;
+        Ok((Raster { grid: self.mosaic.grid.part(self.window), metres }, self.marks()))
+    }
+
+    /// Exaggerated metres of `window`, counted from the first sample, NaN at voids. `progress` hears the share done.
+    pub fn read(&self, window: Window, progress: &dyn Fn(f64)) -> Result<Vec<f32>> {
+        let tiles = self.tiling.tiles(window);
+        gather(window, &tiles, self.mosaic.is_parallel(), |tile| self.tile(tile), progress)
+    }
+
+    /// Exaggerated metres of one sample, NaN at a void.
+    pub fn height(&self, at: [usize; 2]) -> Result<f32> {
+        let window = self.tiling.tile(at);
+        let [c, r] = [0, 1].map(|i| at[i] - window.first[i]);
+        Ok(self.tile(window)?[r * window.size[0] + c])
+    }
+
+    /// How many samples are void by their impossible value alone, among those read so far.
+    pub fn marks(&self) -> usize {
+        lock(&self.marks).count
+    }
+
+    /// Keeps the first error of those who could not return it.
+    pub fn fail(&self, error: Error) {
+        let _ = self.failure.set(error);
+    }
+
+    /// The first error of those who could not return it.
+    pub fn check(&self) -> Result<()> {
+        self.failure.get().map_or(Ok(()), |error| Err(error.clone()))
+    }
+
+    /// The error for files without any elevation among `samples`.
+    pub fn all_void(&self, samples: usize) -> Error {
+        let inside = if self.window == self.mosaic.grid.whole() { "" } else { " inside the crop" };
+        Error::input(
+            self.mosaic.path(),
+            format!("holds no elevation{inside}, all {samples} samples are void"),
+            "check the band and its nodata value with `gdalinfo -stats`, choose another --band, or move --crop",
+        )
+    }
+
+    fn tile(&self, window: Window) -> Result<Arc<[f32]>> {
+        let tile = lock(&self.kept).tile(window, self.budget / 2);
+        let mut samples = lock(&tile);
+        if let Some(samples) = &*samples {
+            return Ok(samples.clone());
+        }
+        let first = [0, 1].map(|i| self.window.first[i] + window.first[i]);
+        let (raster, marks) = self.mosaic.read(Window { first, ..window }, &|_| ())?;
+        if marks > 0 {
+            lock(&self.marks).add(window.first, marks);
+        }
+        let mut metres = raster.metres;
+        exaggerate(&mut metres, self.exaggeration);
+        Ok(samples.insert(metres.into()).clone())
+    }
+}
+
+impl Kept {
+    /// The tile of a window, new ones in the place of old ones beyond `budget` bytes.
+    fn tile(&mut self, window: Window, budget: usize) -> Tile {
+        self.requests += 1;
+        if let Some((tile, request, _)) = self.tiles.get_mut(&window.first) {
+            *request = self.requests;
+            return tile.clone();
+        }
+        let (tile, bytes) = (Tile::default(), window.samples() as usize * size_of::<f32>());
+        while self.bytes + bytes > budget {
+            let oldest = self.tiles.iter().min_by_key(|(_, (_, request, _))| *request).map(|(first, _)| *first);
+            let Some((_, _, freed)) = oldest.and_then(|first| self.tiles.remove(&first)) else { return tile };
+            self.bytes -= freed;
+        }
+        self.bytes += bytes;
+        self.tiles.insert(window.first, (tile.clone(), self.requests, bytes));
+        tile
+    }
+}
+
+impl Marks {
+    fn add(&mut self, tile: [usize; 2], marks: usize) {
+        // A tile may come more than once.
+        self.count += if self.of.insert(tile) { marks } else { 0 };
+    }
+}
+
+impl Debug for Filed {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Filed").field("path", &self.mosaic.path()).field("window", &self.window).finish_non_exhaustive()
+    }
+}
+
+/// Multiplies metres by the exaggeration.
+pub(super) fn exaggerate(metres: &mut [f32], exaggeration: f64) {
+    metres.iter_mut().for_each(|height| *height = (f64::from(*height) * exaggeration) as f32);
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_tile_asked_for_longest_ago_makes_room() {
+        let tile = |c: usize| Window { first: [c, 0], size: [100, 10] };
+        let mut kept = Kept::default();
+        let tiles: Vec<_> = (0..3).map(|c| kept.tile(tile(c), 12_000)).collect();
+        assert!(Arc::ptr_eq(&tiles[0], &kept.tile(tile(0), 12_000)), "all three fit");
+        let _ = kept.tile(tile(3), 12_000);
+        assert_eq!(kept.bytes, 12_000);
+        assert!(Arc::ptr_eq(&tiles[0], &kept.tile(tile(0), 12_000)), "asked for since");
+        assert!(!Arc::ptr_eq(&tiles[1], &kept.tile(tile(1), 12_000)), "gone");
+        let mut none = Kept::default();
+        assert!(!Arc::ptr_eq(&none.tile(tile(0), 3_999), &none.tile(tile(0), 3_999)), "more than the budget");
+    }
+}

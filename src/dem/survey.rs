@@ -1,0 +1,149 @@
+//! What only a look at every sample tells of a DEM: made once, in bands.
+
+use std::borrow::Cow;
+
+use rayon::prelude::*;
+
+use super::grid::Window;
+use super::{Dem, Samples, Store};
+use crate::error::Result;
+
+/// Most samples that are kept of a filed DEM to stand for all, about: 16 MiB.
+const THINNED_SAMPLES: usize = 1 << 22;
+
+/// Figures of all samples of a DEM.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Survey {
+    /// Lowest and highest exaggerated metres, `None` when all samples are void.
+    pub range: Option<[f32; 2]>,
+    /// Samples without elevation.
+    pub voids: usize,
+    /// Of these, samples that are void by their impossible value alone; 0 for a held DEM, whose history tells.
+    pub marks: usize,
+    /// Patches, two a cell, whose corners all hold an elevation.
+    pub patches: u64,
+    /// Exaggerated metres of every k-th sample of every k-th row of a filed DEM, k as [`Dem::thinning`] says, row-major,
+    /// NaN at voids. Empty for a held one.
+    pub thinned: Vec<f32>,
+}
+
+/// Range, voids and patches of some rows.
+#[derive(Clone, Copy)]
+struct Figures([f32; 2], usize, u64);
+
+impl Figures {
+    const NONE: Self = Self([f32::INFINITY, f32::NEG_INFINITY], 0, 0);
+
+    fn of_row(samples: &Samples, r: usize) -> Self {
+        let [first, size] = [samples.first()[0], samples.size()[0]];
+        let heights = (first..first + size).filter_map(|c| samples.height(c, r));
+        let (range, valid) = heights
+            .fold((Self::NONE.0, 0), |([low, high], valid), height| ([low.min(height), high.max(height)], valid + 1));
+        Self(range, size - valid, samples.patches(r).map(|[a, b]| u64::from(a) + u64::from(b)).sum())
+    }
+
+    fn with(self, other: Self) -> Self {
+        Self([self.0[0].min(other.0[0]), self.0[1].max(other.0[1])], self.1 + other.1, self.2 + other.2)
+    }
+}
+
+impl Survey {
+    /// What of these figures had to be assumed of a filed DEM, in words as those of its history.
+    pub fn assumed(&self) -> Option<String> {
+        marked(self.marks)
+    }
+}
+
+impl Dem {
+    /// The survey of this DEM, made by the first who asks: all samples of a filed DEM are read then. `progress` hears the
+    /// share done.
+    ///
+    /// # Errors
+    /// As [`Dem::window`]; [`Error::Input`](crate::error::Error::Input) for a filed DEM that is all void.
+    pub fn survey(&self, progress: &dyn Fn(f64)) -> Result<&Survey> {
+        if let Some(survey) = self.survey.get() {
+            return Ok(survey);
+        }
+        let mut figures = Figures::NONE;
+        let mut thinned = Vec::new();
+        for band in self.bands(1) {
+            let band = band?;
+            let rows = band.rows.clone().into_par_iter();
+            figures =
+                figures.with(rows.map(|r| Figures::of_row(&band.samples, r)).reduce(|| Figures::NONE, Figures::with));
+            if self.is_filed() {
+                thinned.extend(self.thin(&band.samples, band.rows.clone()));
+            }
+            progress(band.rows.end as f64 / self.rows() as f64);
+        }
+        let Figures(range, voids, patches) = figures;
+        let marks = if let Store::Filed(filed) = &self.store { filed.marks() } else { 0 };
+        let range = Some(range).filter(|[low, high]| low <= high);
+        if let (Store::Filed(filed), None) = (&self.store, range) {
+            return Err(filed.all_void(voids));
+        }
+        Ok(self.survey.get_or_init(|| Survey { range, voids, marks, patches, thinned }))
+    }
+
+    /// Takes a survey made before of the same samples, as [`Dem::stamp`] tells, in the place of one of its own.
+    pub fn remember(&self, survey: Survey) {
+        // One that is there already says the same.
+        let _ = self.survey.set(survey);
+    }
+
+    /// Lowest and highest valid height in exaggerated metres, `None` when all is void and where samples cannot be read:
+    /// see [`Dem::check`].
+    pub fn range(&self) -> Option<[f32; 2]> {
+        self.surveyed().and_then(|survey| survey.range)
+    }
+
+    /// How many samples are void; 0 where they cannot be read, see [`Dem::check`].
+    pub fn voids(&self) -> usize {
+        self.surveyed().map_or(0, |survey| survey.voids)
+    }
+
+    /// How many patches exist, see [`Survey::patches`]; 0 where samples cannot be read, see [`Dem::check`].
+    pub fn patches(&self) -> u64 {
+        self.surveyed().map_or(0, |survey| survey.patches)
+    }
+
+    /// The DEM itself if it is held; else a held one of every k-th sample and row, k being [`Dem::thinning`].
+    ///
+    /// # Errors
+    /// As [`Dem::survey`].
+    pub fn thinned(&self) -> Result<Cow<'_, Self>> {
+        if !self.is_filed() {
+            return Ok(Cow::Borrowed(self));
+        }
+        let step = self.thinning();
+        let size = [self.columns(), self.rows()].map(|n| n.div_ceil(step));
+        let samples = Samples::new(Window { first: [0, 0], size }, self.survey(&|_| ())?.thinned.clone());
+        Ok(Cow::Owned(Self::new(size, self.cell() * step as f64, self.origin, Store::Held(samples))))
+    }
+
+    /// Samples between those that [`Dem::thinned`] takes, along a row and down a column; 1 for a held DEM.
+    pub fn thinning(&self) -> usize {
+        let share = (self.columns() as f64 * self.rows() as f64 / THINNED_SAMPLES as f64).sqrt().ceil();
+        // Of a narrow strip two rows or columns at least.
+        let most = self.columns().min(self.rows()) - 1;
+        if self.is_filed() { (share as usize).clamp(1, most) } else { 1 }
+    }
+
+    fn surveyed(&self) -> Option<&Survey> {
+        self.kept(self.survey(&|_| ()))
+    }
+
+    fn thin(&self, samples: &Samples, rows: std::ops::Range<usize>) -> Vec<f32> {
+        let step = self.thinning();
+        let rows = rows.filter(|r| r.is_multiple_of(step));
+        let columns = || (0..self.columns()).step_by(step);
+        rows.flat_map(|r| columns().map(move |c| samples.height(c, r).unwrap_or(f32::NAN))).collect()
+    }
+}
+
+/// What is assumed where so many samples are void by their impossible value alone.
+pub(super) fn marked(marks: usize) -> Option<String> {
+    let clause = "samples at or below -32767 or above 100000 m are voids (no such nodata is declared; \
+                  declare it with `gdal_translate -a_nodata N IN OUT.tif`)";
+    (marks > 0).then(|| format!("{marks} {clause}"))
+}
