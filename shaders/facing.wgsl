@@ -9,27 +9,30 @@ fn faces_eye(lowest: vec3<f32>, edge_1: vec3<f32>, edge_2: vec3<f32>) -> bool {
     return dot(cross(edge_1, edge_2), lowest) < 0.0;
 }
 
-// Which halves of the quad north-west of vertex `v` lack a vertex, as two bits.
-fn lacking(v: u32) -> u32 {
-    let nw_se = screens[v].w | screens[v + CHUNK_SIDE + 1u].w;
-    let sw = screens[v + CHUNK_SIDE].w;
-    let ne = screens[v + 1u].w;
-    return select(0u, 1u, ((nw_se | sw) & MISSING) != 0) | select(0u, 2u, ((nw_se | ne) & MISSING) != 0);
-}
-
-// A vertex: its place on the lattice, and offset and height from `places`.
+// A vertex: its place on the lattice, offset and height from `places`, and flags where some may be missing.
 struct Vertex {
     at: vec2<u32>,
     place: vec4<f32>,
+    flags: i32,
 }
 
 // The vertex at column and row `at` of a chunk, number `v` of the batch.
-fn vertex_of(chunk: Chunk, at: vec2<u32>, v: u32) -> Vertex {
-    return Vertex(chunk.origin + shared_vertex(chunk.coarser, at) * chunk.step, places[v]);
+fn vertex_of(chunk: Chunk, at: vec2<u32>, v: u32, ragged: bool) -> Vertex {
+    var flags = 0;
+    if ragged {
+        flags = screens[v].w;
+    }
+    return Vertex(chunk.origin + shared_vertex(chunk.coarser, at) * chunk.step, places[v], flags);
 }
 
 fn edge_of(from_vertex: Vertex, to_vertex: Vertex) -> vec3<f32> {
     return edge_between(from_vertex.at, from_vertex.place, to_vertex.at, to_vertex.place);
+}
+
+// Which halves of a quad lack a vertex, as two bits.
+fn lacking(nw: Vertex, ne: Vertex, sw: Vertex, se: Vertex) -> u32 {
+    let diagonal = nw.flags | se.flags;
+    return select(0u, 1u, ((diagonal | sw.flags) & MISSING) != 0) | select(0u, 2u, ((diagonal | ne.flags) & MISSING) != 0);
 }
 
 // Which halves of a quad are facets and face away, as two bits: beside a coarser chunk some have collapsed.
@@ -57,22 +60,20 @@ fn facing(@builtin(global_invocation_id) invocation: vec3<u32>, @builtin(workgro
     var missing = 0u;
     // Two columns of eight quads, row by row: each vertex is read once.
     let one = vec2<u32>(1u, 0u);
-    var north_west = vertex_of(chunk, quad, v);
-    var north = vertex_of(chunk, quad + one, v + 1u);
-    var north_east = vertex_of(chunk, quad + one + one, v + 2u);
+    var north_west = vertex_of(chunk, quad, v, ragged);
+    var north = vertex_of(chunk, quad + one, v + 1u, ragged);
+    var north_east = vertex_of(chunk, quad + one + one, v + 2u, ragged);
     for (var k = 0u; k < 16u; k += 2u) {
-        var lacks = vec2<u32>(0u);
-        if ragged {
-            lacks = vec2<u32>(lacking(v), lacking(v + 1u));
-            missing |= lacks.x | lacks.y;
-        }
         v += CHUNK_SIDE;
         quad.y += 1u;
-        let south_west = vertex_of(chunk, quad, v);
-        let south = vertex_of(chunk, quad + one, v + 1u);
-        let south_east = vertex_of(chunk, quad + one + one, v + 2u);
-        bits |= (away_halves(north_west, north, south_west, south) & ~lacks.x) << k;
-        bits |= (away_halves(north, north_east, south, south_east) & ~lacks.y) << (k + 16u);
+        let south_west = vertex_of(chunk, quad, v, ragged);
+        let south = vertex_of(chunk, quad + one, v + 1u, ragged);
+        let south_east = vertex_of(chunk, quad + one + one, v + 2u, ragged);
+        let lacks_west = lacking(north_west, north, south_west, south);
+        let lacks_east = lacking(north, north_east, south, south_east);
+        missing |= lacks_west | lacks_east;
+        bits |= (away_halves(north_west, north, south_west, south) & ~lacks_west) << k;
+        bits |= (away_halves(north, north_east, south, south_east) & ~lacks_east) << (k + 16u);
         north_west = south_west;
         north = south;
         north_east = south_east;

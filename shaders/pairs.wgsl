@@ -47,17 +47,11 @@ fn block_has_away(first_facet: u32, low: vec2<u32>, high: vec2<u32>) -> bool {
     return false;
 }
 
-// Whether an away facet lies between two lattice places, low inside and high not, as far as they lie in the chunk.
-fn part_has_away(slot: u32, chunk: Chunk, low: vec2<u32>, high: vec2<u32>) -> bool {
-    let inner_low = max(low, chunk.origin) - chunk.origin;
-    let inner_high = min(high, chunk.origin + CHUNK_QUADS * chunk.step) - chunk.origin;
-    let twos = by_twos(chunk);
-    let shift = vec2<u32>(firstTrailingBit(chunk.step));
-    let first = (inner_low >> shift) & ~twos;
-    let last = ((inner_high - 1u) >> shift) | twos;
+// Whether an away facet lies between two quads of a chunk.
+fn chunk_has_away(slot: u32, first: vec2<u32>, last: vec2<u32>) -> bool {
     let summary = summaries[slot];
     let eight = vec2<u32>(3u);
-    for (var block = first >> eight; all(inner_low < inner_high) && block.y <= (last.y >> 3u); ) {
+    for (var block = first >> eight; block.y <= (last.y >> 3u); ) {
         if ((summary >> (block.y * 4u + block.x)) & 1u) != 0u {
             let corner_quad = block << eight;
             let block_low = max(first, corner_quad) - corner_quad;
@@ -74,6 +68,16 @@ fn part_has_away(slot: u32, chunk: Chunk, low: vec2<u32>, high: vec2<u32>) -> bo
     return false;
 }
 
+// The quads of a chunk between two lattice places, low inside and high not, that lie in it or touch it.
+fn quads_between(chunk: Chunk, low: vec2<u32>, high: vec2<u32>) -> vec4<u32> {
+    let end = chunk.origin + CHUNK_QUADS * chunk.step - 1u;
+    let inner_low = clamp(low, chunk.origin, end) - chunk.origin;
+    let inner_high = clamp(high - 1u, chunk.origin, end) - chunk.origin;
+    let shift = vec2<u32>(firstTrailingBit(chunk.step));
+    let twos = by_twos(chunk);
+    return vec4<u32>((inner_low >> shift) & ~twos, (inner_high >> shift) | twos);
+}
+
 // Whether two chunks cover all between two lattice places.
 fn cover(a: Chunk, b: Chunk, low: vec2<u32>, high: vec2<u32>) -> bool {
     let a_end = a.origin + CHUNK_QUADS * a.step;
@@ -83,34 +87,39 @@ fn cover(a: Chunk, b: Chunk, low: vec2<u32>, high: vec2<u32>) -> bool {
     return (holds.y && meet.x) || (holds.x && meet.y);
 }
 
-// Whether a walk between two facets could meet an away one.
-fn is_open(p: u32, q: u32) -> bool {
-    if !thrifty {
-        return true;
-    }
+// Whether a walk between two facets could meet an away one; `chunk_p` is the chunk of the first.
+fn is_open(p: u32, q: u32, chunk_p: Chunk) -> bool {
     let slot_p = p / CHUNK_FACETS;
     let slot_q = q / CHUNK_FACETS;
-    let chunk_p = chunks[slot_p];
-    let chunk_q = chunks[slot_q];
-    let a = rectangle_of(chunk_p, p % CHUNK_FACETS);
-    let b = rectangle_of(chunk_q, q % CHUNK_FACETS);
-    let low = min(a.xy, b.xy);
-    let high = max(a.zw, b.zw);
-    if any(high - low > vec2<u32>(LARGEST_RECTANGLE * chunk_p.step)) {
-        return true;
+    let a = local_quad(p % CHUNK_FACETS);
+    let b = local_quad(q % CHUNK_FACETS);
+    let twos = by_twos(chunk_p);
+    var between = vec4<u32>(min(a, b) & ~twos, max(a, b) | twos);
+    var other = vec4<u32>(0u);
+    var covered = true;
+    if slot_p != slot_q {
+        let chunk_q = chunks[slot_q];
+        let in_p = rectangle_of(chunk_p, p % CHUNK_FACETS);
+        let in_q = rectangle_of(chunk_q, q % CHUNK_FACETS);
+        let low = min(in_p.xy, in_q.xy);
+        let high = max(in_p.zw, in_q.zw);
+        covered = cover(chunk_p, chunk_q, low, high);
+        between = quads_between(chunk_p, low, high);
+        other = quads_between(chunk_q, low, high);
     }
-    if slot_p != slot_q && !cover(chunk_p, chunk_q, low, high) {
+    if !thrifty || !covered || any(between.zw - between.xy >= vec2<u32>(LARGEST_RECTANGLE)) {
         return true;
     }
     var slot = slot_p;
     loop {
-        if part_has_away(slot, chunks[slot], low, high) {
+        if chunk_has_away(slot, between.xy, between.zw) {
             return true;
         }
         if slot == slot_q {
             return false;
         }
         slot = slot_q;
+        between = other;
     }
     return false;
 }
@@ -121,12 +130,13 @@ fn pairs(@builtin(global_invocation_id) invocation: vec3<u32>, @builtin(num_work
         let i = candidates.pixels[k] & 0xffffffu;
         let at = vec2<i32>(vec2<u32>(i % camera.size.x, i / camera.size.x));
         let p = pixels[i].x;
+        let chunk_p = chunks[(max(p, 1u) - 1u) / CHUNK_FACETS];
         var open = 0u;
         for (var left = candidates.pixels[k] >> 24u; left != 0u; left &= left - 1u) {
             let to = at + neighbour(firstTrailingBit(left));
             if on_page(to) {
                 let q = pixels[pixel_index(to)].x;
-                if p == 0u || q == 0u || is_open(p - 1u, q - 1u) {
+                if p == 0u || q == 0u || is_open(p - 1u, q - 1u, chunk_p) {
                     open |= left & (~left + 1u);
                 }
             }

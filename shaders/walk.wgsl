@@ -1,7 +1,8 @@
 // One invocation a pixel with open pairs: of each pair with a neighbour, walks the lattice from the nearer pixel's point on
 // the surface to the farther one's, facet by facet, in integers. An away facet on the way makes the nearer one ink; a
-// void or the outside ends the walk. Pairs with a pixel without surface, and walks past facets beside a coarser chunk where
-// something may happen, are rare and left to `walk_rest`: drivers that run both sides of every branch pay for them here.
+// void or the outside ends the walk. Pairs with a pixel without surface, and walks past blocks that lack facets or past
+// facets beside a coarser chunk, are rare and left to `walk_rest`: drivers that run both sides of every branch pay for
+// them here.
 
 // Pixels for another pass, and the workgroups of 64 that it takes along x, as far as they go.
 struct Pairs {
@@ -26,7 +27,7 @@ struct PairsRead {
 @group(0) @binding(23) var<storage, read_write> out_counts: Counts;
 @group(0) @binding(24) var<storage, read_write> out_rest: Pairs;
 
-// Whether walks past facets beside a coarser chunk are left to another pass.
+// Whether what is rare is left to another pass.
 override defers: bool = true;
 
 // Walk units in a lattice step of the finest level.
@@ -301,12 +302,12 @@ fn walk_between(origin: vec2<i32>, end: vec2<i32>) -> Meeting {
             let leaves = vec2<bool>(order <= 0, order >= 0);
             let ends = any(leaves & (to_side > left));
             let seam = beside_coarser(chunk.coarser, inner);
-            if eventful && seam {
-                if defers {
-                    meeting.deferred = true;
-                    meeting.done = true;
-                    break;
-                }
+            if defers && ((eventful && seam) || ((summary >> block) & 0x10000u) != 0u) {
+                meeting.deferred = true;
+                meeting.done = true;
+                break;
+            }
+            if !defers && eventful && seam {
                 let met = meet_beside_coarser(slot, inner, origin, end);
                 if met.met || met.left_land {
                     meeting = met;
@@ -320,8 +321,8 @@ fn walk_between(origin: vec2<i32>, end: vec2<i32>) -> Meeting {
                 let id = slot * CHUNK_FACETS + quad_local(inner);
                 let away = away_bits(id);
                 let entry_away = ((away >> entry) & 1u) == 1u;
-                let entry_missing = is_no_facet(chunk, inner, entry);
-                let exit_missing = is_no_facet(chunk, inner, exit);
+                let entry_missing = !defers && is_no_facet(chunk, inner, entry);
+                let exit_missing = !defers && is_no_facet(chunk, inner, exit);
                 if entry_away || entry_missing || exit_missing || ((away >> exit) & 1u) == 1u {
                     meeting.left_land = entry_missing || (!entry_away && exit_missing);
                     meeting.met = !meeting.left_land;

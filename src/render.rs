@@ -12,7 +12,7 @@ use crate::gpu::work::Work;
 use crate::gpu::{Buffers, CameraUniform, Clock, Extent, Gpu};
 use crate::gpu::{border, facing, rasterize, seam, tessellate};
 use crate::ink::InkRaster;
-use crate::plan::{Batch, Border, Detail, Method, Plan, Visibility, batches, detail};
+use crate::plan::{Batch, Border, Detail, Method, Plan, Thrift, Visibility, batches, detail};
 use crate::surface::rim::{RimEdge, rim};
 use crate::surface::{Lattice, Surface};
 use crate::view::Camera;
@@ -239,12 +239,20 @@ impl<'a> Renderer<'a> {
         if round == 0 {
             work.record(facing_stage, group, facing::invocations(batch))?;
         }
-        work.record(small, group, rasterize::invocations(batch))?;
+        work.record(small, group, rasterize::invocations(&self.seen(loaded, batch)))?;
         work.record(large, group, Extent::List("queue"))?;
         if several {
             work.submit()?;
         }
         Ok(())
+    }
+
+    /// What of a batch may appear. Hidden away facets count where depths of both sides are compared.
+    fn seen(&self, loaded: &Loaded, batch: &Batch) -> Batch {
+        if self.plan.thrift == Thrift::Nothing || self.visibility == Visibility::TwoDepths {
+            return *batch;
+        }
+        Batch { chunks: loaded.lattice.seen().saturating_sub(batch.first_slot).min(batch.chunks), ..*batch }
     }
 
     /// Brings to the device what a camera asks for: itself, and its lattice where each frame has its own.

@@ -4,12 +4,14 @@
 //! or hidden by nearer land stays as coarse as its neighbours allow. The level of a chunk depends on the surface and the
 //! camera alone.
 
+use std::collections::HashSet;
+
 use glam::{DVec2, DVec3};
 
 use super::Thrift;
 use super::horizon::Horizon;
 use crate::error::Result;
-use crate::surface::lattice::{CELL_STEPS, CHUNK_QUADS};
+use crate::surface::lattice::{CELL_STEPS, CHUNK_QUADS, Role};
 use crate::surface::pyramid::{FINEST_STEP, Slopes};
 use crate::surface::quadtree::Growth;
 use crate::surface::{Lattice, Level, Pyramid, Surface};
@@ -19,6 +21,9 @@ use crate::view::Camera;
 pub const ERROR_PX: f64 = 0.25;
 /// How many times as far facets may deviate where all of them face one way, so that no line is near.
 const FAR_FROM_LINES: f64 = 8.0;
+
+/// How many times as far as their deviation facets may leave a patch whose sides bend this way and that.
+const BENDS: f64 = 2.2;
 
 /// How fine facets are.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,12 +60,14 @@ pub fn adaptive(surface: &Surface, camera: &Camera, error_px: f64, thrift: Thrif
     let mut demand = Demand::new(surface, pyramid, camera, error_px);
     let wedge =
         View { eye: demand.view.eye, inward: camera.wedge().into_iter().flatten().map(|n| n.extend(0.0)).collect() };
-    let keeps = |origin, step| {
-        let bounds = pyramid.bounds(origin, step);
-        bounds.is_some_and(|bounds| thrift == Thrift::Nothing || wedge.meets(bounds))
-    };
     let from = dem.grid_place(camera.eye.truncate()) * f64::from(CELL_STEPS);
-    Lattice::adaptive(dem, pyramid.coarsest_step(), from.to_array(), &mut demand, keeps)
+    let tree = Lattice::grow(dem, pyramid.coarsest_step(), from.to_array(), &mut demand)?;
+    Lattice::adaptive(tree, |origin, step| {
+        let bounds = pyramid.bounds(origin, step)?;
+        let seen = demand.view.meets(bounds) && !demand.is_hidden(origin, step);
+        let crossed = thrift == Thrift::Nothing || wedge.meets(bounds);
+        seen.then_some(Role::Seen).or(crossed.then_some(Role::Crossed))
+    })
 }
 
 /// What lies on the inner side of planes through the eye. Metres from sample (0, 0).
@@ -85,6 +92,8 @@ struct Demand<'a> {
     horizon: Option<Horizon>,
     /// Largest deviation for each metre of distance, metres.
     tolerance: f64,
+    /// Squares found hidden, by their corner and size.
+    hidden: HashSet<([u32; 2], u32)>,
 }
 
 impl<'a> Demand<'a> {
@@ -104,7 +113,15 @@ impl<'a> Demand<'a> {
             },
             horizon: Horizon::new(surface, camera),
             tolerance: error_px / corner,
+            hidden: HashSet::new(),
         }
+    }
+
+    /// Whether a chunk lies in a square that was found hidden.
+    fn is_hidden(&self, origin: [u32; 2], step: u32) -> bool {
+        let largest = CHUNK_QUADS * self.pyramid.coarsest_step();
+        let mut sizes = std::iter::successors(Some(CHUNK_QUADS * step), |size| (*size < largest).then_some(2 * size));
+        sizes.any(|size| self.hidden.contains(&(origin.map(|at| at / size * size), size)))
     }
 
     /// From the eye to the nearest place of a box, metres.
@@ -137,7 +154,9 @@ impl<'a> Demand<'a> {
                 self.raise([origin[0] + x, origin[1] + y], step / 2, deviation);
             }
         } else {
-            horizon.raise(low, high, pyramid.fences(origin, step), deviation);
+            // Between samples land may dip below its fence, and facets below the land.
+            let lowered = deviation * BENDS + f64::from(pyramid.relief(origin, step).beyond);
+            horizon.raise(low, high, pyramid.fences(origin, step), lowered);
         }
     }
 }
@@ -153,9 +172,14 @@ impl Growth for Demand<'_> {
         }
         // Lines run where facing flips: there facets must be good.
         let slack = if self.faces_one_way(bounds, pyramid.slopes(origin, step)) { FAR_FROM_LINES } else { 1.0 };
+        if !self.view.meets(bounds) {
+            return false;
+        }
+        if self.horizon.as_ref().is_some_and(|horizon| horizon.hides(bounds)) {
+            self.hidden.insert((origin, size));
+            return false;
+        }
         deviation > self.tolerance * slack * self.distance(bounds)
-            && self.view.meets(bounds)
-            && !self.horizon.as_ref().is_some_and(|horizon| horizon.hides(bounds))
     }
 
     fn done(&mut self, origin: [u32; 2], size: u32, split: bool) {

@@ -28,6 +28,8 @@ pub(super) struct Horizon {
     ahead: DVec2,
     /// Tangents of the leftmost and rightmost column.
     edge: [f64; 2],
+    /// Slope of a line of sight a pixel above another, at most.
+    pixel: f64,
     /// Of each column, rise over distance ahead of the steepest hidden line of sight.
     slopes: Vec<f64>,
     /// Of each column, whether a ray may have come under the land.
@@ -68,6 +70,7 @@ impl Horizon {
             right,
             ahead,
             edge,
+            pixel: 2.0 / camera.focal(),
             slopes: vec![f64::NEG_INFINITY; COLUMNS],
             open: vec![false; COLUMNS],
         })
@@ -77,7 +80,7 @@ impl Horizon {
     pub fn hides(&self, [low, high]: [DVec3; 2]) -> bool {
         let Some(reach) = self.reach(low.truncate(), high.truncate()) else { return false };
         let rise = high.z - self.eye.z;
-        let slope = rise / if rise > 0.0 { reach.ahead[0] } else { reach.ahead[1] };
+        let slope = rise / if rise > 0.0 { reach.ahead[0] } else { reach.ahead[1] } + self.pixel;
         let columns = self.touched(reach.any);
         !columns.is_empty() && self.slopes[columns].iter().all(|horizon| slope < *horizon)
     }

@@ -117,7 +117,18 @@ impl Chunk {
 #[derive(Debug, Clone)]
 pub struct Lattice {
     chunks: Vec<Chunk>,
+    /// How many of them, the first ones, may appear.
+    seen: u32,
     tree: Quadtree,
+}
+
+/// What a frame needs a chunk for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Role {
+    /// It may appear on the page.
+    Seen,
+    /// It is hidden or beside the page, but walks may cross it.
+    Crossed,
 }
 
 impl Lattice {
@@ -143,37 +154,41 @@ impl Lattice {
         }
         let mut tree = Quadtree::new([columns as u32, rows as u32], CHUNK_QUADS * level.step());
         let chunk = |origin| Chunk { origin, step: level.step(), coarser: 0 };
-        let chunks = tree.number(|origin, _| !is_void(dem, &chunk(origin)));
-        Ok(Self { chunks: chunks.into_iter().map(|(origin, _)| chunk(origin)).collect(), tree })
+        let chunks = tree.number(|origin, _| (!is_void(dem, &chunk(origin))).then_some(Role::Seen));
+        let seen = chunks.len() as u32;
+        Ok(Self { chunks: chunks.into_iter().map(|(_, (origin, _))| chunk(origin)).collect(), seen, tree })
     }
 
-    /// The chunks of a DEM at levels of their own: from the coarsest on, each is split into four as `growth` says, seen
-    /// from lattice place `from`, and further until neighbours, across corners too, differ by one level at most. Of these
-    /// the ones for which `keep` by their origin and step, in the order of the quadtree.
+    /// A quadtree of chunks at levels of their own: from the coarsest on, each is split into four as `growth` says, seen
+    /// from lattice place `from`, and further until neighbours, across corners too, differ by one level at most.
     ///
     /// # Errors
     /// As [`Self::uniform`].
-    pub fn adaptive(
-        dem: &Dem,
-        coarsest_step: u32,
-        from: [f64; 2],
-        growth: &mut impl Growth,
-        keep: impl Fn([u32; 2], u32) -> bool,
-    ) -> Result<Self> {
+    pub fn grow(dem: &Dem, coarsest_step: u32, from: [f64; 2], growth: &mut impl Growth) -> Result<Quadtree> {
         let mut tree = Self::empty(dem, coarsest_step)?.tree;
-        let step = |size: u32| size / CHUNK_QUADS;
         tree.grow(from, growth);
         tree.balance();
+        Ok(tree)
+    }
+
+    /// The chunks of such a tree that have a `role`, by their origin and step: the seen ones first, each in the order of
+    /// the quadtree.
+    ///
+    /// # Errors
+    /// As [`Self::uniform`].
+    pub fn adaptive(mut tree: Quadtree, role: impl Fn([u32; 2], u32) -> Option<Role>) -> Result<Self> {
+        let step = |size: u32| size / CHUNK_QUADS;
         let sides = tree.larger_neighbours();
-        let kept = tree.number(|origin, size| keep(origin, step(size)));
+        let kept = tree.number(|origin, size| role(origin, step(size)));
         if kept.len() as u64 > MOST_CHUNKS {
             return Err(Error::Limit {
                 what: format!("the page needs {} chunks of facets, at most {MOST_CHUNKS} have IDs", kept.len()),
                 remedy: "use a larger --error-px or a --crop".into(),
             });
         }
-        let chunk = |(origin, size)| Chunk { origin, step: step(size), coarser: sides[&origin] };
-        Ok(Self { chunks: kept.into_iter().map(chunk).collect(), tree })
+        let seen = kept.iter().filter(|(role, _)| *role == Role::Seen).count() as u32;
+        let chunk = |(_, (origin, size))| Chunk { origin, step: step(size), coarser: sides[&origin] };
+        Ok(Self { chunks: kept.into_iter().map(chunk).collect(), seen, tree })
     }
 
     /// No chunks yet, of a DEM whose coarsest ones have this step.
@@ -184,12 +199,17 @@ impl Lattice {
         check_sides(dem)?;
         let size = CHUNK_QUADS * coarsest_step;
         let across = |samples: usize| ((samples as u32 - 1) * CELL_STEPS).div_ceil(size);
-        Ok(Self { chunks: Vec::new(), tree: Quadtree::new([across(dem.columns()), across(dem.rows())], size) })
+        Ok(Self { chunks: Vec::new(), seen: 0, tree: Quadtree::new([across(dem.columns()), across(dem.rows())], size) })
     }
 
     /// The chunks by slot.
     pub fn chunks(&self) -> &[Chunk] {
         &self.chunks
+    }
+
+    /// How many chunks may appear: those in the first slots.
+    pub fn seen(&self) -> u32 {
+        self.seen
     }
 
     /// Where chunks lie; its leaves are their slots.

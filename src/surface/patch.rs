@@ -193,6 +193,15 @@ pub struct Patch {
     control: [DVec3; 10],
 }
 
+/// How far facets leave a patch, metres; see [`Patch::bulge`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bulge {
+    /// Of ever finer ones, times the square of their level.
+    pub limit: f64,
+    /// Of the one of level 1.
+    pub flat: f64,
+}
+
 impl Patch {
     /// Over three corners with unit normals.
     pub fn new(p: [DVec3; 3], n: [DVec3; 3]) -> Self {
@@ -214,19 +223,33 @@ impl Patch {
         &self.control
     }
 
+    /// Second differences of the control points along the three sides; of each side, those at the three corners.
+    fn second_differences(&self) -> [[DVec3; 3]; 3] {
+        let at = |[j, k]: [usize; 2], corners: [usize; 2]| {
+            let count = |corner| corners.iter().filter(|c| **c == corner).count();
+            self.control[Self::index(j + count(1), k + count(2))]
+        };
+        let along = |m, n| [[0, 0], [1, 0], [0, 1]].map(|p| at(p, [m, m]) - at(p, [m, n]) * 2.0 + at(p, [n, n]));
+        [along(0, 1), along(1, 2), along(2, 0)]
+    }
+
     /// Largest second difference of the control points along the three sides, per axis.
     pub fn largest_second_difference(&self) -> DVec3 {
-        let mut largest = DVec3::ZERO;
-        for [j, k] in [[0, 0], [1, 0], [0, 1]] {
-            let at = |corners: [usize; 2]| {
-                let count = |corner| corners.iter().filter(|c| **c == corner).count();
-                self.control[Self::index(j + count(1), k + count(2))]
-            };
-            for [m, n] in [[0, 1], [1, 2], [2, 0]] {
-                largest = largest.max((at([m, m]) - at([m, n]) * 2.0 + at([n, n])).abs());
-            }
-        }
-        largest
+        self.second_differences().as_flattened().iter().fold(DVec3::ZERO, |largest, d| largest.max(d.abs()))
+    }
+
+    /// How far its facets leave it: a bulge of at most `limit` / n^2 metres at level n, `flat` at level 1, where bends to
+    /// one side and to the other make up for each other.
+    ///
+    /// Between the ends of a chord a curve with the second derivative M leaves it by M / 8, and M is six second
+    /// differences, which change linearly over the patch. Between three sides that bend to different sides it may be up
+    /// to 2.2 times as much. Where the second derivative changes from -M to M, a curve leaves its chord by M / 125.
+    pub fn bulge(&self) -> Bulge {
+        let longest = |vectors: &[DVec3]| vectors.iter().map(|v| v.length_squared()).fold(0.0, f64::max).sqrt();
+        let sides = self.second_differences();
+        let means = sides.map(|[a, b, c]| (a + b + c) / 3.0);
+        let changes = sides.map(|[a, b, c]| (a - b).abs().max((b - c).abs()).max((c - a).abs()));
+        Bulge { limit: 0.75 * longest(sides.as_flattened()), flat: 0.75 * longest(&means) + 0.05 * longest(&changes) }
     }
 
     /// The six differences of control points in the direction from one corner to another.
@@ -237,14 +260,6 @@ impl Patch {
                 |corner: usize| self.control[Self::index(j + usize::from(corner == 1), k + usize::from(corner == 2))];
             beside(to) - beside(from)
         })
-    }
-
-    /// How far the patch leaves its flat triangle, metres; facets of level n leave the patch by 1 / n^2 of it.
-    ///
-    /// Between the ends of a side a curve with second derivatives of at most M leaves its chord by M / 8, and M is six
-    /// second differences. Between three sides that bend to different sides it may be up to 2.2 times as much.
-    pub fn bulge(&self) -> f64 {
-        0.75 * self.largest_second_difference().length()
     }
 
     /// The point with barycentric weights `[a, b, c]`. A corner of weight 0 has no influence.

@@ -1,6 +1,6 @@
 //! Bounds of the surface over squares of every size, and how far facets leave it there.
 //!
-//! Method: PN facets of level n leave their patch by at most its [`Patch::bulge`] / n^2; facets coarser than the grid are
+//! Method: PN facets of level n leave their patch by its [`Patch::bulge`]; facets coarser than the grid are
 //! measured against every sample they pass, and the bulge of the patches below them is added. A square that holds voids,
 //! or is cut by an edge of the DEM between its vertices, has no coarse facets: its deviation is infinite. Cost: two
 //! patches a cell, then one look at each sample for every coarser level. Memory: 1.4 bytes a sample.
@@ -153,8 +153,10 @@ impl Pyramid {
 
     /// How far the facets of the chunk at `origin` leave the surface, metres; infinite where it must not be.
     pub fn deviation(&self, origin: [u32; 2], step: u32) -> f64 {
-        let flat = f64::from(self.square(origin, step).deviation);
-        if step >= CELL_STEPS { flat } else { flat * (f64::from(step) / f64::from(CELL_STEPS)).powi(2) }
+        let Square { bulge, deviation, .. } = self.square(origin, step);
+        let (limit, flat, share) = (f64::from(bulge), f64::from(deviation), f64::from(step) / f64::from(CELL_STEPS));
+        // Second differences change linearly over a patch, and facets see more and more of one end.
+        if share >= 1.0 { flat } else { (limit + (flat - limit) * share) * share * share }
     }
 
     /// Between which heights the surface of the chunk at `origin` lies, and how far it reaches beyond its square.
@@ -272,12 +274,12 @@ impl Layer {
 
 fn of_patch(patch: &Patch, half: usize) -> Square {
     let heights = patch.control().map(|p| p.z as f32);
-    let bulge = (patch.bulge() as f32).next_up();
+    let bulge = patch.bulge();
     Square {
         low: heights.into_iter().fold(f32::INFINITY, f32::min).next_down(),
         high: heights.into_iter().fold(f32::NEG_INFINITY, f32::max).next_up(),
-        bulge,
-        deviation: bulge,
+        bulge: (bulge.limit as f32).next_up(),
+        deviation: bulge.flat as f32,
         slopes: slopes(patch, half),
         fences: Fences::NONE,
     }

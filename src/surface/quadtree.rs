@@ -104,15 +104,16 @@ impl Quadtree {
         self.leaves().into_iter().map(|(_, square)| (square.0, of(square))).collect()
     }
 
-    /// Gives slots to those leaves for which `keep`, depth first, and returns them in that order; the others get none.
-    pub fn number(&mut self, keep: impl Fn([u32; 2], u32) -> bool) -> Vec<Square> {
-        let mut kept = Vec::new();
-        for (node, (corner, size)) in self.leaves() {
-            let keeps = keep(corner, size);
-            self.nodes[node] = if keeps { kept.len() as u32 } else { NO_SLOT };
-            kept.extend(keeps.then_some((corner, size)));
-        }
-        kept
+    /// Gives slots to leaves, those of the first rank first, each rank depth first, and returns them in that order. Leaves
+    /// without a rank get none.
+    pub fn number<R: Ord>(&mut self, rank: impl Fn([u32; 2], u32) -> Option<R>) -> Vec<(R, Square)> {
+        let ranked = |(node, square): (usize, Square)| (node, square, rank(square.0, square.1));
+        let mut leaves: Vec<_> = self.leaves().into_iter().map(ranked).collect();
+        leaves.iter().for_each(|(node, ..)| self.nodes[*node] = NO_SLOT);
+        leaves.retain(|(.., rank)| rank.is_some());
+        leaves.sort_by(|(.., a), (.., b)| a.cmp(b));
+        (0..).zip(&leaves).for_each(|(slot, (node, ..))| self.nodes[*node] = slot);
+        leaves.into_iter().filter_map(|(_, square, rank)| Some((rank?, square))).collect()
     }
 
     /// All leaves with their nodes, depth first, roots row by row.
