@@ -12,6 +12,7 @@ use crate::gpu::work::Work;
 use crate::gpu::{Buffers, CameraUniform, Clock, Extent, Gpu};
 use crate::gpu::{border, facing, rasterize, seam, tessellate};
 use crate::ink::InkRaster;
+use crate::plan::left_out::{LeftOut, left_out};
 use crate::plan::{Batch, Border, Detail, Method, Plan, Thrift, Visibility, batches, detail};
 use crate::surface::rim::{RimEdge, rim};
 use crate::surface::{Lattice, Surface};
@@ -95,6 +96,14 @@ impl<'a> Renderer<'a> {
             Detail::Uniform(level) => self.surface.patches() * u64::from(level.subdivisions()).pow(2),
             Detail::Adaptive { .. } => self.lattice().facets(self.surface.dem()),
         }
+    }
+
+    /// What the frame of a camera does without; with an adaptive lattice, of the last camera drawn.
+    ///
+    /// # Errors
+    /// As [`Surface::pyramid`].
+    pub fn left_out(&self, camera: &Camera) -> Result<Vec<LeftOut>> {
+        left_out(&self.plan, self.surface, &self.lattice(), camera)
     }
 
     /// The buffers, for reading what passes left.

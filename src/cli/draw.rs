@@ -18,6 +18,7 @@ use crate::gpu::Gpu;
 use crate::gpu::sizes::page_fits;
 use crate::ink::{self, Style};
 use crate::plan::detail::ERROR_PX;
+use crate::plan::left_out::{LeftOut, levels};
 use crate::plan::{Border, Detail, Method, Plan, Share};
 use crate::render::{Frame, PassTime, Renderer};
 use crate::report::results::DrawnLevel;
@@ -77,6 +78,9 @@ pub struct DrawArguments {
     #[arg(long, default_value = "on", help_heading = "Method")]
     border: Border,
 
+    /// Say at which levels parts of the DEM are drawn, what the frame did without, why, and what that saved
+    #[arg(long)]
+    explain: bool,
     #[command(flatten)]
     device: DeviceArguments,
 }
@@ -123,13 +127,6 @@ struct DemReport {
     assumed: Vec<String>,
 }
 
-#[derive(Serialize)]
-struct LeftOut {
-    what: &'static str,
-    why: &'static str,
-    saved: Option<String>,
-}
-
 /// Draws.
 ///
 /// # Errors
@@ -161,8 +158,8 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
         arguments.report(&gpu, &surface, &renderer, &view, method, &frame)
     };
     let report = outputs.want_report().then(report).transpose()?;
-    if talk.is_verbose() {
-        explain(talk, &arguments.left_out(&surface), report.as_ref())?;
+    if arguments.explain || talk.is_verbose() {
+        explain(talk, &renderer, &renderer.left_out(&view.camera)?, report.as_ref())?;
     }
     talk.progress("writing", 0.8);
     outputs.write(&drawing, &frame, report.as_ref())?;
@@ -231,30 +228,22 @@ impl DrawArguments {
             adapter: format!("{} ({})", gpu.info.name, gpu.info.driver_info),
             int64: gpu.int64,
             view: view.report(surface.dem().georeference(), self.exaggeration),
-            left_out: self.left_out(surface),
+            left_out: renderer.left_out(camera)?,
         })
-    }
-
-    /// What the frame did without.
-    fn left_out(&self, surface: &Surface) -> Vec<LeftOut> {
-        let mut left_out = Vec::new();
-        let mut leave = |out: bool, what, why, saved| left_out.extend(out.then_some(LeftOut { what, why, saved }));
-        leave(self.border == Border::Off, "border pass", "--border off", None);
-        leave(surface.dem().voids() == 0, "void tests", "the DEM has no voids", None);
-        left_out
     }
 }
 
-/// Says what was left out and, where they were taken, the times.
-fn explain(talk: &Talk, left_out: &[LeftOut], report: Option<&Report>) -> Result<()> {
+/// Says at which levels chunks are, what was left out and, where they were taken, the times.
+fn explain(talk: &Talk, renderer: &Renderer<'_>, left_out: &[LeftOut], report: Option<&Report>) -> Result<()> {
+    talk.say(&format!("chunks: {}", levels(&renderer.lattice())))?;
     for LeftOut { what, why, saved } in left_out {
         let saved = saved.as_ref().map_or(String::new(), |saved| format!(" ({saved})"));
-        talk.detail(&format!("left out: {what}, {why}{saved}"))?;
+        talk.say(&format!("left out: {what}, {why}{saved}"))?;
     }
     for PassTime { name, ms } in report.iter().flat_map(|report| &report.passes) {
-        talk.detail(&format!("pass {name}: {ms:.2} ms"))?;
+        talk.say(&format!("pass {name}: {ms:.2} ms"))?;
     }
-    report.map_or(Ok(()), |report| talk.detail(&format!("median frame: {:.2} ms", report.frame_ms)))
+    report.map_or(Ok(()), |report| talk.say(&format!("median frame: {:.2} ms", report.frame_ms)))
 }
 
 impl DemReport {

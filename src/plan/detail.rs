@@ -58,8 +58,7 @@ impl From<Level> for Detail {
 pub fn adaptive(surface: &Surface, camera: &Camera, error_px: f64, thrift: Thrift) -> Result<Lattice> {
     let (dem, pyramid) = (surface.dem(), surface.pyramid()?);
     let mut demand = Demand::new(surface, pyramid, camera, error_px);
-    let wedge =
-        View { eye: demand.view.eye, inward: camera.wedge().into_iter().flatten().map(|n| n.extend(0.0)).collect() };
+    let wedge = View::wedge(surface, camera);
     let from = dem.grid_place(camera.eye.truncate()) * f64::from(CELL_STEPS);
     let tree = Lattice::grow(dem, pyramid.coarsest_step(), from.to_array(), &mut demand)?;
     Lattice::adaptive(tree, |origin, step| {
@@ -70,6 +69,16 @@ pub fn adaptive(surface: &Surface, camera: &Camera, error_px: f64, thrift: Thrif
     })
 }
 
+/// How many chunks of a lattice lie beside the page's map projection.
+///
+/// # Errors
+/// As [`Surface::pyramid`].
+pub fn beside(surface: &Surface, lattice: &Lattice, camera: &Camera) -> Result<usize> {
+    let (pyramid, wedge) = (surface.pyramid()?, View::wedge(surface, camera));
+    let bounds = lattice.chunks().iter().map(|chunk| pyramid.bounds(chunk.origin, chunk.step));
+    Ok(bounds.filter(|bounds| bounds.is_none_or(|bounds| !wedge.meets(bounds))).count())
+}
+
 /// What lies on the inner side of planes through the eye. Metres from sample (0, 0).
 struct View {
     eye: DVec3,
@@ -77,6 +86,12 @@ struct View {
 }
 
 impl View {
+    /// What some ray of the page passes over or under.
+    fn wedge(surface: &Surface, camera: &Camera) -> Self {
+        let inward = camera.wedge().into_iter().flatten().map(|n| n.extend(0.0)).collect();
+        Self { eye: camera.eye - surface.dem().position(0, 0).with_z(0.0), inward }
+    }
+
     /// Whether some of a box may.
     fn meets(&self, [low, high]: [DVec3; 2]) -> bool {
         let (middle, reach) = ((low + high) / 2.0 - self.eye, (high - low) / 2.0);

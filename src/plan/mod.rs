@@ -3,6 +3,7 @@
 pub mod batches;
 pub mod detail;
 mod horizon;
+pub mod left_out;
 pub mod method;
 
 pub use batches::{Batch, batches};

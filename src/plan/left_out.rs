@@ -1,0 +1,71 @@
+//! What a frame did without, why, and what that saved, in words.
+
+use std::collections::{BTreeMap, HashSet};
+
+use super::detail::{self, Detail};
+use super::{Border, Plan};
+use crate::error::Result;
+use crate::surface::lattice::CELL_STEPS;
+use crate::surface::{Lattice, Surface, Tile};
+use crate::view::Camera;
+
+/// One thing left out.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+pub struct LeftOut {
+    /// The thing.
+    pub what: &'static str,
+    /// The reason.
+    pub why: &'static str,
+    /// Of how much it is; `None` where it is all.
+    pub saved: Option<String>,
+}
+
+/// What the frame of a camera over this lattice does without.
+///
+/// # Errors
+/// As [`Surface::pyramid`].
+pub fn left_out(plan: &Plan, surface: &Surface, lattice: &Lattice, camera: &Camera) -> Result<Vec<LeftOut>> {
+    let mut left_out = Vec::new();
+    let mut leave = |what, why, saved| left_out.push(LeftOut { what, why, saved });
+    let chunks = lattice.chunks();
+    let of = |left: usize, all: usize, what: &str| (left > 0).then(|| format!("{left} of {all} {what}"));
+    if let Detail::Adaptive { .. } = plan.detail {
+        let finest = chunks.iter().map(|chunk| chunk.step).min().unwrap_or(CELL_STEPS).min(CELL_STEPS);
+        let uniform = surface.patches() * u64::from(CELL_STEPS / finest).pow(2);
+        let saved = uniform.saturating_sub(lattice.facets(surface.dem()));
+        let saved = format!("{saved} of {uniform} facets of level {}", CELL_STEPS / finest);
+        leave("fine facets", "where the page does not show them", Some(saved));
+        if let Some(saved) = of(chunks.len() - lattice.seen() as usize, chunks.len(), "chunks") {
+            leave("rasterizing", "hidden by nearer land or beside the page", Some(saved));
+        }
+        let tiles: HashSet<Tile> = chunks.iter().map(Tile::of).collect();
+        let all: usize = [surface.dem().columns(), surface.dem().rows()].map(|n| (n - 1).div_ceil(32)).iter().product();
+        if let Some(saved) = of(all.saturating_sub(tiles.len()), all, "tiles of samples") {
+            leave("samples", "no chunk of the frame needs them", Some(saved));
+        }
+    } else if let Some(saved) = of(detail::beside(surface, lattice, camera)?, chunks.len(), "chunks") {
+        leave("chunks", "beside the page", Some(saved));
+    }
+    if !lattice.has_seams() {
+        leave("seam pass", "all chunks have one level", None);
+    }
+    if plan.border == Border::Off {
+        leave("border pass", "--border off", None);
+    }
+    if surface.dem().voids() == 0 {
+        leave("void tests", "the DEM has no voids", None);
+    }
+    Ok(left_out)
+}
+
+/// How many chunks there are at each level, finest first: "level 4: 12, level 1/2: 30".
+pub fn levels(lattice: &Lattice) -> String {
+    let mut counts = BTreeMap::new();
+    lattice.chunks().iter().for_each(|chunk| *counts.entry(chunk.step).or_insert(0_usize) += 1);
+    let level = |step: u32| match step {
+        _ if step > CELL_STEPS => format!("1/{}", step / CELL_STEPS),
+        _ => (CELL_STEPS / step).to_string(),
+    };
+    let counts: Vec<String> = counts.into_iter().map(|(step, n)| format!("level {}: {n}", level(step))).collect();
+    counts.join(", ")
+}
