@@ -21,6 +21,7 @@ use crate::plan::detail::ERROR_PX;
 use crate::plan::left_out::{LeftOut, levels};
 use crate::plan::{Border, Detail, Method, Plan, Share};
 use crate::render::{Frame, PassTime, Renderer};
+use crate::report::cache::Cache;
 use crate::report::results::DrawnLevel;
 use crate::surface::Surface;
 
@@ -143,6 +144,9 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     // The renderer holds all samples on the device.
     talk.progress("computing normals", 0.1);
     let surface = Surface::new(dem);
+    Cache::of_user().prepare(&surface, &|words| talk.warn(words), &|done| {
+        talk.progress("looking at every sample, once for this file", 0.1 + 0.1 * done);
+    })?;
     let view = arguments.view.view(&surface, arguments.level.near())?;
     view.warn_below_ground(&surface, arguments.level.near(), talk);
     talk.say(&format!("view: {}", view.flags()))?;

@@ -121,12 +121,14 @@ impl Dem {
         Ok(Cow::Owned(Self::new(size, self.cell() * step as f64, self.origin, Store::Held(samples))))
     }
 
-    /// Samples between those that [`Dem::thinned`] takes, along a row and down a column; 1 for a held DEM.
+    /// Samples between those that [`Dem::thinned`] takes, along a row and down a column: a power of two, but for the
+    /// narrowest strips; 1 for a held DEM.
     pub fn thinning(&self) -> usize {
         let share = (self.columns() as f64 * self.rows() as f64 / THINNED_SAMPLES as f64).sqrt().ceil();
+        let share = (share as usize).next_power_of_two();
         // Of a narrow strip two rows or columns at least.
         let most = self.columns().min(self.rows()) - 1;
-        if self.is_filed() { (share as usize).clamp(1, most) } else { 1 }
+        if self.is_filed() { share.clamp(1, most) } else { 1 }
     }
 
     fn surveyed(&self) -> Option<&Survey> {

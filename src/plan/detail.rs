@@ -12,7 +12,7 @@ use super::Thrift;
 use super::horizon::Horizon;
 use crate::error::Result;
 use crate::surface::lattice::{CELL_STEPS, CHUNK_QUADS, Role};
-use crate::surface::pyramid::{FINEST_STEP, Slopes};
+use crate::surface::pyramid::Slopes;
 use crate::surface::quadtree::Growth;
 use crate::surface::{Lattice, Level, Pyramid, Surface};
 use crate::view::Camera;
@@ -153,8 +153,8 @@ impl<'a> Demand<'a> {
             let all = [p * way, p * other, q * way, q * other];
             [all.into_iter().fold(f64::INFINITY, f64::min), all.into_iter().fold(f64::NEG_INFINITY, f64::max)]
         };
-        let east = products(least.x, largest.x, from.x, to.x);
-        let north = products(least.y, largest.y, from.y, to.y);
+        let east = products(least[0], largest[0], from.x, to.x);
+        let north = products(least[1], largest[1], from.y, to.y);
         from.z > east[1] + north[1] || to.z < east[0] + north[0]
     }
 
@@ -163,7 +163,7 @@ impl<'a> Demand<'a> {
         let pyramid = self.pyramid;
         let (Some(bounds), Some(horizon)) = (pyramid.bounds(origin, step), &mut self.horizon) else { return };
         let [low, high] = bounds.map(DVec3::truncate);
-        if step > FINEST_STEP && (step > CELL_STEPS || horizon.is_wide(low, high)) {
+        if step > pyramid.finest_step() && (step > CELL_STEPS || horizon.is_wide(low, high)) {
             let half = CHUNK_QUADS * step / 2;
             for [x, y] in [[0, 0], [half, 0], [0, half], [half, half]] {
                 self.raise([origin[0] + x, origin[1] + y], step / 2, deviation);
@@ -200,7 +200,8 @@ impl Growth for Demand<'_> {
     fn done(&mut self, origin: [u32; 2], size: u32, split: bool) {
         let step = size / CHUNK_QUADS;
         // What is split further is looked at as a square of the finest layer.
-        if step == FINEST_STEP || step > FINEST_STEP && !split {
+        let finest = self.pyramid.finest_step();
+        if step == finest || step > finest && !split {
             self.raise(origin, step, self.pyramid.deviation(origin, step));
         }
     }

@@ -80,11 +80,16 @@ impl Cache {
         Self { folder: None }
     }
 
+    /// A file of the folder.
+    pub(super) fn path(&self, name: &str) -> Option<PathBuf> {
+        self.folder.as_ref().map(|folder| folder.join(name))
+    }
+
     /// The truth of a view, from the folder or made and kept. `warn` hears of a damaged file and of a folder that cannot
     /// be written; both cost time, nothing else.
     pub fn truth(&self, terrain: &Terrain<'_>, camera: &Camera, level: Level, warn: &dyn Fn(&str)) -> Kept {
         let name = || name(terrain.surface, camera, level);
-        let path = self.folder.as_ref().and_then(|folder| Some(folder.join(name()?)));
+        let path = self.folder.as_ref().and_then(|_| self.path(&name()?));
         if let Some(bytes) = path.as_ref().and_then(|path| fs::read(path).ok()) {
             match from_bytes(&bytes) {
                 Some(kept) => return kept,
@@ -94,18 +99,19 @@ impl Cache {
         let start = Instant::now();
         let truth = terrain.truth(camera, level);
         let kept = Kept { truth, ms: start.elapsed().as_secs_f64() * 1e3 };
-        if let Some(Err(error)) = path.map(|path| keep(&path, &kept)) {
+        if let Some(Err(error)) = path.map(|path| write_file(&path, &to_bytes(&kept))) {
             warn(&format!("truth is not cached: {error}"));
         }
         kept
     }
 }
 
-fn keep(path: &Path, kept: &Kept) -> Result<()> {
+/// Writes a file of the cache, whole or not at all.
+pub(super) fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
     // A folder that cannot be made shows when the file is opened in it.
     let _ = path.parent().map(fs::create_dir_all);
     let mut output = Output::create(path)?;
-    output.write(|file| file.write_all(&to_bytes(kept)))?;
+    output.write(|file| file.write_all(bytes))?;
     output.publish()
 }
 

@@ -11,6 +11,7 @@ mod labels;
 pub mod memory;
 pub mod pictures;
 pub mod plot;
+mod prepared;
 pub mod results;
 mod trial;
 mod words;

@@ -74,6 +74,11 @@ impl Surface {
         }
     }
 
+    /// Gives it a pyramid that was kept, unless it has one.
+    pub fn remember(&self, pyramid: Pyramid) {
+        let _ = self.pyramid.set(pyramid);
+    }
+
     /// Gradient of sample (c, r): dz/d east, dz/d north. (0, 0) where it cannot be read, see [`Dem::check`].
     pub fn gradient(&self, c: usize, r: usize) -> DVec2 {
         match &self.gradients {
@@ -135,15 +140,11 @@ impl Surface {
         Some(Patch::new(points, normals).point(weights))
     }
 
-    /// Patch 0 (NW, SW, SE) or 1 (NW, SE, NE) of cell (c, r), heights of voids being 0. World metres.
-    pub fn patch(&self, c: usize, r: usize, half: usize) -> Patch {
-        let corner = |dc: usize, dr: usize| {
-            let normal = (-self.gradient(c + dc, r + dr)).extend(1.0).normalize();
-            (self.dem.position(c + dc, r + dr), normal)
-        };
-        let (nw, se) = (corner(0, 0), corner(1, 1));
-        let [a, b, d] = if half == 0 { [nw, corner(0, 1), se] } else { [nw, se, corner(1, 0)] };
-        Patch::new([a.0, b.0, d.0], [a.1, b.1, d.1])
+    /// Position and unit normal of each sample of row `r`, heights of voids being 0; nothing outside.
+    pub fn corners(&self, r: usize) -> Vec<Corner> {
+        let columns = if r < self.dem.rows() { self.dem.columns() } else { 0 };
+        let normal = |c| (-self.gradient(c, r)).extend(1.0).normalize();
+        (0..columns).map(|c| (self.dem.position(c, r), normal(c))).collect()
     }
 
     /// How many patches exist, see [`Dem::patches`].
@@ -202,7 +203,16 @@ pub struct Bulge {
     pub flat: f64,
 }
 
+/// World position in metres and unit normal of a sample.
+pub type Corner = (DVec3, DVec3);
+
 impl Patch {
+    /// Patch 0 (NW, SW, SE) or 1 (NW, SE, NE) of the cell with corners NW, SW, SE, NE.
+    pub fn of_cell([nw, sw, se, ne]: [Corner; 4], half: usize) -> Self {
+        let [a, b, c] = if half == 0 { [nw, sw, se] } else { [nw, se, ne] };
+        Self::new([a.0, b.0, c.0], [a.1, b.1, c.1])
+    }
+
     /// Over three corners with unit normals.
     pub fn new(p: [DVec3; 3], n: [DVec3; 3]) -> Self {
         // The control point a third of the way from corner i to corner j, moved into i's tangent plane.

@@ -7,20 +7,21 @@
 
 use std::ops::Range;
 
-use glam::{DVec2, DVec3, Vec2};
+use bytemuck::{Pod, Zeroable};
+use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 use super::lattice::{CELL_STEPS, CHUNK_QUADS};
 use super::patch::{Patch, Surface, SurfaceBand};
-use crate::dem::Samples;
+use crate::dem::{Dem, Samples};
 use crate::error::Result;
 
-/// Lattice units between vertices of a chunk that fills a square of the finest layer.
-pub const FINEST_STEP: u32 = FINEST_CELLS as u32 * CELL_STEPS / CHUNK_QUADS;
 /// Cells along a square of the finest layer.
 const FINEST_CELLS: usize = 4;
-/// Layer of the squares that a chunk of level 1 fills.
-const LEVEL_1: usize = 3;
+/// The same for DEMs of so many samples and more, so that a pyramid takes no more memory than what is held of them.
+const FINEST_CELLS_OF_LARGE: (usize, usize) = (8, 1 << 25);
+/// Cells along a chunk of level 1.
+const LEVEL_1_CELLS: usize = CHUNK_QUADS as usize;
 /// Cells between vertices of the coarsest level.
 const COARSEST_CELLS: usize = 64;
 
@@ -52,7 +53,8 @@ pub struct Relief {
 }
 
 /// What is known of a square, metres.
-#[derive(Debug, Clone, Copy)]
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 struct Square {
     /// Exaggerated height below all its patches; above `high` where it has none.
     low: f32,
@@ -67,7 +69,8 @@ struct Square {
 }
 
 /// Rows and columns of samples that cross a square, metres.
-#[derive(Debug, Clone, Copy)]
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct Fences {
     /// The least height of the row whose least height is largest.
     pub along_east: f32,
@@ -76,12 +79,13 @@ pub struct Fences {
 }
 
 /// Least and largest slopes of a surface, dz/d east and dz/d north.
-#[derive(Debug, Clone, Copy)]
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct Slopes {
     /// Least, east and north.
-    pub least: Vec2,
+    pub least: [f32; 2],
     /// Largest, east and north.
-    pub largest: Vec2,
+    pub largest: [f32; 2],
 }
 
 impl Fences {
@@ -89,10 +93,11 @@ impl Fences {
 }
 
 impl Slopes {
-    const NONE: Self = Self { least: Vec2::INFINITY, largest: Vec2::NEG_INFINITY };
+    const NONE: Self = Self { least: [f32::INFINITY; 2], largest: [f32::NEG_INFINITY; 2] };
 
     fn with(self, other: Self) -> Self {
-        Self { least: self.least.min(other.least), largest: self.largest.max(other.largest) }
+        let of = |a: [f32; 2], b: [f32; 2], pick: fn(f32, f32) -> f32| [pick(a[0], b[0]), pick(a[1], b[1])];
+        Self { least: of(self.least, other.least, f32::min), largest: of(self.largest, other.largest, f32::max) }
     }
 }
 
@@ -124,31 +129,66 @@ impl Pyramid {
     /// # Errors
     /// As [`Surface::bands`].
     pub fn new(surface: &Surface) -> Result<Self> {
-        let dem = surface.dem();
-        let cells = [dem.columns() - 1, dem.rows() - 1];
-        let longest = cells[0].max(cells[1]);
-        let reaches = |layer: &usize| FINEST_CELLS << layer < longest && quad(layer + 1) <= COARSEST_CELLS;
-        let layers = (0..).take_while(|layer| *layer < LEVEL_1 || reaches(layer)).count() + 1;
-        let mut layers: Vec<Layer> = (0..layers).map(|layer| Layer::new(cells, FINEST_CELLS << layer)).collect();
+        let mut pyramid = Self::unknown(surface.dem());
+        let (cells, level_1) = (pyramid.samples.map(|samples| samples - 1), pyramid.level_1());
+        let layers = &mut pyramid.layers;
         for band in surface.bands(1) {
             let SurfaceBand { rows, surface } = band?;
             let samples = surface.dem().held()?;
             layers[0].bound(&surface, &rows);
-            layers[..=LEVEL_1].iter_mut().for_each(|layer| layer.fence(samples, &rows));
-            for (number, layer) in layers.iter_mut().enumerate().skip(LEVEL_1 + 1) {
-                layer.measure(samples, &rows, quad(number), cells);
-            }
+            layers[..=level_1].iter_mut().for_each(|layer| layer.fence(samples, &rows));
+            layers[level_1 + 1..].iter_mut().for_each(|layer| layer.measure(samples, &rows, cells));
         }
         for number in 1..layers.len() {
             let (below, above) = layers.split_at_mut(number);
-            above[0].gather(&below[number - 1], number > LEVEL_1);
+            above[0].gather(&below[number - 1], number > level_1);
         }
-        Ok(Self { layers, samples: [dem.columns(), dem.rows()], cell: dem.cell() })
+        Ok(pyramid)
+    }
+
+    /// The squares over a DEM, nothing known of them.
+    fn unknown(dem: &Dem) -> Self {
+        let samples = [dem.columns(), dem.rows()];
+        let (large, many) = FINEST_CELLS_OF_LARGE;
+        let finest = if samples[0] * samples[1] >= many { large } else { FINEST_CELLS };
+        let cells = samples.map(|samples| samples - 1);
+        let longest = cells[0].max(cells[1]);
+        let needed =
+            |size: &usize| *size <= LEVEL_1_CELLS || *size / 2 < longest && *size <= COARSEST_CELLS * LEVEL_1_CELLS;
+        let sizes = std::iter::successors(Some(finest), |size| Some(2 * size)).take_while(needed);
+        Self { layers: sizes.map(|size| Layer::new(cells, size)).collect(), samples, cell: dem.cell() }
+    }
+
+    /// All that is known, to be kept with the DEM.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        self.layers.iter().flat_map(|layer| bytemuck::cast_slice(&layer.squares)).copied().collect()
+    }
+
+    /// A pyramid of `dem` from what was kept; `None` where it is not of this DEM's size.
+    pub fn from_bytes(dem: &Dem, mut bytes: &[u8]) -> Option<Self> {
+        let mut pyramid = Self::unknown(dem);
+        for layer in &mut pyramid.layers {
+            let squares: &mut [u8] = bytemuck::cast_slice_mut(&mut layer.squares);
+            let (of_layer, rest) = bytes.split_at_checked(squares.len())?;
+            squares.copy_from_slice(of_layer);
+            bytes = rest;
+        }
+        bytes.is_empty().then_some(pyramid)
+    }
+
+    /// Layer of the squares that a chunk of level 1 fills.
+    fn level_1(&self) -> usize {
+        (LEVEL_1_CELLS / self.layers[0].size).ilog2() as usize
+    }
+
+    /// Lattice units between vertices of a chunk that fills a square of the finest layer.
+    pub fn finest_step(&self) -> u32 {
+        self.layers[0].size as u32 * CELL_STEPS / CHUNK_QUADS
     }
 
     /// Lattice units between the vertices of the coarsest chunks.
     pub fn coarsest_step(&self) -> u32 {
-        CELL_STEPS << (self.layers.len() - 1 - LEVEL_1)
+        CELL_STEPS << (self.layers.len() - 1 - self.level_1())
     }
 
     /// How far the facets of the chunk at `origin` leave the surface, metres; infinite where it must not be.
@@ -191,18 +231,12 @@ impl Pyramid {
 
     /// The least square that holds a chunk.
     fn square(&self, origin: [u32; 2], step: u32) -> Square {
-        // A chunk of level 1 is 32 cells wide.
-        let layer = (step / 2).max(FINEST_CELLS as u32).ilog2() - FINEST_CELLS.ilog2();
-        let size = (FINEST_CELLS << layer) as u32 * CELL_STEPS;
+        let layer = (step / self.finest_step()).max(1).ilog2();
+        let size = (self.layers[layer as usize].size) as u32 * CELL_STEPS;
         let [x, y] = origin.map(|at| (at / size) as usize);
         let layer = &self.layers[layer as usize];
         layer.squares.get(y * layer.columns + x).copied().filter(|_| x < layer.columns).unwrap_or(Square::EMPTY)
     }
-}
-
-/// Cells along the facets of chunks that fill the squares of a layer.
-fn quad(layer: usize) -> usize {
-    1 << layer.saturating_sub(LEVEL_1)
 }
 
 impl Layer {
@@ -224,13 +258,17 @@ impl Layer {
     fn bound(&mut self, surface: &Surface, rows: &Range<usize>) {
         let size = self.size;
         self.rows(rows).for_each(|(first, squares)| {
+            let mut north = surface.corners(first.max(rows.start));
             for r in first.max(rows.start)..(first + size).min(rows.end) {
+                let south = surface.corners(r + 1);
                 for (c, exists) in surface.dem().held().into_iter().flat_map(|samples| samples.patches(r)).enumerate() {
                     let square = &mut squares[c / size];
+                    let corners = [north[c], south[c], south[c + 1], north[c + 1]];
                     for half in (0..2).filter(|half| exists[*half]) {
-                        *square = square.with(of_patch(&surface.patch(c, r, half), half));
+                        *square = square.with(of_patch(&Patch::of_cell(corners, half), half));
                     }
                 }
+                north = south;
             }
         });
     }
@@ -245,9 +283,9 @@ impl Layer {
         });
     }
 
-    /// Measures how far facets whose sides are `quad` cells long leave the samples of these rows.
-    fn measure(&mut self, samples: &Samples, rows: &Range<usize>, quad: usize, cells: [usize; 2]) {
-        let (size, whole) = (self.size, samples.voids() == 0);
+    /// Measures how far the facets of chunks that fill the squares leave the samples of these rows.
+    fn measure(&mut self, samples: &Samples, rows: &Range<usize>, cells: [usize; 2]) {
+        let (size, quad, whole) = (self.size, self.size / LEVEL_1_CELLS, samples.voids() == 0);
         self.rows(rows).for_each(|(first, squares)| {
             for r in (first.max(rows.start)..(first + size).min(rows.end).min(cells[1])).step_by(quad) {
                 for c in (0..cells[0]).step_by(quad) {
@@ -291,14 +329,14 @@ fn slopes(patch: &Patch, half: usize) -> Slopes {
     // Corners 0, 1, 2 of patch 0 are NW, SW, SE, of patch 1 NW, SE, NE.
     let (east, north) = if half == 0 { ([1, 2], [1, 0]) } else { ([0, 2], [1, 2]) };
     let (east, north) = (patch.differences(east), patch.differences(north));
-    let slopes = east.into_iter().zip(north).map(|(e, n)| DVec2::new(e.z / e.x, n.z / n.y).as_vec2());
+    let slopes = east.into_iter().zip(north).map(|(e, n)| [(e.z / e.x) as f32, (n.z / n.y) as f32]);
     slopes.fold(Slopes::NONE, |all, slope| all.with(Slopes { least: slope, largest: slope }))
 }
 
 /// The fences of the square of `size` cells at sample (c, r); none where it has voids or leaves the samples.
 fn fences(samples: &Samples, [c, r]: [usize; 2], size: usize) -> Fences {
     let mut along_east = f32::NEG_INFINITY;
-    let mut columns = [f32::INFINITY; (FINEST_CELLS << LEVEL_1) + 1];
+    let mut columns = [f32::INFINITY; LEVEL_1_CELLS + 1];
     for row in r..=r + size {
         let (mut lowest, mut found) = (f32::INFINITY, 0);
         for (least, height) in columns[..=size].iter_mut().zip(samples.row_from(c, row).map_while(|height| height)) {

@@ -22,12 +22,24 @@ pub struct RimEdge {
 /// # Errors
 /// As [`Dem::window`].
 pub fn rim(dem: &Dem) -> Result<Vec<RimEdge>> {
+    if dem.is_filed() && dem.voids() == 0 {
+        return Ok(border(dem));
+    }
     let mut edges = Vec::new();
     for band in dem.bands(1) {
         let Band { rows, samples } = band?;
         edges.par_extend(rows.into_par_iter().flat_map_iter(|r| edges_of_row(&samples, r)));
     }
     Ok(edges)
+}
+
+/// The rim of a DEM without voids.
+fn border(dem: &Dem) -> Vec<RimEdge> {
+    let [east, south] = [dem.columns() as u32 - 1, dem.rows() as u32 - 1];
+    let edge = |c, r, direction, half| RimEdge { sample: [c, r], direction, half };
+    let sides = (0..south).flat_map(|r| [edge(0, r, 1, 0), edge(east, r, 1, 1)]);
+    let ends = (0..east).flat_map(|c| [edge(c, 0, 0, 1), edge(c, south, 0, 0)]);
+    sides.chain(ends).collect()
 }
 
 fn edges_of_row(samples: &Samples, r: usize) -> Vec<RimEdge> {

@@ -7,6 +7,7 @@ use std::borrow::Cow;
 
 use super::Surface;
 use super::lattice::{CELL_STEPS, CHUNK_QUADS, CHUNK_SIDE, Chunk};
+use crate::dem::Dem;
 use crate::error::Result;
 
 /// Samples along a tile's edge.
@@ -45,6 +46,10 @@ impl Tile {
     /// # Errors
     /// As [`Surface::part`].
     pub fn read(&self, surface: &Surface) -> Result<TileSamples> {
+        let thinning = surface.dem().thinning() as u32;
+        if thinning > 1 && self.spacing.is_multiple_of(thinning) {
+            return self.read_thinned(&surface.dem().survey(&|_| ())?.thinned, surface.dem());
+        }
         let spacing = self.spacing as usize;
         let first = self.first.map(|at| at as usize);
         let side = (TILE_SIDE as usize - 1) * spacing + 1;
@@ -64,5 +69,20 @@ impl Tile {
             }
         }
         Ok(TileSamples { heights, gradients: [east, north] })
+    }
+
+    /// The samples of a tile that are among the thinned ones of a DEM in its file.
+    fn read_thinned(&self, thinned: &[f32], dem: &Dem) -> Result<TileSamples> {
+        let thinning = dem.thinning();
+        let columns = dem.columns().div_ceil(thinning);
+        let height = |i: u32| {
+            let [c, r] = [i % TILE_SIDE, i / TILE_SIDE].map(|at| at * self.spacing);
+            let [c, r] = [self.first[0] + c, self.first[1] + r].map(|at| at as usize);
+            let inside = c < dem.columns() && r < dem.rows();
+            let height = if inside { thinned[r / thinning * columns + c / thinning] } else { 0.0 };
+            if height.is_nan() { 0.0 } else { height }
+        };
+        let none = vec![0.0; TILE_SAMPLES as usize];
+        Ok(TileSamples { heights: (0..TILE_SAMPLES).map(height).collect(), gradients: [none.clone(), none] })
     }
 }
