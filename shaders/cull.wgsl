@@ -19,13 +19,12 @@ fn in_view(sphere: vec4<f32>) -> bool {
     if !thrifty {
         return true;
     }
-    let right = dot(sphere.xyz, camera.right.xyz);
-    let up = dot(sphere.xyz, camera.up.xyz);
+    let at = camera.focal * vec2<f32>(dot(sphere.xyz, camera.right.xyz), -dot(sphere.xyz, camera.up.xyz));
     let forward = dot(sphere.xyz, camera.forward.xyz);
-    let reach = camera.centre + 1.0;
     // Distances to the side planes, scaled by the length of their normals.
-    let slack = sphere.w * sqrt(camera.focal * camera.focal + reach * reach);
+    let low = drawn_from();
+    let high = drawn_to();
     return forward + sphere.w >= scene.near && in_wedge(sphere)
-        && camera.focal * abs(right) - reach.x * forward <= slack.x
-        && camera.focal * abs(up) - reach.y * forward <= slack.y;
+        && all(low * forward - at <= sphere.w * sqrt(camera.focal * camera.focal + low * low))
+        && all(at - high * forward <= sphere.w * sqrt(camera.focal * camera.focal + high * high));
 }

@@ -94,8 +94,7 @@ fn edge_value(e: TileEdge, whole: i32, at: vec2<i32>) -> f32 {
     return select(exact, e.estimate + 256.0 * (g.x + g.y), e.estimated);
 }
 
-fn rasterize_tile(t: Triangle, box: Box, tile: vec2<i32>, lane: u32, area: f32, id: u32, away: bool, wide: bool) {
-    let corner_px = box.low + tile * TILE;
+fn rasterize_tile(t: Triangle, box: Box, corner_px: vec2<i32>, lane: u32, area: f32, id: u32, away: bool, wide: bool) {
     let a = tile_edge(t.b, t.c, corner_px, wide);
     let b = tile_edge(t.c, t.a, corner_px, wide);
     let c = tile_edge(t.a, t.b, corner_px, wide);
@@ -106,7 +105,7 @@ fn rasterize_tile(t: Triangle, box: Box, tile: vec2<i32>, lane: u32, area: f32, 
         let e_a = a.whole + a.gradient.x * x + a.gradient.y * y;
         let e_b = b.whole + b.gradient.x * x + b.gradient.y * y;
         let e_c = c.whole + c.gradient.x * x + c.gradient.y * y;
-        if (e_a | e_b | e_c) >= 0 && all(corner_px + at <= box.high) {
+        if (e_a | e_b | e_c) >= 0 && all(corner_px + at >= box.low) && all(corner_px + at <= box.high) {
             let depth = depth_at(t, edge_value(b, e_b, at) / area, edge_value(c, e_c, at) / area);
             emit(pixel_index(corner_px + at), depth, id, away, !wide);
         }
@@ -126,10 +125,12 @@ fn rasterize_triangle(either: Triangle, share: vec2<u32>, lane: u32, id: u32, aw
     if any(box.low > box.high) {
         return;
     }
-    let tiles = vec2<u32>((box.high - box.low) / TILE + 1);
+    // Tiles of the whole page, so that estimates are the same whatever part of it is drawn.
+    let corner_px = ((box.low + camera.origin) & vec2<i32>(-TILE)) - camera.origin;
+    let tiles = vec2<u32>((box.high - corner_px) / TILE + 1);
     for (var k = share.x; k < tiles.x * tiles.y; k += share.y) {
         let tile = vec2<i32>(i32(k % tiles.x), i32(k / tiles.x));
-        rasterize_tile(t, box, tile, lane, abs(wide_f32(area)), id, away, wide);
+        rasterize_tile(t, box, corner_px + tile * TILE, lane, abs(wide_f32(area)), id, away, wide);
     }
 }
 

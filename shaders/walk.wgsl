@@ -295,8 +295,8 @@ fn walk_pair(one: vec2<i32>, other: vec2<i32>) -> u32 {
         return 0u;
     }
     let at = select(one, other, swapped);
-    let centre = vec2<f32>(at) + 0.5;
-    let to_centre = vec2<f32>(select(other, one, swapped)) + 0.5;
+    let centre = vec2<f32>(at + camera.origin) + 0.5;
+    let to_centre = vec2<f32>(select(other, one, swapped) + camera.origin) + 0.5;
     let origin = facet_hit(p.x - 1u, centre);
     var goal: Goal;
     if q.y == 0u || is_away(q.x - 1u) {

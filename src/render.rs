@@ -9,7 +9,7 @@ use crate::gpu::work::{Stage, Work};
 use crate::gpu::{Buffers, CameraUniform, Clock, Extent, Gpu, Pass};
 use crate::gpu::{border, compose, facing, rasterize, rasterize_large, silhouette, tessellate};
 use crate::ink::InkRaster;
-use crate::plan::{Batch, Border, Method, Plan, Thrift, batches};
+use crate::plan::{Batch, Border, Method, Plan, Thrift, Tile, Tiles, batches};
 use crate::surface::rim::rim;
 use crate::surface::{Lattice, Surface};
 use crate::view::Camera;
@@ -40,7 +40,7 @@ pub struct Renderer<'a> {
     lattice: Lattice,
     batches: Vec<Batch>,
     rounds: u32,
-    size: [u32; 2],
+    tiles: Tiles,
     rim_edges: usize,
     buffers: Buffers,
     per_batch: [Stage; 4],
@@ -50,11 +50,15 @@ pub struct Renderer<'a> {
 }
 
 impl<'a> Renderer<'a> {
-    /// Uploads the scene and compiles what the method needs.
+    /// Uploads the scene and compiles what the method needs, for a page of so many pixels across and down, or for one
+    /// that is cut in a way of its own.
     ///
     /// # Errors
     /// [`Error::Limit`] when the scene or the page is too large, [`Error::Gpu`] when the driver refuses.
-    pub fn new(gpu: &'a Gpu, surface: &'a Surface, plan: Plan, size: [u32; 2]) -> Result<Self> {
+    pub fn new(gpu: &'a Gpu, surface: &'a Surface, plan: Plan, page: impl Into<Tiles>) -> Result<Self> {
+        let tiles = page.into();
+        tiles.check()?;
+        let size = tiles.largest();
         let dem = surface.dem();
         let lattice = Lattice::uniform(dem, plan.level)?;
         let rim = if plan.border == Border::On { rim(dem) } else { Vec::new() };
@@ -96,7 +100,7 @@ impl<'a> Renderer<'a> {
             plan,
             lattice,
             rounds: visibility.rounds(),
-            size,
+            tiles,
             rim_edges: rim.len(),
             batches,
             buffers,
@@ -110,6 +114,11 @@ impl<'a> Renderer<'a> {
     /// The lattice whose facets are drawn.
     pub fn lattice(&self) -> &Lattice {
         &self.lattice
+    }
+
+    /// How the page is cut.
+    pub fn tiles(&self) -> Tiles {
+        self.tiles
     }
 
     /// How many facets the scene has.
@@ -127,12 +136,12 @@ impl<'a> Renderer<'a> {
         near_plane(self.surface.dem())
     }
 
-    /// Draws a frame to its mask and waits for it. Nothing but the camera is uploaded.
+    /// Draws a frame to its mask, tile by tile, and waits for it. Nothing but the camera is uploaded.
     ///
     /// # Errors
     /// Whatever the driver reports; [`Error::Flag`] for an eye out of reach or a camera of another page size.
     pub fn frame(&self, camera: &Camera) -> Result<()> {
-        self.run(camera, None)
+        self.tiles.iter().try_for_each(|tile| self.run(camera, tile, None))
     }
 
     /// Draws a frame and brings it back: [`Self::frame`], then [`Self::read`].
@@ -144,15 +153,26 @@ impl<'a> Renderer<'a> {
         self.read()
     }
 
-    /// Draws a frame and says how long each pass took, by the [`Clock`] of the device. By the wall clock the whole is
+    /// Draws a tile of a frame and brings it back, halo and all: `tile.drawn` of the page.
+    ///
+    /// # Errors
+    /// As [`Self::frame`] and [`Self::read`].
+    pub fn draw_tile(&self, camera: &Camera, tile: Tile) -> Result<Frame> {
+        self.run(camera, tile, None)?;
+        self.read_tile(tile)
+    }
+
+    /// Draws a frame and says how long each pass took over all tiles, by the [`Clock`] of the device. By the wall clock the whole is
     /// more than an undisturbed frame takes: see [`Self::time_of_frame`].
     ///
     /// # Errors
     /// As [`Self::frame`]; [`Error::Gpu`] when the driver's timestamps make no sense.
     pub fn timed_frame(&self, camera: &Camera) -> Result<FrameTime> {
-        let mut timer = Timer::new(self.gpu);
-        self.run(camera, Some(&mut timer))?;
-        timer.read(self.gpu)
+        self.tiles.iter().try_fold(FrameTime::default(), |time, tile| {
+            let mut timer = Timer::new(self.gpu);
+            self.run(camera, tile, Some(&mut timer))?;
+            Ok(time.and(&timer.read(self.gpu)?))
+        })
     }
 
     /// Draws a frame and says how long it took, ms: by the wall clock around [`Self::frame`], or by the device's
@@ -191,11 +211,23 @@ impl<'a> Renderer<'a> {
     /// Composes the last frame and copies it to the CPU.
     ///
     /// # Errors
-    /// Whatever the driver reports; [`Error::Gpu`] when a pixel has a depth and no ID or a walk was cut short.
+    /// Whatever the driver reports; [`Error::Gpu`] when a pixel has a depth and no ID or a walk was cut short;
+    /// [`Error::Limit`] when the page takes several tiles, of which the device holds the last alone.
     pub fn read(&self) -> Result<Frame> {
-        let [width, height] = self.size;
+        let mut tiles = self.tiles.iter();
+        match (tiles.next(), tiles.len()) {
+            (Some(tile), 0) => self.read_tile(tile),
+            (_, more) => Err(Error::Limit {
+                what: format!("the page takes {} tiles, one can be read", more + 1),
+                remedy: "draw it tile by tile, or use a smaller --size".into(),
+            }),
+        }
+    }
+
+    fn read_tile(&self, tile: Tile) -> Result<Frame> {
+        let [width, height] = tile.drawn.size;
         let mut work = Work::new(self.gpu, &self.buffers, None);
-        work.record(&self.compose, 0, self.size)?;
+        work.record(&self.compose, 0, tile.drawn.size)?;
         work.finish()?;
         let bytes = self.gpu.read(self.buffers.get("page")?, u64::from(width) * u64::from(height) * 8)?;
         let counts = self.gpu.read(self.buffers.get("counts")?, size_of::<Counts>() as u64)?;
@@ -210,14 +242,15 @@ impl<'a> Renderer<'a> {
         Ok(Frame { raster, longest_walk: counts.longest_walk })
     }
 
-    fn run(&self, camera: &Camera, timer: Option<&mut Timer>) -> Result<()> {
-        if [camera.width, camera.height] != self.size {
-            let [width, height] = self.size;
+    fn run(&self, camera: &Camera, tile: Tile, timer: Option<&mut Timer>) -> Result<()> {
+        if [camera.width, camera.height] != self.tiles.page() {
+            let [width, height] = self.tiles.page();
             let what =
                 format!("the camera has {}x{} pixels, the renderer {width}x{height}", camera.width, camera.height);
             return Err(Error::flag("--size", what, "make a renderer for this size"));
         }
-        self.buffers.write_camera(self.gpu, &CameraUniform::new(self.surface.dem(), camera)?)?;
+        let uniform = CameraUniform::new(self.surface.dem(), camera)?.cut_to(camera, tile.drawn);
+        self.buffers.write_camera(self.gpu, &uniform)?;
         let mut work = Work::new(self.gpu, &self.buffers, timer);
         work.clear(&["pixels", "ink", "summaries", "counts"])?;
         if self.plan.method == (Method::TowardAway { wide: true }) {

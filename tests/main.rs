@@ -29,6 +29,7 @@ mod same_bytes;
 mod scenes;
 mod shell;
 mod silhouettes;
+mod tiles;
 mod times;
 mod tolerances;
 mod truth;

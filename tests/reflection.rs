@@ -72,7 +72,7 @@ fn shared_structs() -> Vec<(&'static str, Layout)> {
         ("Scene", layout!(SceneUniform: cell, samples, chunk_grid, step, near)),
         (
             "Camera",
-            layout!(CameraUniform: right, up, forward, eye_cell, eye_offset, eye_height, centre, focal, pad, size, wedge),
+            layout!(CameraUniform: right, up, forward, eye_cell, eye_offset, eye_height, centre, focal, pad, size, wedge, origin, pad_end),
         ),
         ("Batch", layout!(BatchUniform: first_slot, part_slot, round, pad)),
         ("Counts", layout!(Counts: longest_walk, orphans, cut_short)),

@@ -16,7 +16,6 @@ use super::viewpoint::{View, ViewArguments, ViewReport};
 use crate::dem::Dem;
 use crate::error::{Error, Result};
 use crate::gpu::Gpu;
-use crate::gpu::sizes::page_fits;
 use crate::ink::{self, Style};
 use crate::plan::{Border, Method, Plan, Share};
 use crate::render::{Frame, PassTime, Renderer};
@@ -135,7 +134,6 @@ struct LeftOut {
 pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     let method = arguments.method()?;
     let size = [arguments.view.size.width, arguments.view.size.height];
-    page_fits(size)?;
     arguments.view.check()?;
     let mut outputs = arguments.outputs.open(&arguments.terrain.dems)?;
     let started = Instant::now();

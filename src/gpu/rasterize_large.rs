@@ -33,8 +33,9 @@ pub fn pass(gpu: &Gpu, visibility: Visibility, constants: &[(&str, f64)]) -> Res
     Pass::new(gpu, "rasterize_large", source(visibility), constants)
 }
 
-/// An empty queue on a page of this size: workgroups along x, y and z, one row of them a share, and the count.
+/// An empty queue for a piece of this size: workgroups along x, y and z, one row of them a share, and the count.
 pub fn empty_queue([width, height]: [u32; 2]) -> [u32; 4] {
-    let tiles = width.div_ceil(TILE) * height.div_ceil(TILE);
+    // The grid of tiles is the page's: a piece of it may begin and end within one.
+    let tiles = (width.div_ceil(TILE) + 1) * (height.div_ceil(TILE) + 1);
     [0, tiles.div_ceil(TILES), 1, 0]
 }

@@ -1,10 +1,12 @@
-//! What a frame needs: which method over which facets, and in which batches.
+//! What a frame needs: which method over which facets, in which batches, and in how many tiles.
 
 pub mod batches;
 pub mod method;
+pub mod tiles;
 
 pub use batches::{Batch, batches};
 pub use method::{Border, Method, Share, Thrift, Visibility};
+pub use tiles::{Tile, Tiles};
 
 use crate::surface::Level;
 
