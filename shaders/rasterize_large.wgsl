@@ -11,8 +11,7 @@ struct Queue {
 
 @group(0) @binding(21) var<storage, read> queue: Queue;
 
-// Tiles are 32 x 32 px, an invocation draws half a column.
-const TILE: i32 = 32;
+// An invocation draws half a column of a tile.
 // Limits the tile-local part of an edge function to i32: see `tile_edge`.
 const EDGE_LIMIT: i32 = 1 << 30;
 
@@ -88,6 +87,12 @@ fn tile_edge(p: vec2<i32>, q: vec2<i32>, corner_px: vec2<i32>, wide: bool) -> Ti
     return TileEdge(whole, i32(e.x & 255u) - bias, estimate, g, wide || !fits);
 }
 
+// The largest `whole` in the tile: negative where all of it lies outside.
+fn largest_whole(e: TileEdge) -> i32 {
+    let rise = max(e.gradient, vec2<i32>(0)) * (TILE - 1);
+    return e.whole + rise.x + rise.y;
+}
+
 fn edge_value(e: TileEdge, whole: i32, at: vec2<i32>) -> f32 {
     let exact = f32(whole) * 256.0 + f32(e.rest);
     let g = vec2<f32>(e.gradient) * vec2<f32>(at);
@@ -98,6 +103,9 @@ fn rasterize_tile(t: Triangle, box: Box, corner_px: vec2<i32>, lane: u32, area: 
     let a = tile_edge(t.b, t.c, corner_px, wide);
     let b = tile_edge(t.c, t.a, corner_px, wide);
     let c = tile_edge(t.a, t.b, corner_px, wide);
+    if (largest_whole(a) | largest_whole(b) | largest_whole(c)) < 0 {
+        return;
+    }
     let x = i32(lane & 31u);
     let top = i32(lane >> 5u) * (TILE / 2);
     for (var y = top; y < top + TILE / 2; y++) {

@@ -106,7 +106,6 @@ fn shared_constants() -> Vec<(&'static str, i64)> {
         ("PART_WORDS_LOG2", i64::from(words.ilog2())),
         ("STRIP_FACETS", i64::from(rasterize::STRIP_FACETS)),
         ("STRIP", i64::from(tessellate::STRIP)),
-        ("TILE", i64::from(rasterize_large::TILE)),
         ("COLUMNS", i64::from(BLOCK[0])),
         ("ROWS", i64::from(BLOCK[1])),
         ("BESIDE", i64::from(BESIDE)),

@@ -9,7 +9,7 @@ use bytemuck::Zeroable;
 
 use super::candidates::NO_PIXELS;
 use super::device::Gpu;
-use super::rasterize_large::empty_queue;
+use super::rasterize_large::EMPTY_QUEUE;
 
 use super::sizes::{self, fits};
 use super::uniforms::{BatchUniform, CameraUniform, SceneUniform};
@@ -64,7 +64,7 @@ impl Buffers {
         buffers.upload(gpu, "valid", bytemuck::cast_slice(&if voids { valid_bits(dem) } else { vec![0] }))?;
         buffers.upload(gpu, "rim", bytemuck::cast_slice(rim))?;
 
-        buffers.upload(gpu, "empty_queue", bytemuck::bytes_of(&empty_queue([width, height])))?;
+        buffers.upload(gpu, "empty_queue", bytemuck::bytes_of(&EMPTY_QUEUE))?;
         buffers.upload(gpu, "no_pixels", bytemuck::bytes_of(&NO_PIXELS))?;
         for (name, size) in sizes::written(lattice.chunks().len() as u64, [width, height])? {
             buffers.create(gpu, name, size)?;
