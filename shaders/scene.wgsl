@@ -18,7 +18,7 @@ struct Camera {
     centre: vec2<f32>,      // half the page in pixels
     focal: f32,             // pixels per unit of tangent
     pad: u32,
-    size: vec2<u32>,        // pixels across, down, of what is drawn: the page or a tile of it
+    size: vec2<u32>,        // pixels across, down, of what is drawn: the page or a piece of it
     wedge: vec4<f32>,       // inward normals of the two sides of its map projection; 0 where it is no wedge
     origin: vec2<i32>,      // the page's column and row of its top left pixel
     pad_end: vec2<u32>,

@@ -8,8 +8,8 @@ use crate::gpu::uniforms::{Counts, near_plane};
 use crate::gpu::work::{Stage, Work};
 use crate::gpu::{Buffers, CameraUniform, Clock, Extent, Gpu, Pass};
 use crate::gpu::{border, compose, facing, rasterize, rasterize_large, silhouette, tessellate};
-use crate::ink::InkRaster;
-use crate::plan::{Batch, Border, Method, Plan, Thrift, Tile, Tiles, batches};
+use crate::ink::{InkRaster, Marks, marks};
+use crate::plan::{Batch, Border, Method, Piece, Pieces, Plan, Thrift, batches};
 use crate::surface::rim::rim;
 use crate::surface::{Lattice, Surface};
 use crate::view::Camera;
@@ -32,6 +32,15 @@ impl Frame {
     }
 }
 
+/// The ink of a frame on a page of any size.
+#[derive(Debug, Clone)]
+pub struct Page {
+    /// Ink, kind, sub-pixel place and depth.
+    pub marks: Marks,
+    /// Nodes the longest walk visited; 0 for other methods.
+    pub longest_walk: u32,
+}
+
 /// A scene on a device, ready to be seen from any eye.
 pub struct Renderer<'a> {
     gpu: &'a Gpu,
@@ -40,7 +49,7 @@ pub struct Renderer<'a> {
     lattice: Lattice,
     batches: Vec<Batch>,
     rounds: u32,
-    tiles: Tiles,
+    pieces: Pieces,
     rim_edges: usize,
     buffers: Buffers,
     per_batch: [Stage; 4],
@@ -55,10 +64,10 @@ impl<'a> Renderer<'a> {
     ///
     /// # Errors
     /// [`Error::Limit`] when the scene or the page is too large, [`Error::Gpu`] when the driver refuses.
-    pub fn new(gpu: &'a Gpu, surface: &'a Surface, plan: Plan, page: impl Into<Tiles>) -> Result<Self> {
-        let tiles = page.into();
-        tiles.check()?;
-        let size = tiles.largest();
+    pub fn new(gpu: &'a Gpu, surface: &'a Surface, plan: Plan, page: impl Into<Pieces>) -> Result<Self> {
+        let pieces = page.into();
+        pieces.check()?;
+        let size = pieces.largest();
         let dem = surface.dem();
         let lattice = Lattice::uniform(dem, plan.level)?;
         let rim = if plan.border == Border::On { rim(dem) } else { Vec::new() };
@@ -100,7 +109,7 @@ impl<'a> Renderer<'a> {
             plan,
             lattice,
             rounds: visibility.rounds(),
-            tiles,
+            pieces,
             rim_edges: rim.len(),
             batches,
             buffers,
@@ -117,8 +126,8 @@ impl<'a> Renderer<'a> {
     }
 
     /// How the page is cut.
-    pub fn tiles(&self) -> Tiles {
-        self.tiles
+    pub fn pieces(&self) -> Pieces {
+        self.pieces
     }
 
     /// How many facets the scene has.
@@ -136,12 +145,12 @@ impl<'a> Renderer<'a> {
         near_plane(self.surface.dem())
     }
 
-    /// Draws a frame to its mask, tile by tile, and waits for it. Nothing but the camera is uploaded.
+    /// Draws a frame to its mask, piece by piece, and waits for it. Nothing but the camera is uploaded.
     ///
     /// # Errors
     /// Whatever the driver reports; [`Error::Flag`] for an eye out of reach or a camera of another page size.
     pub fn frame(&self, camera: &Camera) -> Result<()> {
-        self.tiles.iter().try_for_each(|tile| self.run(camera, tile, None))
+        self.pieces.iter().try_for_each(|piece| self.run(camera, piece, None))
     }
 
     /// Draws a frame and brings it back: [`Self::frame`], then [`Self::read`].
@@ -153,24 +162,40 @@ impl<'a> Renderer<'a> {
         self.read()
     }
 
-    /// Draws a tile of a frame and brings it back, halo and all: `tile.drawn` of the page.
+    /// Draws a frame and brings back its ink, piece by piece; tells `progress` what share is done.
+    ///
+    /// # Errors
+    /// As [`Self::draw_piece`].
+    pub fn page(&self, camera: &Camera, progress: impl Fn(f64)) -> Result<Page> {
+        let (mut list, mut longest_walk) = (Vec::new(), 0);
+        let count = self.pieces.iter().len() as f64;
+        for (done, piece) in (1..).zip(self.pieces.iter()) {
+            let frame = self.draw_piece(camera, piece)?;
+            list.append(&mut marks::of_piece(&frame.raster, piece));
+            longest_walk = longest_walk.max(frame.longest_walk);
+            progress(f64::from(done) / count);
+        }
+        Ok(Page { marks: Marks::new(self.pieces.page(), list), longest_walk })
+    }
+
+    /// Draws a piece of a frame and brings it back, halo and all: `piece.drawn` of the page.
     ///
     /// # Errors
     /// As [`Self::frame`] and [`Self::read`].
-    pub fn draw_tile(&self, camera: &Camera, tile: Tile) -> Result<Frame> {
-        self.run(camera, tile, None)?;
-        self.read_tile(tile)
+    pub fn draw_piece(&self, camera: &Camera, piece: Piece) -> Result<Frame> {
+        self.run(camera, piece, None)?;
+        self.read_piece(piece)
     }
 
-    /// Draws a frame and says how long each pass took over all tiles, by the [`Clock`] of the device. By the wall clock the whole is
-    /// more than an undisturbed frame takes: see [`Self::time_of_frame`].
+    /// Draws a frame and says how long each pass took, over all pieces, by the [`Clock`] of the device. By the wall clock
+    /// the whole is more than an undisturbed frame takes: see [`Self::time_of_frame`].
     ///
     /// # Errors
     /// As [`Self::frame`]; [`Error::Gpu`] when the driver's timestamps make no sense.
     pub fn timed_frame(&self, camera: &Camera) -> Result<FrameTime> {
-        self.tiles.iter().try_fold(FrameTime::default(), |time, tile| {
+        self.pieces.iter().try_fold(FrameTime::default(), |time, piece| {
             let mut timer = Timer::new(self.gpu);
-            self.run(camera, tile, Some(&mut timer))?;
+            self.run(camera, piece, Some(&mut timer))?;
             Ok(time.and(&timer.read(self.gpu)?))
         })
     }
@@ -212,22 +237,22 @@ impl<'a> Renderer<'a> {
     ///
     /// # Errors
     /// Whatever the driver reports; [`Error::Gpu`] when a pixel has a depth and no ID or a walk was cut short;
-    /// [`Error::Limit`] when the page takes several tiles, of which the device holds the last alone.
+    /// [`Error::Limit`] when the page takes several pieces, of which the device holds the last alone.
     pub fn read(&self) -> Result<Frame> {
-        let mut tiles = self.tiles.iter();
-        match (tiles.next(), tiles.len()) {
-            (Some(tile), 0) => self.read_tile(tile),
+        let mut pieces = self.pieces.iter();
+        match (pieces.next(), pieces.len()) {
+            (Some(piece), 0) => self.read_piece(piece),
             (_, more) => Err(Error::Limit {
-                what: format!("the page takes {} tiles, one can be read", more + 1),
-                remedy: "draw it tile by tile, or use a smaller --size".into(),
+                what: format!("the page takes {} pieces, one can be read", more + 1),
+                remedy: "draw it piece by piece, or use a smaller --size".into(),
             }),
         }
     }
 
-    fn read_tile(&self, tile: Tile) -> Result<Frame> {
-        let [width, height] = tile.drawn.size;
+    fn read_piece(&self, piece: Piece) -> Result<Frame> {
+        let [width, height] = piece.drawn.size;
         let mut work = Work::new(self.gpu, &self.buffers, None);
-        work.record(&self.compose, 0, tile.drawn.size)?;
+        work.record(&self.compose, 0, piece.drawn.size)?;
         work.finish()?;
         let bytes = self.gpu.read(self.buffers.get("page")?, u64::from(width) * u64::from(height) * 8)?;
         let counts = self.gpu.read(self.buffers.get("counts")?, size_of::<Counts>() as u64)?;
@@ -242,14 +267,14 @@ impl<'a> Renderer<'a> {
         Ok(Frame { raster, longest_walk: counts.longest_walk })
     }
 
-    fn run(&self, camera: &Camera, tile: Tile, timer: Option<&mut Timer>) -> Result<()> {
-        if [camera.width, camera.height] != self.tiles.page() {
-            let [width, height] = self.tiles.page();
+    fn run(&self, camera: &Camera, piece: Piece, timer: Option<&mut Timer>) -> Result<()> {
+        if [camera.width, camera.height] != self.pieces.page() {
+            let [width, height] = self.pieces.page();
             let what =
                 format!("the camera has {}x{} pixels, the renderer {width}x{height}", camera.width, camera.height);
             return Err(Error::flag("--size", what, "make a renderer for this size"));
         }
-        let uniform = CameraUniform::new(self.surface.dem(), camera)?.cut_to(camera, tile.drawn);
+        let uniform = CameraUniform::new(self.surface.dem(), camera)?.cut_to(camera, piece.drawn);
         self.buffers.write_camera(self.gpu, &uniform)?;
         let mut work = Work::new(self.gpu, &self.buffers, timer);
         work.clear(&["pixels", "ink", "summaries", "counts"])?;

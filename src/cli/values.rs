@@ -4,8 +4,8 @@ use glam::DVec2;
 
 use crate::dem::ElevationUnit;
 use crate::gpu::AdapterChoice;
-use crate::plan::tiles::LARGEST_PAGE;
 use crate::plan::Method;
+use crate::plan::pieces::LARGEST_PAGE;
 use crate::report::compare::{LEAST_TRUTH_LEVEL, METHODS};
 use crate::surface::Level;
 

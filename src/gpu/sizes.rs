@@ -3,7 +3,7 @@
 use super::uniforms::Counts;
 use crate::error::{Error, Result};
 use crate::plan::batches::{BATCH_CHUNKS, PART_CHUNKS};
-use crate::plan::tiles::{LARGEST_PIECE, LONGEST_PIECE};
+use crate::plan::pieces::{LARGEST_PIECE, LONGEST_PIECE};
 use crate::surface::lattice::{CHUNK_FACETS, CHUNK_VERTICES, CHUNK_WORDS};
 
 /// The largest storage binding every WebGPU device grants, in bytes.
@@ -23,7 +23,9 @@ pub fn page_fits([width, height]: [u32; 2]) -> Result<()> {
     let pixels = u64::from(width) * u64::from(height);
     let refused = |what: String| Err(Error::Limit { what, remedy: "use a smaller --size".into() });
     if width.max(height) > LONGEST_PIECE {
-        return refused(format!("{width}x{height} is longer than the {LONGEST_PIECE} pixels that are drawn in one piece"));
+        return refused(format!(
+            "{width}x{height} is longer than the {LONGEST_PIECE} pixels that are drawn in one piece"
+        ));
     }
     if pixels > LARGEST_PIECE {
         return refused(format!("{width}x{height} are {pixels} pixels, {LARGEST_PIECE} are drawn in one piece"));

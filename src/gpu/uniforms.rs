@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 
 use crate::dem::Dem;
 use crate::error::{Error, Result};
-use crate::plan::tiles::Rectangle;
+use crate::plan::pieces::Rectangle;
 use crate::surface::Lattice;
 use crate::view::Camera;
 

@@ -1,12 +1,12 @@
-//! What a frame needs: which method over which facets, in which batches, and in how many tiles.
+//! What a frame needs: which method over which facets, in which batches, and in how many pieces of the page.
 
 pub mod batches;
 pub mod method;
-pub mod tiles;
+pub mod pieces;
 
 pub use batches::{Batch, batches};
 pub use method::{Border, Method, Share, Thrift, Visibility};
-pub use tiles::{Tile, Tiles};
+pub use pieces::{Piece, Pieces};
 
 use crate::surface::Level;
 

@@ -1,21 +1,21 @@
-//! Tiles of a page that is too large for one piece.
+//! Pieces of a page that is too large for one piece.
 //!
-//! A tile is drawn with a halo, cut at the page's edge: silhouettes, border lines and what compose packs look at the 8
-//! neighbours of a pixel, so 1 px makes the tile itself right. A second px makes its neighbours right too, by which
+//! A piece is drawn with a halo, cut at the page's edge: silhouettes, border lines and what compose packs look at the 8
+//! neighbours of a pixel, so 1 px makes the piece itself right. A second px makes its neighbours right too, by which
 //! [`Marks`](crate::ink::Marks) tell whether ink encloses a pixel. Places and rays are those of the whole page, so that
-//! no bit depends on the tiles. Does not handle: overlapping work; a facet in two tiles is drawn twice.
+//! no bit depends on the pieces. Does not handle: overlapping work; a facet in two pieces is drawn twice.
 
 use crate::error::{Error, Result};
 
-/// Pixels around a tile that are drawn with it.
+/// Pixels around a piece that are drawn with it.
 pub const HALO: u32 = 2;
 /// Pixels along the longest page side. Up to there f32 tells 1/256 px everywhere on the page.
 pub const LARGEST_PAGE: u32 = 65_536;
-/// Pixels of the largest piece: its 8 bytes a pixel fill a storage binding of 128 MiB, and lists give 24 bits to a pixel.
+/// Pixels of the largest piece: 8 bytes each fill a storage binding of 128 MiB, and lists give 24 bits to a pixel.
 pub const LARGEST_PIECE: u64 = 1 << 24;
 /// Pixels along the longest side of a piece: passes take a row of workgroups for each of its rows, at most 65 535.
 pub const LONGEST_PIECE: u32 = 16_384;
-/// Pixels along a tile of a page that is larger than a piece: buffers and readback take 56 bytes for each pixel.
+/// Pixels along the pieces of a page that is cut: buffers and readback take 56 bytes for each pixel.
 const SIDE: u32 = 2048;
 
 /// A rectangle of a page, pixels.
@@ -29,8 +29,8 @@ pub struct Rectangle {
 
 /// A part of a page.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Tile {
-    /// What it contributes; the tiles of a page share no pixel.
+pub struct Piece {
+    /// What it contributes; the pieces of a page share no pixel.
     pub kept: Rectangle,
     /// What is drawn for that: with the halo, as far as the page goes.
     pub drawn: Rectangle,
@@ -38,13 +38,13 @@ pub struct Tile {
 
 /// How a page is cut.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Tiles {
+pub struct Pieces {
     page: [u32; 2],
     side: [u32; 2],
 }
 
-impl Tiles {
-    /// A page of `page` pixels in tiles of at most `side` pixels, halo not counted, both across and down.
+impl Pieces {
+    /// A page of `page` pixels in pieces of at most `side` pixels, halo not counted, both across and down.
     pub fn new(page: [u32; 2], side: [u32; 2]) -> Self {
         Self { page, side: [0, 1].map(|axis| side[axis].clamp(1, page[axis].max(1))) }
     }
@@ -59,8 +59,8 @@ impl Tiles {
         [0, 1].map(|axis| self.page[axis].min(self.side[axis] + 2 * HALO))
     }
 
-    /// The tiles in reading order.
-    pub fn iter(&self) -> impl ExactSizeIterator<Item = Tile> + use<> {
+    /// The pieces in reading order.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = Piece> + use<> {
         let Self { page, side } = *self;
         let columns = page[0].div_ceil(side[0]);
         (0..columns * page[1].div_ceil(side[1])).map(move |i| {
@@ -68,7 +68,7 @@ impl Tiles {
             let end = [0, 1].map(|axis| page[axis].min(first[axis] + side[axis]));
             let low = first.map(|v| v.saturating_sub(HALO));
             let high = [0, 1].map(|axis| page[axis].min(end[axis] + HALO));
-            Tile { kept: between(first, end), drawn: between(low, high) }
+            Piece { kept: between(first, end), drawn: between(low, high) }
         })
     }
 
@@ -89,7 +89,7 @@ impl Tiles {
 }
 
 /// In one piece if the page is small enough.
-impl From<[u32; 2]> for Tiles {
+impl From<[u32; 2]> for Pieces {
     fn from(page: [u32; 2]) -> Self {
         let pixels = u64::from(page[0]) * u64::from(page[1]);
         let is_piece = pixels <= LARGEST_PIECE && page[0].max(page[1]) <= LONGEST_PIECE;
