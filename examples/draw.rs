@@ -13,7 +13,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let surface = Surface::new(read(dem, &ReadOptions::default())?);
     let camera = choose(surface.dem(), Fixed::default(), 60.0, 1200, 600)?;
     let gpu = Gpu::open(&AdapterChoice::Best, Int64::IfPresent)?;
-    let frame = Renderer::new(&gpu, &surface, Plan::default(), [1200, 600])?.draw(&camera)?;
-    let drawing = ink::draw(&frame.raster, &ink::Style::for_page(1200));
+    let page = Renderer::new(&gpu, &surface, Plan::default(), [1200, 600])?.page(&camera, |_| ())?;
+    let drawing = ink::draw(&page.marks, &ink::Style::for_page(1200));
     Ok(ink::write_png(&drawing, BufWriter::new(File::create(picture)?))?)
 }

@@ -27,7 +27,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("{:18} {:>9} {:>9}", "method", "inked px", "frame ms");
     for (name, method) in methods {
         let renderer = Renderer::new(&gpu, &surface, Plan { method, ..Plan::default() }, [1200, 600])?;
-        let frame = renderer.draw(&camera)?;
+        let marks = renderer.page(&camera, |_| ())?.marks;
         let mut times = Vec::with_capacity(FRAMES);
         for step in 0..FRAMES {
             // A metre to the east each time, so that nothing kept from the last frame helps.
@@ -38,9 +38,9 @@ fn main() -> Result<(), Box<dyn Error>> {
             times.push(start.elapsed().as_secs_f64() * 1e3);
         }
         times.sort_by(f64::total_cmp);
-        println!("{name:18} {:9} {:9.1}", frame.inked(), times[FRAMES / 2]);
+        println!("{name:18} {:9} {:9.1}", marks.inked(), times[FRAMES / 2]);
         let mask = File::create(folder.join(name).with_extension("png"))?;
-        ink::write_mask(&frame.raster, BufWriter::new(mask))?;
+        ink::write_mask(&marks, BufWriter::new(mask))?;
     }
     Ok(())
 }

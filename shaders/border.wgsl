@@ -11,7 +11,8 @@ struct RimEdge {
 @group(0) @binding(22) var<storage, read_write> out_ink: array<atomic<u32>>;
 
 // A rim line is seen where the surface beside it is farther, in the pixel or one of its four neighbours.
-fn draw(at: vec2<i32>, depth: f32) {
+fn draw(on_whole_page: vec2<i32>, depth: f32) {
+    let at = on_whole_page - camera.origin;
     if !on_page(at) {
         return;
     }
@@ -36,9 +37,8 @@ fn cross_neighbour(k: u32) -> vec2<i32> {
 fn draw_crossings(p: vec3<f32>, q: vec3<f32>, axis: u32) {
     let low = min(p[axis], q[axis]);
     let high = max(p[axis], q[axis]);
-    let size = f32(camera.size[axis]);
-    let first = i32(max(ceil(low - 0.5), 0.0));
-    let end = i32(min(ceil(high - 0.5), size));
+    let first = i32(max(ceil(low - 0.5), f32(camera.origin[axis])));
+    let end = i32(min(ceil(high - 0.5), f32(camera.origin[axis] + i32(camera.size[axis]))));
     for (var k = first; k < end; k++) {
         let t = (f32(k) + 0.5 - p[axis]) / (q[axis] - p[axis]);
         let at = p + (q - p) * clamp(t, 0.0, 1.0);

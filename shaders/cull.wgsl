@@ -43,9 +43,10 @@ fn in_view(box: Bounds) -> bool {
     let forward = camera.forward.xyz;
     let side = camera.right.xyz * camera.focal;
     let rise = camera.up.xyz * camera.focal;
-    let reach = camera.centre + 1.0;
+    let low = drawn_from();
+    let high = drawn_to();
     return in_wedge(box)
         && dot(forward, box.middle) + dot(abs(forward), box.reach) >= scene.near
-        && reaches(box, forward * reach.x + side) && reaches(box, forward * reach.x - side)
-        && reaches(box, forward * reach.y + rise) && reaches(box, forward * reach.y - rise);
+        && reaches(box, side - forward * low.x) && reaches(box, forward * high.x - side)
+        && reaches(box, -rise - forward * low.y) && reaches(box, forward * high.y + rise);
 }

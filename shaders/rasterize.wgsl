@@ -1,10 +1,11 @@
 // One invocation a column of eight quads, facet by facet, both sides: each vertex is read once. Small facets are drawn
 // here, large and clipped ones queued.
 
-// Facets for another pass, and the workgroups it takes: one a facet along x, as far as they go.
+// Facets for another pass, and the workgroups it takes: one a facet along x, as far as they go, one a share of the
+// largest along y.
 struct Queue {
     groups_x: atomic<u32>,
-    groups_y: u32,
+    groups_y: atomic<u32>,
     groups_z: u32,
     count: atomic<u32>,
     ids: array<u32>,
@@ -18,10 +19,17 @@ const LARGEST_BOX: i32 = 60 * 256;
 // Facets of a column of eight quads.
 const STRIP_FACETS: u32 = 16u;
 
-fn enqueue(id: u32) {
+// Tiles that one workgroup draws of a facet at most: 16 turns each.
+const SHARE_TILES: u32 = 128u;
+
+// Queues a facet with a box of so many pixels across and down.
+fn enqueue(id: u32, size: vec2<i32>) {
     let n = atomicAdd(&out_queue.count, 1u);
     out_queue.ids[n] = id;
     atomicMax(&out_queue.groups_x, min(n + 1u, MOST_GROUPS));
+    // A box may begin and end within a tile.
+    let tiles = vec2<u32>(size / TILE) + 2u;
+    atomicMax(&out_queue.groups_y, (tiles.x * tiles.y - 1u) / SHARE_TILES + 1u);
 }
 
 // `wide`: the corner of the pixel that lies deepest inside counts.
@@ -88,7 +96,8 @@ fn rasterize_facet(id: u32, a: vec3<i32>, b: vec3<i32>, c: vec3<i32>, v: u32, aw
         let flags = vec3<i32>(screens[v].w, screens[v + CHUNK_SIDE + 1u].w, screens[third].w);
         let seen = (flags.x & flags.y & flags.z & BESIDE) == 0;
         if ((flags.x | flags.y | flags.z) & MISSING) == 0 && seen {
-            enqueue(id);
+            // What is clipped may lie anywhere.
+            enqueue(id, vec2<i32>(camera.size));
         }
         return;
     }
@@ -99,7 +108,7 @@ fn rasterize_facet(id: u32, a: vec3<i32>, b: vec3<i32>, c: vec3<i32>, v: u32, aw
     } else {
         let box = pixel_box(t, true);
         if all(box.low <= box.high) {
-            enqueue(id);
+            enqueue(id, box.high - box.low);
         }
     }
 }

@@ -11,8 +11,7 @@ struct Queue {
 
 @group(0) @binding(21) var<storage, read> queue: Queue;
 
-// Tiles are 32 x 32 px, an invocation draws half a column.
-const TILE: i32 = 32;
+// An invocation draws half a column of a tile.
 // Limits the tile-local part of an edge function to i32: see `tile_edge`.
 const EDGE_LIMIT: i32 = 1 << 30;
 
@@ -88,17 +87,25 @@ fn tile_edge(p: vec2<i32>, q: vec2<i32>, corner_px: vec2<i32>, wide: bool) -> Ti
     return TileEdge(whole, i32(e.x & 255u) - bias, estimate, g, wide || !fits);
 }
 
+// The largest `whole` in the tile: negative where all of it lies outside.
+fn largest_whole(e: TileEdge) -> i32 {
+    let rise = max(e.gradient, vec2<i32>(0)) * (TILE - 1);
+    return e.whole + rise.x + rise.y;
+}
+
 fn edge_value(e: TileEdge, whole: i32, at: vec2<i32>) -> f32 {
     let exact = f32(whole) * 256.0 + f32(e.rest);
     let g = vec2<f32>(e.gradient) * vec2<f32>(at);
     return select(exact, e.estimate + 256.0 * (g.x + g.y), e.estimated);
 }
 
-fn rasterize_tile(t: Triangle, box: Box, tile: vec2<i32>, lane: u32, area: f32, id: u32, away: bool, wide: bool) {
-    let corner_px = box.low + tile * TILE;
+fn rasterize_tile(t: Triangle, box: Box, corner_px: vec2<i32>, lane: u32, area: f32, id: u32, away: bool, wide: bool) {
     let a = tile_edge(t.b, t.c, corner_px, wide);
     let b = tile_edge(t.c, t.a, corner_px, wide);
     let c = tile_edge(t.a, t.b, corner_px, wide);
+    if (largest_whole(a) | largest_whole(b) | largest_whole(c)) < 0 {
+        return;
+    }
     let x = i32(lane & 31u);
     let top = i32(lane >> 5u) * (TILE / 2);
     for (var y = top; y < top + TILE / 2; y++) {
@@ -106,7 +113,7 @@ fn rasterize_tile(t: Triangle, box: Box, tile: vec2<i32>, lane: u32, area: f32, 
         let e_a = a.whole + a.gradient.x * x + a.gradient.y * y;
         let e_b = b.whole + b.gradient.x * x + b.gradient.y * y;
         let e_c = c.whole + c.gradient.x * x + c.gradient.y * y;
-        if (e_a | e_b | e_c) >= 0 && all(corner_px + at <= box.high) {
+        if (e_a | e_b | e_c) >= 0 && all(corner_px + at >= box.low) && all(corner_px + at <= box.high) {
             let depth = depth_at(t, edge_value(b, e_b, at) / area, edge_value(c, e_c, at) / area);
             emit(pixel_index(corner_px + at), depth, id, away, !wide);
         }
@@ -126,10 +133,12 @@ fn rasterize_triangle(either: Triangle, share: vec2<u32>, lane: u32, id: u32, aw
     if any(box.low > box.high) {
         return;
     }
-    let tiles = vec2<u32>((box.high - box.low) / TILE + 1);
+    // Tiles of the whole page, so that estimates are the same whatever part of it is drawn.
+    let corner_px = ((box.low + camera.origin) & vec2<i32>(-TILE)) - camera.origin;
+    let tiles = vec2<u32>((box.high - corner_px) / TILE + 1);
     for (var k = share.x; k < tiles.x * tiles.y; k += share.y) {
         let tile = vec2<i32>(i32(k % tiles.x), i32(k / tiles.x));
-        rasterize_tile(t, box, tile, lane, abs(wide_f32(area)), id, away, wide);
+        rasterize_tile(t, box, corner_px + tile * TILE, lane, abs(wide_f32(area)), id, away, wide);
     }
 }
 

@@ -18,8 +18,10 @@ struct Camera {
     centre: vec2<f32>,      // half the page in pixels
     focal: f32,             // pixels per unit of tangent
     pad: u32,
-    size: vec2<u32>,        // pixels across, down
-    wedge: vec4<f32>,       // inward normals of the two sides of the page's map projection; 0 where it is no wedge
+    size: vec2<u32>,        // pixels across, down, of what is drawn: the page or a piece of it
+    wedge: vec4<f32>,       // inward normals of the two sides of its map projection; 0 where it is no wedge
+    origin: vec2<i32>,      // the page's column and row of its top left pixel
+    pad_end: vec2<u32>,
 }
 
 struct Batch {
@@ -140,6 +142,15 @@ fn pixel_index(at: vec2<i32>) -> u32 {
 
 fn on_page(at: vec2<i32>) -> bool {
     return all(at >= vec2<i32>(0)) && all(at < vec2<i32>(camera.size));
+}
+
+// Where what is drawn begins and ends, in pixels from the page's centre, right and down. A pixel of margin.
+fn drawn_from() -> vec2<f32> {
+    return vec2<f32>(camera.origin) - camera.centre - 1.0;
+}
+
+fn drawn_to() -> vec2<f32> {
+    return vec2<f32>(camera.origin + vec2<i32>(camera.size)) - camera.centre + 1.0;
 }
 
 // The eight neighbours, clockwise from the north-west.

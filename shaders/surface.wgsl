@@ -125,13 +125,15 @@ fn camera_space(p: vec3<f32>) -> vec3<f32> {
     return vec3<f32>(dot(p, camera.right.xyz), dot(p, camera.up.xyz), dot(p, camera.forward.xyz));
 }
 
-// Pixels from the centre beyond which facets are clipped: with pages up to 16 384 px coordinates stay within 2^15.
-const GUARD: f32 = 24576.0;
+// Pixels from the page's centre beyond which facets are clipped: more than half the largest page, and no facet within
+// is so large that an edge function changes by 2^30 over a tile of 32 px.
+const GUARD: f32 = 33280.0;
 
-// Page place in 1/256 px of a point in camera space, within the guard band and in front of the near plane.
+// Place in 1/256 px of a point in camera space, within the guard band and in front of the near plane. It is snapped on
+// the page and then moved to what is drawn of it, so that it is the same in every piece.
 fn snapped(q: vec3<f32>) -> vec2<i32> {
     let px = vec2<f32>(q.x, -q.y) * (camera.focal / q.z) + camera.centre;
-    return vec2<i32>(round(px * 256.0));
+    return vec2<i32>(round(px * 256.0)) - camera.origin * 256;
 }
 
 fn depth_of(q: vec3<f32>) -> f32 {

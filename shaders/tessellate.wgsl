@@ -5,10 +5,11 @@
 @group(0) @binding(21) var<storage, read_write> out_screens: array<vec4<i32>>;
 
 fn view_flags(q: vec3<f32>) -> i32 {
-    let p = q.xy * camera.focal;
-    let reach = (camera.centre + 1.0) * q.z;
-    return select(0, LEFT, p.x < -reach.x) | select(0, RIGHT, p.x > reach.x)
-        | select(0, BELOW, p.y < -reach.y) | select(0, ABOVE, p.y > reach.y)
+    let p = vec2<f32>(q.x, -q.y) * camera.focal;
+    let low = drawn_from() * q.z;
+    let high = drawn_to() * q.z;
+    return select(0, LEFT, p.x < low.x) | select(0, RIGHT, p.x > high.x)
+        | select(0, ABOVE, p.y < low.y) | select(0, BELOW, p.y > high.y)
         | select(0, BEHIND, q.z < scene.near)
         | select(0, BEYOND_GUARD, any(abs(p) > vec2<f32>(GUARD * q.z)));
 }

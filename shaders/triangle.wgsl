@@ -16,6 +16,9 @@ fn oriented(t: Triangle, area: i32) -> Triangle {
     return t;
 }
 
+// Pixels along a tile, of which a workgroup draws one after the other of a large facet.
+const TILE: i32 = 32;
+
 struct Box {
     low: vec2<i32>,
     high: vec2<i32>,

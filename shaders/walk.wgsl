@@ -396,10 +396,15 @@ fn place_of(id: u32, at: vec2<f32>) -> vec2<f32> {
     return vec2<f32>(q.x, -q.y) * (camera.focal / q.z) + camera.centre;
 }
 
+// Centre of a pixel on the page.
+fn centre_of(at: vec2<i32>) -> vec2<f32> {
+    return vec2<f32>(at + camera.origin) + 0.5;
+}
+
 // Notes a facet that a walk from a pixel met. Of the walks that ink a pixel, the one whose line runs nearest to its centre
 // gives the place.
 fn ink(at: vec2<i32>, meeting: Meeting) {
-    let mark = silhouette_at(place_of(meeting.id, meeting.entered) - (vec2<f32>(at) + 0.5));
+    let mark = silhouette_at(place_of(meeting.id, meeting.entered) - centre_of(at));
     if meeting.met {
         atomicMax(&out_ink[pixel_index(at)], mark);
     }
@@ -425,7 +430,7 @@ fn walk(@builtin(global_invocation_id) invocation: vec3<u32>, @builtin(num_workg
         let first = pixels[i];
         var place = vec2<i32>(0);
         if first.x != 0u {
-            place = facet_hit(first.x - 1u, vec2<f32>(one) + 0.5);
+            place = facet_hit(first.x - 1u, centre_of(one));
         }
         var deferred = 0u;
         for (var left = pairs.pixels[k] >> 24u; left != 0u; left &= left - 1u) {
@@ -441,7 +446,7 @@ fn walk(@builtin(global_invocation_id) invocation: vec3<u32>, @builtin(num_workg
                 deferred |= left & (~left + 1u);
                 continue;
             }
-            let other_place = facet_hit(second.x - 1u, vec2<f32>(other) + 0.5);
+            let other_place = facet_hit(second.x - 1u, centre_of(other));
             let meeting = walk_between(select(place, other_place, swapped), select(other_place, place, swapped));
             deferred |= select(0u, left & (~left + 1u), meeting.deferred);
             ink(select(one, other, swapped), meeting);

@@ -64,8 +64,8 @@ fn walk_pair(one: vec2<i32>, other: vec2<i32>) -> u32 {
     let p = select(first, second, swapped);
     let q = select(second, first, swapped);
     let at = select(one, other, swapped);
-    let centre = vec2<f32>(at) + 0.5;
-    let to_centre = vec2<f32>(select(other, one, swapped)) + 0.5;
+    let centre = centre_of(at);
+    let to_centre = centre_of(select(other, one, swapped));
     let origin = facet_hit(p.x - 1u, centre);
     var goal: Goal;
     if q.y == 0u || is_away(q.x - 1u) {

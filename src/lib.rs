@@ -11,8 +11,8 @@
 //! let surface = Surface::new(read("dem/golden-gate.tif", &ReadOptions::default())?);
 //! let camera = choose(surface.dem(), Fixed::default(), 60.0, 1200, 600)?;
 //! let gpu = Gpu::open(&AdapterChoice::Best, Int64::IfPresent)?;
-//! let frame = Renderer::new(&gpu, &surface, Plan::default(), [1200, 600])?.draw(&camera)?;
-//! let drawing = ink::draw(&frame.raster, &ink::Style::for_page(1200));
+//! let page = Renderer::new(&gpu, &surface, Plan::default(), [1200, 600])?.page(&camera, |_| ())?;
+//! let drawing = ink::draw(&page.marks, &ink::Style::for_page(1200));
 //! ink::write_png(&drawing, std::fs::File::create("picture.png")?)?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -28,7 +28,8 @@
 //! | upload | surface and plan | [`Renderer`](render::Renderer): buffers and compiled passes | once a scene |
 //! | frame | a camera | the mask, on the device: tessellate, facing, rasterize, silhouette, border | [`Renderer::frame`](render::Renderer::frame), GPU |
 //! | read back | the mask | [`Frame`](render::Frame): ink, kind, sub-pixel place and depth a pixel | [`Renderer::read`](render::Renderer::read) |
-//! | ink | the frame | [`Drawing`](ink::Drawing): layers of smoothed strokes | [`ink::draw`], CPU |
+//! | page | a camera | [`Page`](render::Page): the ink alone, frame and read-back for each piece of a page of any size | [`Renderer::page`](render::Renderer::page) |
+//! | ink | the page | [`Drawing`](ink::Drawing): layers of smoothed strokes | [`ink::draw`], CPU |
 //! | write | the drawing | a PNG | [`ink::write_png`] |
 //! | truth | surface and camera | [`Truth`](truth::Truth): where the lines really are | [`Terrain::truth`](truth::Terrain::truth), CPU |
 //! | judge | ink and truth | [`Scores`](truth::metrics::Scores): how far apart they are | [`Judge`](truth::metrics::Judge) |

@@ -11,9 +11,9 @@ use crate::gpu::uniforms::{Counts, near_plane};
 use crate::gpu::work::Work;
 use crate::gpu::{Buffers, CameraUniform, Clock, Extent, Gpu};
 use crate::gpu::{border, facing, rasterize, seam, tessellate};
-use crate::ink::InkRaster;
+use crate::ink::{InkRaster, Marks, marks};
 use crate::plan::left_out::{LeftOut, left_out};
-use crate::plan::{Batch, Border, Detail, Method, Plan, Thrift, Visibility, batches, detail};
+use crate::plan::{Batch, Border, Detail, Method, Piece, Pieces, Plan, Thrift, Visibility, batches, detail};
 use crate::surface::rim::{RimEdge, rim};
 use crate::surface::{Lattice, Surface};
 use crate::view::Camera;
@@ -36,13 +36,22 @@ impl Frame {
     }
 }
 
+/// The ink of a frame on a page of any size.
+#[derive(Debug, Clone)]
+pub struct Page {
+    /// Ink, kind, sub-pixel place and depth.
+    pub marks: Marks,
+    /// Nodes the longest walk visited; 0 for other methods.
+    pub longest_walk: u32,
+}
+
 /// A scene on a device, ready to be seen from any eye.
 pub struct Renderer<'a> {
     gpu: &'a Gpu,
     surface: &'a Surface,
     plan: Plan,
     visibility: Visibility,
-    size: [u32; 2],
+    pieces: Pieces,
     rim: Vec<RimEdge>,
     loaded: RefCell<Loaded>,
 }
@@ -59,11 +68,15 @@ struct Loaded {
 const FIRST_ROOM: Room = Room { chunks: 512, nodes: 2048, tiles: 512 };
 
 impl<'a> Renderer<'a> {
-    /// Compiles what the plan needs. The lattice of a uniform level is uploaded, other lattices belong to frames.
+    /// Compiles what the plan needs, for a page of so many pixels across and down, or for one that is cut in a way of its
+    /// own. The lattice of a uniform level is uploaded, other lattices belong to frames.
     ///
     /// # Errors
     /// [`Error::Limit`] when the scene or the page is too large, [`Error::Gpu`] when the driver refuses.
-    pub fn new(gpu: &'a Gpu, surface: &'a Surface, plan: Plan, size: [u32; 2]) -> Result<Self> {
+    pub fn new(gpu: &'a Gpu, surface: &'a Surface, plan: Plan, page: impl Into<Pieces>) -> Result<Self> {
+        let pieces = page.into();
+        pieces.check()?;
+        let size = pieces.largest();
         let dem = surface.dem();
         let (lattice, room) = match plan.detail {
             Detail::Uniform(level) => {
@@ -80,7 +93,7 @@ impl<'a> Renderer<'a> {
         let stages = Stages::new(gpu, dem, &plan, !rim.is_empty(), parts, size)?;
         let mut loaded = Loaded { batches: Vec::new(), lattice, buffers, stages };
         loaded.bind(gpu, room, visibility)?;
-        let renderer = Self { gpu, surface, plan, visibility, size, rim, loaded: RefCell::new(loaded) };
+        let renderer = Self { gpu, surface, plan, visibility, pieces, rim, loaded: RefCell::new(loaded) };
         renderer.load(&mut renderer.loaded.borrow_mut())?;
         Ok(renderer)
     }
@@ -88,6 +101,11 @@ impl<'a> Renderer<'a> {
     /// The lattice whose facets are drawn, of an adaptive one that of the last frame.
     pub fn lattice(&self) -> Ref<'_, Lattice> {
         Ref::map(self.loaded.borrow(), |loaded| &loaded.lattice)
+    }
+
+    /// How the page is cut.
+    pub fn pieces(&self) -> Pieces {
+        self.pieces
     }
 
     /// How many facets the scene has; with an adaptive lattice, those of the last frame's chunks.
@@ -116,12 +134,13 @@ impl<'a> Renderer<'a> {
         near_plane(self.surface.dem())
     }
 
-    /// Draws a frame to its mask and waits for it.
+    /// Draws a frame to its mask, piece by piece, and waits for it.
     ///
     /// # Errors
     /// Whatever the driver reports; [`Error::Flag`] for an eye out of reach or a camera of another page size.
     pub fn frame(&self, camera: &Camera) -> Result<()> {
-        self.run(camera, None)
+        self.look(camera)?;
+        self.pieces.iter().try_for_each(|piece| self.run(camera, piece, None))
     }
 
     /// Draws a frame and brings it back: [`Self::frame`], then [`Self::read`].
@@ -133,15 +152,46 @@ impl<'a> Renderer<'a> {
         self.read()
     }
 
-    /// Draws a frame and says how long each pass took, by the [`Clock`] of the device. By the wall clock the whole is
-    /// more than an undisturbed frame takes: see [`Self::time_of_frame`].
+    /// Draws a frame and brings back its ink, piece by piece; tells `progress` what share is done.
+    ///
+    /// # Errors
+    /// As [`Self::draw_piece`].
+    pub fn page(&self, camera: &Camera, progress: impl Fn(f64)) -> Result<Page> {
+        let (mut list, mut longest_walk) = (Vec::new(), 0);
+        let count = self.pieces.iter().len() as f64;
+        self.look(camera)?;
+        for (done, piece) in (1..).zip(self.pieces.iter()) {
+            self.run(camera, piece, None)?;
+            let frame = self.read_piece(piece)?;
+            list.append(&mut marks::of_piece(&frame.raster, piece));
+            longest_walk = longest_walk.max(frame.longest_walk);
+            progress(f64::from(done) / count);
+        }
+        Ok(Page { marks: Marks::new(self.pieces.page(), list), longest_walk })
+    }
+
+    /// Draws a piece of a frame and brings it back, halo and all: `piece.drawn` of the page.
+    ///
+    /// # Errors
+    /// As [`Self::frame`] and [`Self::read`].
+    pub fn draw_piece(&self, camera: &Camera, piece: Piece) -> Result<Frame> {
+        self.look(camera)?;
+        self.run(camera, piece, None)?;
+        self.read_piece(piece)
+    }
+
+    /// Draws a frame and says how long each pass took, over all pieces, by the [`Clock`] of the device. By the wall clock
+    /// the whole is more than an undisturbed frame takes: see [`Self::time_of_frame`].
     ///
     /// # Errors
     /// As [`Self::frame`]; [`Error::Gpu`] when the driver's timestamps make no sense.
     pub fn timed_frame(&self, camera: &Camera) -> Result<FrameTime> {
-        let mut timer = Timer::new(self.gpu);
-        self.run(camera, Some(&mut timer))?;
-        timer.read(self.gpu)
+        self.look(camera)?;
+        self.pieces.iter().try_fold(FrameTime::default(), |time, piece| {
+            let mut timer = Timer::new(self.gpu);
+            self.run(camera, piece, Some(&mut timer))?;
+            Ok(time.and(&timer.read(self.gpu)?))
+        })
     }
 
     /// Draws a frame and says how long it took, ms: by the wall clock around [`Self::frame`], or by the device's
@@ -167,26 +217,41 @@ impl<'a> Renderer<'a> {
     pub fn record_vertices(&self, camera: &Camera, encoder: &mut wgpu::CommandEncoder) -> Result<()> {
         self.look(camera)?;
         let loaded = self.loaded.borrow();
-        let ([batch], [stage, ..]) = (loaded.batches.as_slice(), &loaded.stages.per_batch) else {
+        let ([batch], [vertices, seams, ..]) = (loaded.batches.as_slice(), &loaded.stages.per_batch) else {
             return Err(Error::Limit {
                 what: format!("the vertices take {} batches, one can be drawn", loaded.batches.len()),
                 remedy: "use a lower --level or a --crop".into(),
             });
         };
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-        stage.pass.record(&mut pass, &stage.groups[0], tessellate::invocations(batch));
+        loaded.buffers.write_camera(self.gpu, &CameraUniform::new(self.surface.dem(), camera)?)?;
+        for (stage, extent) in [(vertices, tessellate::invocations(batch)), (seams, seam::invocations(batch))] {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            stage.pass.record(&mut pass, &stage.groups[0], extent);
+        }
         Ok(())
     }
 
     /// Composes the last frame and copies it to the CPU.
     ///
     /// # Errors
-    /// Whatever the driver reports; [`Error::Gpu`] when a pixel has a depth and no ID or a walk was cut short.
+    /// Whatever the driver reports; [`Error::Gpu`] when a pixel has a depth and no ID or a walk was cut short;
+    /// [`Error::Limit`] when the page takes several pieces, of which the device holds the last alone.
     pub fn read(&self) -> Result<Frame> {
-        let [width, height] = self.size;
+        let mut pieces = self.pieces.iter();
+        match (pieces.next(), pieces.len()) {
+            (Some(piece), 0) => self.read_piece(piece),
+            (_, more) => Err(Error::Limit {
+                what: format!("the page takes {} pieces, one can be read", more + 1),
+                remedy: "draw it piece by piece, or use a smaller --size".into(),
+            }),
+        }
+    }
+
+    fn read_piece(&self, piece: Piece) -> Result<Frame> {
+        let [width, height] = piece.drawn.size;
         let Loaded { buffers, stages, .. } = &*self.loaded.borrow();
         let mut work = Work::new(self.gpu, buffers, None);
-        work.record(&stages.compose, 0, self.size)?;
+        work.record(&stages.compose, 0, piece.drawn.size)?;
         work.finish()?;
         let bytes = self.gpu.read(buffers.get("page")?, u64::from(width) * u64::from(height) * 8)?;
         let counts = self.gpu.read(buffers.get("counts")?, size_of::<Counts>() as u64)?;
@@ -201,15 +266,10 @@ impl<'a> Renderer<'a> {
         Ok(Frame { raster, longest_walk: counts.longest_walk })
     }
 
-    fn run(&self, camera: &Camera, timer: Option<&mut Timer>) -> Result<()> {
-        if [camera.width, camera.height] != self.size {
-            let [width, height] = self.size;
-            let what =
-                format!("the camera has {}x{} pixels, the renderer {width}x{height}", camera.width, camera.height);
-            return Err(Error::flag("--size", what, "make a renderer for this size"));
-        }
-        self.look(camera)?;
+    fn run(&self, camera: &Camera, piece: Piece, timer: Option<&mut Timer>) -> Result<()> {
         let loaded = self.loaded.borrow();
+        let uniform = CameraUniform::new(self.surface.dem(), camera)?.cut_to(camera, piece.drawn);
+        loaded.buffers.write_camera(self.gpu, &uniform)?;
         let mut work = Work::new(self.gpu, &loaded.buffers, timer);
         work.clear(&["pixels", "ink", "summaries", "counts"])?;
         if self.plan.method == (Method::TowardAway { wide: true }) {
@@ -264,15 +324,20 @@ impl<'a> Renderer<'a> {
         Batch { chunks: loaded.lattice.seen().saturating_sub(batch.first_slot).min(batch.chunks), ..*batch }
     }
 
-    /// Brings to the device what a camera asks for: itself, and its lattice where each frame has its own.
+    /// Brings to the device what a camera asks for where each frame has its own lattice: one for all pieces.
     fn look(&self, camera: &Camera) -> Result<()> {
-        let uniform = CameraUniform::new(self.surface.dem(), camera)?;
+        if [camera.width, camera.height] != self.pieces.page() {
+            let [width, height] = self.pieces.page();
+            let what =
+                format!("the camera has {}x{} pixels, the renderer {width}x{height}", camera.width, camera.height);
+            return Err(Error::flag("--size", what, "make a renderer for this size"));
+        }
         let mut loaded = self.loaded.borrow_mut();
         if let Detail::Adaptive { error_px } = self.plan.detail {
             loaded.lattice = detail::adaptive(self.surface, camera, error_px, self.plan.thrift)?;
             self.load(&mut loaded)?;
         }
-        loaded.buffers.write_camera(self.gpu, &uniform)
+        Ok(())
     }
 
     /// Brings the lattice to the device, into larger buffers where it needs them.
@@ -280,7 +345,8 @@ impl<'a> Renderer<'a> {
         let Self { gpu, surface, visibility, .. } = self;
         loaded.batches = batches(loaded.lattice.chunks().len() as u32);
         let Some(room) = loaded.buffers.load(gpu, surface, &loaded.lattice)? else { return Ok(()) };
-        loaded.buffers = Buffers::new(gpu, surface, &loaded.lattice, room, &self.rim, *visibility, self.size)?;
+        loaded.buffers =
+            Buffers::new(gpu, surface, &loaded.lattice, room, &self.rim, *visibility, self.pieces.largest())?;
         loaded.bind(gpu, room, *visibility)?;
         loaded.buffers.load(gpu, surface, &loaded.lattice).map(drop)
     }

@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 use glam::{DVec2, DVec3};
 use hachure::error::Error;
 use hachure::ink::{
-    Chain, Cover, Drawing, InkRaster, Kind, Layer, Line, Output, Pen, Pixel, Recession, Stroke, StrokePoint, Style,
-    project_polyline, stroke, write_png,
+    Chain, Cover, Drawing, InkRaster, Kind, Layer, Line, Marks, Output, Pen, Pixel, Recession, Stroke, StrokePoint,
+    Style, project_polyline, stroke, write_png,
 };
 use hachure::view::Camera;
 
@@ -62,7 +62,8 @@ fn polylines_are_clipped_to_the_near_plane_and_the_page() {
     // Off the page and back on it: two chains, not one across the margin.
     let out_and_in = [(-5.0, 0.0), (-99.0, 0.0), (-99.0, 5.0), (-5.0, 5.0)].map(|(x, z)| DVec3::new(x, 20.0, z));
     assert_eq!(project_polyline(&out_and_in, &camera, &raster, 1.0, Cover::Off).len(), 2);
-    let layer = stroke(&chains, Line::Crease, &Style::for_page(100), &raster, Recession::of(&raster));
+    let marks = Marks::from(&raster);
+    let layer = stroke(&chains, Line::Crease, &Style::for_page(100), &marks, Recession::of(&marks));
     assert_eq!((layer.name.as_str(), layer.strokes.len()), ("crease", 1));
 }
 
@@ -124,6 +125,21 @@ fn closed_strokes_and_huge_pages_are_drawn_whole() {
     let wide = page(40_000, 4, 1.0, vec![through(&[(-10.0, 2.5), (40_010.0, 2.5)])]);
     assert!(wide.enumerate_pixels().all(|(_, y, p)| (p.0[0] < 5) == (y == 2)));
     assert!(write_png(&Drawing { width: 0, height: 5, paper: [255; 4], layers: vec![] }, Vec::new()).is_err());
+}
+
+#[test]
+fn bands_do_not_show() {
+    // From corner to corner over three bands, and a page that ends in the second.
+    let strokes = || vec![through(&[(3.3, 2.2), (150.1, 180.7), (290.4, 380.0)]), through(&[(250.0, 127.9)])];
+    let tall = page(300, 384, 2.3, strokes());
+    let short = page(300, 200, 2.3, strokes());
+    assert!(ink_of(&short) > 400.0 && short.rows().zip(tall.rows()).all(|(a, b)| a.eq(b)));
+    // However many bands are filled at a time.
+    let by = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| page(300, 384, 2.3, strokes()))
+    };
+    assert!(by(1) == tall && by(2) == tall && by(5) == tall);
 }
 
 #[test]

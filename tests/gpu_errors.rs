@@ -4,7 +4,7 @@ use glam::DVec2;
 use hachure::dem::Dem;
 use hachure::error::{Error, Result};
 use hachure::gpu::{AdapterChoice, CameraUniform, Gpu, Int64};
-use hachure::plan::{Border, Method, Plan};
+use hachure::plan::{Border, Method, Pieces, Plan};
 use hachure::render::Renderer;
 use hachure::surface::{Lattice, Surface};
 use hachure::view::Camera;
@@ -64,14 +64,21 @@ fn facets_beyond_their_ids_are_refused_with_numbers() {
 fn pages_too_large_are_refused_with_numbers() {
     let scene = Surface::new(flat(4, 4));
     let draw = |size| Renderer::new(gpu(), &scene, Plan::new(level(1), Method::Walk, Border::On), size);
+    let piece = |size| Pieces::new(size, size);
     for (size, words) in [
-        ([5000, 4000], ["5000x4000", "20000000", "16777216", "--size"]),
-        ([16_385, 16], ["16385x16", "16384", "page side", "--size"]),
-        ([16, 20_000], ["16x20000", "16384", "page side", "--size"]),
+        (piece([5000, 4000]), ["5000x4000", "20000000", "16777216", "--size"]),
+        (piece([16_385, 16]), ["16385x16", "16384", "in one piece", "--size"]),
+        (Pieces::from([65_537, 16]), ["65537x16", "65536", "page side", "--size"]),
+        (Pieces::from([16, 70_000]), ["16x70000", "65536", "page side", "--size"]),
     ] {
         assert!(matches!(refused(draw(size), &words), Error::Limit { .. }));
     }
-    assert!(draw([16_384, 16]).is_ok());
+    assert!(draw(piece([16_384, 16])).is_ok());
+    // One piece can be read back whole, of several the device holds the last alone.
+    let cut = draw(Pieces::new([64, 48], [33, 48])).expect("two pieces");
+    let eye = glam::DVec3::new(50.0, -200.0, 100.0);
+    let camera = Camera { eye, azimuth: 0.0, altitude: -20.0, fov: 60.0, width: 64, height: 48 };
+    refused(cut.draw(&camera), &["2 pieces", "--size"]);
 }
 
 #[test]

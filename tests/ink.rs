@@ -1,9 +1,19 @@
 //! Ink: from pixels to strokes, on rasters made here.
 
 use glam::DVec2;
-use hachure::ink::{Chain, InkRaster, Kind, Pixel, Style, draw, smooth, trace, write_mask};
+use hachure::ink::{self, Chain, Drawing, InkRaster, Kind, Marks, Pixel, Style, smooth, write_mask};
 
 const TOLERANCE: f64 = 0.6;
+
+/// The chains of a raster's ink.
+fn trace(raster: &InkRaster) -> Vec<Chain> {
+    ink::trace(&Marks::from(raster))
+}
+
+/// The drawing of a raster's ink.
+fn draw(raster: &InkRaster, style: &Style) -> Drawing {
+    ink::draw(&Marks::from(raster), style)
+}
 
 /// A raster of cover at depth 0.01 with ink wherever `ink` gives a kind and a depth for column and row.
 pub fn raster(width: u32, height: u32, ink: impl Fn(i64, i64) -> Option<(Kind, f32)>) -> InkRaster {
@@ -86,13 +96,13 @@ fn pixel_packs_kind_place_and_depth() {
 fn mask_has_one_bit_a_pixel_and_ink_is_0() {
     let raster = picture(&["#..b.....#.", "...........", "..........#"]);
     let mut file = Vec::new();
-    write_mask(&raster, &mut file).unwrap();
+    write_mask(&Marks::from(&raster), &mut file).unwrap();
     assert_eq!((file[24], file[25]), (1, 0), "bit depth and colour type of the PNG header");
     let read = image::load_from_memory(&file).unwrap().to_luma8();
     assert_eq!(read.dimensions(), (11, 3));
     let expected: Vec<u8> = raster.pixels.iter().map(|p| if p.is_ink() { 0 } else { 255 }).collect();
     assert_eq!(read.into_raw(), expected);
-    assert!(write_mask(&InkRaster { width: 0, height: 0, pixels: vec![] }, Vec::new()).is_err());
+    assert!(write_mask(&Marks::new([0, 0], vec![]), Vec::new()).is_err());
 }
 
 #[test]

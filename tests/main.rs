@@ -23,6 +23,7 @@ mod kernels;
 mod left_out;
 mod memory;
 mod mesh;
+mod pieces;
 mod reflection;
 mod report;
 mod same_bytes;

@@ -74,7 +74,7 @@ fn shared_structs() -> Vec<(&'static str, Layout)> {
         ("Scene", layout!(SceneUniform: cell, samples, roots, root_size, near)),
         (
             "Camera",
-            layout!(CameraUniform: right, up, forward, eye_cell, eye_offset, eye_height, centre, focal, pad, size, wedge),
+            layout!(CameraUniform: right, up, forward, eye_cell, eye_offset, eye_height, centre, focal, pad, size, wedge, origin, pad_end),
         ),
         ("Batch", layout!(BatchUniform: first_slot, part_slot, round, pad)),
         ("Counts", layout!(Counts: longest_walk, orphans, cut_short)),
@@ -114,7 +114,6 @@ fn shared_constants() -> Vec<(&'static str, i64)> {
         ("WEST", i64::from(lattice::WEST)),
         ("TILE_SIDE", i64::from(tile::TILE_SIDE)),
         ("TILE_SAMPLES", i64::from(tile::TILE_SAMPLES)),
-        ("TILE", i64::from(rasterize_large::TILE)),
         ("COLUMNS", i64::from(BLOCK[0])),
         ("ROWS", i64::from(BLOCK[1])),
         ("BESIDE", i64::from(BESIDE)),

@@ -15,17 +15,16 @@ use super::viewpoint::{View, ViewArguments, ViewReport};
 use crate::dem::Dem;
 use crate::error::{Error, Result};
 use crate::gpu::Gpu;
-use crate::gpu::sizes::page_fits;
 use crate::ink::{self, Style};
 use crate::plan::detail::ERROR_PX;
 use crate::plan::left_out::{LeftOut, levels};
 use crate::plan::{Border, Detail, Method, Plan, Share};
-use crate::render::{Frame, PassTime, Renderer};
+use crate::render::{Page, PassTime, Renderer};
 use crate::report::cache::Cache;
 use crate::report::results::DrawnLevel;
 use crate::surface::Surface;
 
-/// Warm frames behind the median of `--json`.
+/// Warm frames behind the median of `--json`; a page in pieces, which may take minutes, has one.
 const WARM_FRAMES: usize = 9;
 
 /// The end of `hachure draw --help`.
@@ -106,6 +105,8 @@ struct Report {
     facets: u64,
     inked: usize,
     longest_walk: u32,
+    pieces: usize,
+    warm_frames: usize,
     frame_ms: f64,
     timing: &'static str,
     passes: Vec<PassTime>,
@@ -136,7 +137,6 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     let method = arguments.method()?;
     arguments.detail()?;
     let size = [arguments.view.size.width, arguments.view.size.height];
-    page_fits(size)?;
     arguments.view.check()?;
     let mut outputs = arguments.outputs.open(&arguments.terrain.dems)?;
     let started = Instant::now();
@@ -153,28 +153,28 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     view.lonlat_flag().map_or(Ok(()), |flag| talk.say(&format!("or with: {flag}")))?;
     talk.progress("opening the adapter", 0.2);
     let gpu = arguments.device.open(talk)?;
-    talk.progress("drawing", 0.4);
+    talk.progress("drawing", 0.3);
     let renderer = Renderer::new(&gpu, &surface, Plan::new(arguments.detail()?, method, arguments.border), size)?;
-    let frame = renderer.draw(&view.camera)?;
-    let drawing = ink::draw(&frame.raster, &Style::for_page(view.camera.width));
+    let page = renderer.page(&view.camera, |share| talk.progress("drawing", 0.3 + 0.3 * share))?;
+    let drawing = ink::draw(&page.marks, &Style::for_page(view.camera.width));
     let report = || {
-        talk.progress("timing ten more frames", 0.6);
-        arguments.report(&gpu, &surface, &renderer, &view, method, &frame)
+        talk.progress("timing more frames", 0.6);
+        arguments.report(&gpu, &surface, &renderer, &view, method, &page)
     };
     let report = outputs.want_report().then(report).transpose()?;
     if arguments.explain || talk.is_verbose() {
         explain(talk, &renderer, &renderer.left_out(&view.camera)?, report.as_ref())?;
     }
     talk.progress("writing", 0.8);
-    outputs.write(&drawing, &frame, report.as_ref())?;
+    outputs.write(&drawing, &page, report.as_ref())?;
     talk.progress("writing", 1.0);
     outputs.publish()?;
     talk.say(&format!(
         "{}: {} facets, {} of {} pixels inked, {:.2} s",
         arguments.outputs.drawing().display(),
         renderer.facets(),
-        frame.inked(),
-        frame.raster.pixels.len(),
+        page.marks.inked(),
+        u64::from(view.camera.width) * u64::from(view.camera.height),
         started.elapsed().as_secs_f64()
     ))
 }
@@ -213,10 +213,12 @@ impl DrawArguments {
         renderer: &Renderer<'_>,
         view: &View,
         method: Method,
-        frame: &Frame,
+        page: &Page,
     ) -> Result<Report> {
         let camera = &view.camera;
-        let mut times = (0..WARM_FRAMES).map(|_| renderer.time_of_frame(camera)).collect::<Result<Vec<_>>>()?;
+        let pieces = renderer.pieces().iter().len();
+        let warm_frames = if pieces == 1 { WARM_FRAMES } else { 1 };
+        let mut times = (0..warm_frames).map(|_| renderer.time_of_frame(camera)).collect::<Result<Vec<_>>>()?;
         times.sort_by(f64::total_cmp);
         Ok(Report {
             version: env!("CARGO_PKG_VERSION"),
@@ -224,9 +226,11 @@ impl DrawArguments {
             method: method.name(),
             level: self.detail()?.into(),
             facets: renderer.facets(),
-            inked: frame.inked(),
-            longest_walk: frame.longest_walk,
-            frame_ms: times[WARM_FRAMES / 2],
+            inked: page.marks.inked(),
+            longest_walk: page.longest_walk,
+            pieces,
+            warm_frames,
+            frame_ms: times[warm_frames / 2],
             timing: gpu.clock.describe(),
             passes: renderer.timed_frame(camera)?.passes,
             adapter: format!("{} ({})", gpu.info.name, gpu.info.driver_info),

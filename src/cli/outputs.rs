@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::error::{Error, Result};
 use crate::ink::{self, Output};
-use crate::render::Frame;
+use crate::render::Page;
 
 /// Flags that name files; `-` is standard output, for one of them.
 #[derive(Debug, clap::Args)]
@@ -18,7 +18,7 @@ pub struct OutputArguments {
     /// Also the mask: 1 bit a pixel, 0 ink, 255 paper, exactly --size
     #[arg(long, value_name = "OUT.png|-")]
     mask: Option<PathBuf>,
-    /// Also what was done, with times of ten further frames
+    /// Also what was done, with times of ten further frames (two of a page in pieces)
     #[arg(long, value_name = "OUT.json|-")]
     json: Option<PathBuf>,
 }
@@ -83,10 +83,10 @@ impl Outputs {
     ///
     /// # Errors
     /// [`Error::Output`] where one cannot be written.
-    pub fn write(&mut self, drawing: &ink::Drawing, frame: &Frame, report: Option<&impl Serialize>) -> Result<()> {
+    pub fn write(&mut self, drawing: &ink::Drawing, page: &Page, report: Option<&impl Serialize>) -> Result<()> {
         self.drawing.write(|out| ink::write_png(drawing, out))?;
         if let Some(mask) = &mut self.mask {
-            mask.write(|out| ink::write_mask(&frame.raster, out))?;
+            mask.write(|out| ink::write_mask(&page.marks, out))?;
         }
         if let (Some(json), Some(report)) = (&mut self.json, report) {
             json.write(|out| {

@@ -7,7 +7,7 @@ use glam::DVec2;
 
 use crate::dem::{ElevationUnit, LARGEST_SIDE as MOST_SAMPLES};
 use crate::gpu::AdapterChoice;
-use crate::gpu::sizes::LARGEST_SIDE;
+use crate::plan::pieces::LARGEST_PAGE;
 use crate::plan::{Detail, Method};
 use crate::report::compare::{LEAST_TRUTH_LEVEL, METHODS};
 use crate::surface::Level;
@@ -137,9 +137,9 @@ pub fn crop(text: &str) -> Result<[f64; 4], String> {
 
 /// `WxH` in pixels.
 pub fn size(text: &str) -> Result<Size, String> {
-    let form = || format!("want WxH in pixels, each from 1 to {LARGEST_SIDE}");
+    let form = || format!("want WxH in pixels, each from 1 to {LARGEST_PAGE}");
     let (width, height) = text.split_once(['x', 'X']).ok_or_else(form)?;
-    let side = |text: &str| text.parse().ok().filter(|n| (1..=LARGEST_SIDE).contains(n)).ok_or_else(form);
+    let side = |text: &str| text.parse().ok().filter(|n| (1..=LARGEST_PAGE).contains(n)).ok_or_else(form);
     Ok(Size { width: side(width)?, height: side(height)? })
 }
 

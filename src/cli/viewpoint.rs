@@ -45,7 +45,7 @@ pub struct ViewArguments {
     /// Horizontal field of view, degrees
     #[arg(long, value_name = "DEG", value_parser = values::fov, allow_hyphen_values = true, default_value = "60")]
     fov: f64,
-    /// Pixels across and down
+    /// Pixels across and down, each from 1 to 65536
     #[arg(long, value_name = "WxH", value_parser = values::size, default_value = "1920x1080")]
     pub size: Size,
 }

@@ -11,7 +11,7 @@ use bytemuck::Zeroable;
 use super::candidates::NO_PIXELS;
 use super::device::Gpu;
 use super::pool::{Placed, Pool};
-use super::rasterize_large::empty_queue;
+use super::rasterize_large::EMPTY_QUEUE;
 use super::sizes::{self, fits};
 use super::uniforms::{BatchUniform, CameraUniform, ChunkUniform, SceneUniform};
 use crate::dem::{Band, Dem};
@@ -92,7 +92,7 @@ impl Buffers {
         let valid = if dem.voids() > 0 { valid_bits(dem)? } else { Cow::Borrowed(&[0][..]) };
         buffers.upload(gpu, "valid", bytemuck::cast_slice(&valid))?;
         buffers.upload(gpu, "rim", bytemuck::cast_slice(rim))?;
-        buffers.upload(gpu, "empty_queue", bytemuck::bytes_of(&empty_queue([width, height])))?;
+        buffers.upload(gpu, "empty_queue", bytemuck::bytes_of(&EMPTY_QUEUE))?;
         buffers.upload(gpu, "no_pixels", bytemuck::bytes_of(&NO_PIXELS))?;
         for (name, size) in sizes::written(room, [width, height])? {
             buffers.create(gpu, name, size)?;

@@ -81,6 +81,14 @@ impl FrameTime {
         Ok(time)
     }
 
+    /// This frame's time and, pass by pass, that of another piece of the page.
+    #[must_use]
+    pub fn and(mut self, other: &Self) -> Self {
+        let ms = self.ms + other.ms;
+        other.passes.iter().for_each(|pass| self.add(pass.name, pass.ms));
+        Self { ms, ..self }
+    }
+
     /// Adds to the frame's time and to that of one of its passes.
     fn add(&mut self, name: &'static str, ms: f64) {
         self.ms += ms;

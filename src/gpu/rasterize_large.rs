@@ -4,11 +4,8 @@ use super::{Gpu, Pass};
 use crate::error::Result;
 use crate::plan::Visibility;
 
-/// Tiles of 32 x 32 px that one workgroup draws of a facet at most: the software driver ends an invocation's loops, all
-/// together, after 65 535 turns.
-const TILES: u32 = 64;
-/// Pixels along a tile.
-pub const TILE: u32 = 32;
+/// An empty queue: workgroups along x, one row of them along y for each share of the largest facet, z, and the count.
+pub const EMPTY_QUEUE: [u32; 4] = [0, 1, 1, 0];
 
 /// The composed shader that keeps what `visibility` says.
 pub fn source(visibility: Visibility) -> &'static str {
@@ -31,10 +28,4 @@ pub fn source(visibility: Visibility) -> &'static str {
 /// See [`Pass::new`].
 pub fn pass(gpu: &Gpu, visibility: Visibility, constants: &[(&str, f64)]) -> Result<Pass> {
     Pass::new(gpu, "rasterize_large", source(visibility), constants)
-}
-
-/// An empty queue on a page of this size: workgroups along x, y and z, one row of them a share, and the count.
-pub fn empty_queue([width, height]: [u32; 2]) -> [u32; 4] {
-    let tiles = width.div_ceil(TILE) * height.div_ceil(TILE);
-    [0, tiles.div_ceil(TILES), 1, 0]
 }

@@ -4,13 +4,12 @@ use super::buffers::Room;
 use super::uniforms::{ChunkUniform, Counts};
 use crate::error::{Error, Result};
 use crate::plan::batches::{BATCH_CHUNKS, PART_CHUNKS};
+use crate::plan::pieces::{LARGEST_PIECE, LONGEST_PIECE};
 use crate::surface::lattice::{CHUNK_FACETS, CHUNK_VERTICES, CHUNK_WORDS};
 use crate::surface::tile::TILE_SAMPLES;
 
 /// The largest storage binding every WebGPU device grants, in bytes.
 pub const LARGEST_BINDING: u64 = 128 << 20;
-/// Pixels along the longest page side: beyond it, places within the guard band would leave +-2^15 px.
-pub const LARGEST_SIDE: u32 = 16_384;
 /// Pixels across and down that one invocation of `candidates` or `toward_away` works off.
 pub const BLOCK: [u32; 2] = [4, 8];
 /// Bytes of a list before its items: workgroups along x, y and z, and the count.
@@ -21,20 +20,22 @@ const FACING: [&str; 4] = ["facing_0", "facing_1", "facing_2", "facing_3"];
 /// Whether a page can be drawn in one piece.
 ///
 /// # Errors
-/// [`Error::Limit`] when it is larger than a binding or the guard band allows.
+/// [`Error::Limit`] when it is larger than a binding or a dispatch.
 pub fn page_fits([width, height]: [u32; 2]) -> Result<()> {
     let pixels = u64::from(width) * u64::from(height);
     let refused = |what: String| Err(Error::Limit { what, remedy: "use a smaller --size".into() });
-    if width.max(height) > LARGEST_SIDE {
-        return refused(format!("--size {width}x{height} is longer than the {LARGEST_SIDE} pixels a page side holds"));
+    if width.max(height) > LONGEST_PIECE {
+        return refused(format!(
+            "{width}x{height} is longer than the {LONGEST_PIECE} pixels that are drawn in one piece"
+        ));
     }
-    if pixels * 8 > LARGEST_BINDING {
-        return refused(format!("--size {width}x{height} has {pixels} pixels, a page holds {}", LARGEST_BINDING / 8));
+    if pixels > LARGEST_PIECE {
+        return refused(format!("{width}x{height} are {pixels} pixels, {LARGEST_PIECE} are drawn in one piece"));
     }
     Ok(())
 }
 
-/// Name and bytes of every buffer that frames write, with room for so much and a page of `width` x `height` pixels.
+/// Name and bytes of every buffer that frames write, with room for so much and a piece of `width` x `height` pixels.
 ///
 /// # Errors
 /// As [`page_fits`].

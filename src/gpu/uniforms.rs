@@ -1,10 +1,11 @@
 //! The structs that shaders and CPU share, laid out as `shaders/scene.wgsl` and `shaders/ink.wgsl` declare them.
 
 use bytemuck::{Pod, Zeroable};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use crate::dem::Dem;
 use crate::error::{Error, Result};
+use crate::plan::pieces::Rectangle;
 use crate::surface::pyramid::Relief;
 use crate::surface::{Chunk, Lattice, Pyramid};
 use crate::view::Camera;
@@ -50,10 +51,14 @@ pub struct CameraUniform {
     pub focal: f32,
     /// Fills to 8 bytes.
     pub pad: u32,
-    /// Pixels across, down.
+    /// Pixels across, down, of what is drawn.
     pub size: [u32; 2],
-    /// Inward normals of the two sides of the page's map projection; 0 where it is no wedge.
+    /// Inward normals of the two sides of its map projection; 0 where it is no wedge.
     pub wedge: [f32; 4],
+    /// The page's column and row of its top left pixel.
+    pub origin: [i32; 2],
+    /// Fills to 16 bytes.
+    pub pad_end: [u32; 2],
 }
 
 /// `Chunk` of scene.wgsl.
@@ -144,7 +149,7 @@ impl CameraUniform {
                 "give an eye in the CRS of the DEM, near it",
             ));
         }
-        let offset = (place - eye_cell) * dem.cell() * glam::DVec2::new(1.0, -1.0);
+        let offset = (place - eye_cell) * dem.cell() * DVec2::new(1.0, -1.0);
         let high = camera.eye.z as f32;
         let axis = |v: DVec3| v.as_vec3().extend(0.0).to_array();
         let [right, up, forward] = camera.axes();
@@ -159,7 +164,21 @@ impl CameraUniform {
             focal: camera.focal() as f32,
             pad: 0,
             size: [camera.width, camera.height],
-            wedge: camera.wedge().map_or([0.0; 4], |[a, b]| [a.x as f32, a.y as f32, b.x as f32, b.y as f32]),
+            wedge: wedge_words(camera.wedge()),
+            origin: [0; 2],
+            pad_end: [0; 2],
         })
     }
+
+    /// The same camera drawing a rectangle of its page alone.
+    pub fn cut_to(self, camera: &Camera, rectangle: Rectangle) -> Self {
+        let origin = DVec2::from(rectangle.origin.map(f64::from));
+        let wedge = camera.wedge_of(origin, origin + DVec2::from(rectangle.size.map(f64::from)));
+        let wedge = wedge_words(wedge);
+        Self { origin: rectangle.origin.map(|v| v as i32), size: rectangle.size, wedge, ..self }
+    }
+}
+
+fn wedge_words(wedge: Option<[DVec2; 2]>) -> [f32; 4] {
+    wedge.map_or([0.0; 4], |[a, b]| [a.x as f32, a.y as f32, b.x as f32, b.y as f32])
 }

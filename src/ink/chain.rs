@@ -3,18 +3,19 @@
 //! Method: the ink is thinned to lines one pixel wide, whose branches are joined through junctions and over gaps of one
 //! pixel; a chain is cut again where its depth jumps (a far line running into a near one) and where silhouette turns
 //! into border. Chains that meet share the point of the junction. Every ink pixel lies within 1.5 px of a pixel of a
-//! chain. The order is that of the pixels, top to bottom: the same raster gives the same chains.
+//! chain. The order is that of the pixels, top to bottom: the same ink gives the same chains.
 //!
 //! Cost: 40 000 ink pixels take some 20 ms on one core. Does not handle: two lines less than 2 px apart (one chain).
 
 use std::collections::HashSet;
 
+use bytemuck::Zeroable;
 use glam::DVec2;
 
 use super::graph::Graph;
 use super::join::partners;
 use super::thin::thin;
-use super::{InkRaster, Kind};
+use super::{Kind, Marks, Pixel};
 
 /// A chain is cut where ln depth jumps by more than this between the points before and after: 1.5 times the distance.
 const DEPTH_JUMP: f64 = 0.405;
@@ -59,14 +60,17 @@ pub struct Chain {
     pub closed: bool,
 }
 
-/// The chains of a raster's ink.
-pub fn trace(raster: &InkRaster) -> Vec<Chain> {
-    let (lines, cells) = thin(raster);
+/// The chains of a page's ink.
+pub fn trace(marks: &Marks) -> Vec<Chain> {
+    let (lines, cells) = thin(marks);
     let graph = Graph::new(&lines, &cells);
-    let pixel = |cell: usize| (cell / lines.stride - 1) * raster.width as usize + cell % lines.stride - 1;
+    let pixel = |cell: usize| {
+        let [column, row] = lines.pixel(cell);
+        marks.at(column, row).unwrap_or_else(Pixel::zeroed)
+    };
     let point = |&cell: &usize| {
-        let pixel = raster.pixels[pixel(cell)];
-        let centre = DVec2::new((cell % lines.stride) as f64 - 0.5, (cell / lines.stride) as f64 - 0.5);
+        let pixel = pixel(cell);
+        let centre = DVec2::from(lines.pixel(cell).map(|v| v as f64 + 0.5));
         // A filled hole has no line of its own.
         let offset = if pixel.is_ink() { pixel.place() } else { DVec2::ZERO };
         ChainPoint { place: centre + offset, depth: pixel.depth() }
@@ -76,7 +80,7 @@ pub fn trace(raster: &InkRaster) -> Vec<Chain> {
     let mut chains = Vec::new();
     let mut add = |cells: &[usize], closed: bool| {
         let points: Vec<ChainPoint> = cells.iter().map(point).collect();
-        let border: Vec<bool> = cells.iter().map(|&c| raster.pixels[pixel(c)].kind() == Kind::Border).collect();
+        let border: Vec<bool> = cells.iter().map(|&c| pixel(c).kind() == Kind::Border).collect();
         cut(points, &border, closed, &mut chains);
     };
     for (cells, closed) in walks(&graph.branches, &partners) {

@@ -7,7 +7,7 @@
 
 use std::collections::HashSet;
 
-use super::thin::Grid;
+use super::grid::Grid;
 
 /// Branches of thinned lines, each a walk over cells.
 pub struct Graph {

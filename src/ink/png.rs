@@ -3,16 +3,17 @@
 //! Method: a stroke is outlined as one tapered quad a segment with wedges or discs at its joints, all wound the same way,
 //! and a layer's outlines are filled at once by the non-zero rule: neither joints nor junctions are painted twice. The
 //! page is filled in tiles, at four times its resolution and then averaged, since an anti-aliased fill knows four
-//! steps across a pixel only, too few for far lines of half a pixel; pages may be of any size.
+//! steps across a pixel only, too few for far lines of half a pixel. Each tile has coordinates of its own, so that pages
+//! may be of any size: beyond 32 767 px fills lose their anti-aliasing or are dropped. A row of tiles is a band; some
+//! bands at a time are filled and sent on to the file.
 //!
-//! Cost: tiles with ink, about 1 ms each and core. Does not handle: opacity of the paper (it is painted over white).
+//! Cost: tiles with ink, about 1 ms each and core; memory for a band a core. Does not handle: opacity of the paper (it is
+//! painted over white).
 
 use std::f64::consts::TAU;
 use std::io::{self, Write};
 
 use glam::DVec2;
-use image::ImageEncoder;
-use image::codecs::png::PngEncoder;
 use rayon::prelude::*;
 use tiny_skia::{FillRule, Mask, PathBuilder, Transform};
 
@@ -20,6 +21,8 @@ use super::{Drawing, Layer, Stroke};
 
 /// Side of a tile, px.
 const TILE: u32 = 128;
+/// Bytes of a piece of the file: most pages take one.
+const CHUNK: usize = 1 << 20;
 /// Pixels of the fill across one pixel of the page.
 const SCALE: u32 = 4;
 /// Turning at a joint up to which a flat wedge is as good as a disc: cos 30 degrees.
@@ -41,41 +44,62 @@ struct Segment {
 ///
 /// Errors are those of the writer, and `InvalidInput` where PNG cannot hold the size (an empty page).
 pub fn write_png(drawing: &Drawing, out: impl Write) -> io::Result<()> {
-    if drawing.width == 0 || drawing.height == 0 {
-        return Err(io::Error::new(io::ErrorKind::InvalidInput, "the page is empty"));
-    }
-    let colour = image::ExtendedColorType::Rgb8;
-    PngEncoder::new(out).write_image(&render(drawing), drawing.width, drawing.height, colour).map_err(|e| match e {
-        image::ImageError::IoError(inner) => inner,
-        other => io::Error::new(io::ErrorKind::InvalidInput, other),
-    })
-}
-
-/// The page, three bytes a pixel.
-fn render(drawing: &Drawing) -> Vec<u8> {
+    let mut encoder = ::png::Encoder::new(out, drawing.width, drawing.height);
+    encoder.set_color(::png::ColorType::Rgb);
+    encoder.set_compression(::png::Compression::Fast);
+    encoder.set_filter(::png::Filter::Adaptive);
     let layers: Vec<Vec<Segment>> = drawing.layers.iter().map(segments).collect();
     let columns = drawing.width.div_ceil(TILE) as usize;
     let tiles = sort_into_tiles(&layers, columns, drawing.height.div_ceil(TILE) as usize);
-    let paper = blend([255; 3], drawing.paper, 255);
-    let row_bytes = 3 * drawing.width as usize;
-    let mut page = paper.repeat(drawing.width as usize * drawing.height as usize);
-    page.par_chunks_mut(row_bytes * TILE as usize).enumerate().for_each(|(row, strip)| {
-        for (column, tile) in tiles[row * columns..][..columns].iter().enumerate() {
-            let corner = DVec2::new(column as f64, row as f64) * f64::from(TILE);
-            for group in tile.chunk_by(|a, b| a.0 == b.0) {
-                let layer = group[0].0;
-                let coverage = fill(group.iter().map(|&(_, i)| &layers[layer][i]), corner);
-                let colour = drawing.layers[layer].pen.colour;
-                for (row, coverage) in strip.chunks_mut(row_bytes).zip(coverage.chunks(TILE as usize)) {
-                    let pixels = row[3 * column * TILE as usize..].chunks_exact_mut(3);
-                    for (pixel, &coverage) in pixels.zip(coverage).filter(|(_, coverage)| **coverage > 0) {
-                        pixel.copy_from_slice(&blend([pixel[0], pixel[1], pixel[2]], colour, coverage));
-                    }
+    let bands: Vec<_> = tiles.chunks(columns.max(1)).enumerate().collect();
+    let at_a_time = bands.chunks(rayon::current_num_threads());
+    let filled = at_a_time.flat_map(|bands| {
+        let fill = |&(row, tiles): &(usize, &[_])| band(drawing, &layers, row, tiles);
+        bands.par_iter().map(fill).collect::<Vec<_>>()
+    });
+    stream(encoder, filled)
+}
+
+/// Writes an image in pieces of whole rows, from top to bottom.
+pub(super) fn stream<W: Write>(
+    encoder: ::png::Encoder<'_, W>,
+    mut pieces: impl Iterator<Item = Vec<u8>>,
+) -> io::Result<()> {
+    let mut writer = encoder.write_header().map_err(io_error)?;
+    let mut image = writer.stream_writer_with_size(CHUNK).map_err(io_error)?;
+    pieces.try_for_each(|piece| image.write_all(&piece))?;
+    image.finish().map_err(io_error)?;
+    writer.finish().map_err(io_error)
+}
+
+/// The writer's own error where there is one, so that "disk full" stays "disk full".
+fn io_error(error: ::png::EncodingError) -> io::Error {
+    match error {
+        ::png::EncodingError::IoError(inner) => inner,
+        other => io::Error::new(io::ErrorKind::InvalidInput, other),
+    }
+}
+
+/// A row of tiles, three bytes a pixel: each with its segments as (layer, index), layers in order.
+fn band(drawing: &Drawing, layers: &[Vec<Segment>], row: usize, tiles: &[Vec<(usize, usize)>]) -> Vec<u8> {
+    let width = drawing.width as usize;
+    let rows = (drawing.height as usize - row * TILE as usize).min(TILE as usize);
+    let mut pixels = blend([255; 3], drawing.paper, 255).repeat(width * rows);
+    for (column, tile) in tiles.iter().enumerate() {
+        let corner = DVec2::new(column as f64, row as f64) * f64::from(TILE);
+        for group in tile.chunk_by(|a, b| a.0 == b.0) {
+            let layer = group[0].0;
+            let coverage = fill(group.iter().map(|&(_, i)| &layers[layer][i]), corner);
+            let colour = drawing.layers[layer].pen.colour;
+            for (row, coverage) in pixels.chunks_mut(3 * width).zip(coverage.chunks(TILE as usize)) {
+                let pixels = row[3 * column * TILE as usize..].chunks_exact_mut(3);
+                for (pixel, &coverage) in pixels.zip(coverage).filter(|(_, coverage)| **coverage > 0) {
+                    pixel.copy_from_slice(&blend([pixel[0], pixel[1], pixel[2]], colour, coverage));
                 }
             }
         }
-    });
-    page
+    }
+    pixels
 }
 
 /// Which segments, as (layer, index), touch each tile, layers in order.

@@ -9,60 +9,26 @@
 //! Cost: a few visits of each ink pixel and its neighbours. Does not handle: depth; two lines less than 2 px apart
 //! are one.
 
-use super::{InkRaster, Kind};
+use super::grid::Grid;
+use super::{Kind, Marks};
 
 /// Holes of at most this many pixels are no gap between two lines but a flaw of one.
 const HOLE: usize = 2;
 
-/// Pixels with a margin of one on every side, so that each has 8 neighbours.
-#[derive(Clone)]
-pub struct Grid {
-    /// Cells in a row: the picture's width and the margin.
-    pub stride: usize,
-    cells: Vec<bool>,
-}
-
-impl Grid {
-    /// An empty grid for a picture of this size.
-    pub fn new(width: u32, height: u32) -> Self {
-        let stride = width as usize + 2;
-        Self { stride, cells: vec![false; stride * (height as usize + 2)] }
-    }
-
-    /// The 8 neighbours of a cell of the picture in turn: east, south-east, south … north-east. Even ones share a side.
-    pub fn around(&self, cell: usize) -> [usize; 8] {
-        let s = self.stride;
-        [cell + 1, cell + s + 1, cell + s, cell + s - 1, cell - 1, cell - s - 1, cell - s, cell - s + 1]
-    }
-
-    /// Whether the cell is set.
-    pub fn has(&self, cell: usize) -> bool {
-        self.cells[cell]
-    }
-
-    /// Which of the 8 neighbours are set, in the order of [`Grid::around`].
-    pub fn neighbours(&self, cell: usize) -> [bool; 8] {
-        self.around(cell).map(|n| self.cells[n])
-    }
-}
-
-/// Lines one pixel wide that keep the shape of the raster's ink, and their cells in reading order.
-pub fn thin(raster: &InkRaster) -> (Grid, Vec<usize>) {
-    let mut lines = Grid::new(raster.width, raster.height);
-    let mut ink: Vec<usize> = Vec::new();
-    for (row, pixels) in raster.pixels.chunks(raster.width.max(1) as usize).enumerate() {
-        let start = (row + 1) * lines.stride + 1;
-        ink.extend(pixels.iter().enumerate().filter(|(_, p)| p.is_ink()).map(|(column, _)| start + column));
-    }
+/// Lines one pixel wide that keep the shape of the ink, and their cells in reading order.
+pub fn thin(marks: &Marks) -> (Grid, Vec<usize>) {
+    let mut lines = Grid::new(marks.width, marks.height);
+    let mut ink: Vec<usize> = marks.ink().map(|mark| lines.cell(mark.column, mark.row)).collect();
     let mut scratch = lines.clone();
     let mut solid = ink.clone();
-    solid.extend(small_holes(raster, &ink, &mut scratch));
+    solid.extend(small_holes(marks, &ink, &mut scratch));
     let mut cells = Vec::new();
     while !solid.is_empty() {
         thin_once(&solid, &mut scratch);
         for &cell in &solid {
-            if std::mem::take(&mut scratch.cells[cell]) {
-                lines.cells[cell] = true;
+            if scratch.has(cell) {
+                scratch.clear(cell);
+                lines.set(cell);
                 cells.push(cell);
             }
         }
@@ -74,21 +40,20 @@ pub fn thin(raster: &InkRaster) -> (Grid, Vec<usize>) {
 }
 
 /// Cells of the cover that ink encloses in groups of at most [`HOLE`]. `grid` is empty before and after.
-fn small_holes(raster: &InkRaster, ink: &[usize], grid: &mut Grid) -> Vec<usize> {
+fn small_holes(marks: &Marks, ink: &[usize], grid: &mut Grid) -> Vec<usize> {
     for &cell in ink {
-        grid.cells[cell] = true;
+        grid.set(cell);
     }
-    let stride = grid.stride;
-    let is_cover = |cell: usize| {
-        let (column, row) = ((cell % stride) as i64 - 1, (cell / stride) as i64 - 1);
-        raster.at(column, row).is_some_and(|p| p.kind() == Kind::Cover)
+    let is_cover = |grid: &Grid, cell: usize| {
+        let [column, row] = grid.pixel(cell);
+        marks.at(column, row).is_some_and(|pixel| pixel.kind() == Kind::Cover)
     };
     let mut holes = Vec::new();
     for &cell in ink {
         // Every hole has ink on its west side.
         let mut hole = vec![cell + 1];
         let mut seen = 0;
-        while seen < hole.len() && hole.len() <= HOLE && is_cover(hole[seen]) {
+        while seen < hole.len() && hole.len() <= HOLE && is_cover(grid, hole[seen]) {
             let around = grid.around(hole[seen]);
             // Corners too: what parts two slanting lines is a row of paper pixels that touch by corners.
             let new: Vec<usize> = around.into_iter().filter(|&c| !grid.has(c) && !hole.contains(&c)).collect();
@@ -101,14 +66,14 @@ fn small_holes(raster: &InkRaster, ink: &[usize], grid: &mut Grid) -> Vec<usize>
     }
     holes.sort_unstable();
     holes.dedup();
-    ink.iter().for_each(|&cell| grid.cells[cell] = false);
+    ink.iter().for_each(|&cell| grid.clear(cell));
     holes
 }
 
 /// Leaves in `grid`, empty so far, the thinned `ink`.
 fn thin_once(ink: &[usize], grid: &mut Grid) {
     for &cell in ink {
-        grid.cells[cell] = true;
+        grid.set(cell);
     }
     // Only where something was taken off can more come off.
     let mut edge = ink.to_vec();
@@ -119,7 +84,7 @@ fn thin_once(ink: &[usize], grid: &mut Grid) {
                 edge.iter().copied().filter(|&c| grid.has(c) && !grid.has(grid.around(c)[side])).collect();
             for cell in open {
                 if removable(grid.neighbours(cell)) {
-                    grid.cells[cell] = false;
+                    grid.clear(cell);
                     taken.push(cell);
                 }
             }
@@ -141,7 +106,7 @@ fn removable(n: [bool; 8]) -> bool {
 fn take_burrs(ink: &[usize], grid: &mut Grid) {
     let mut is_ink = grid.clone();
     for &cell in ink {
-        is_ink.cells[cell] = true;
+        is_ink.set(cell);
     }
     let count = |grid: &Grid, cell: usize| grid.neighbours(cell).into_iter().filter(|&set| set).count();
     for &cell in ink.iter().filter(|&&cell| is_ink.has(cell)) {
@@ -149,9 +114,11 @@ fn take_burrs(ink: &[usize], grid: &mut Grid) {
             continue;
         }
         let beside_line = grid.around(cell).into_iter().any(|n| grid.has(n) && count(grid, n) > 2);
-        grid.cells[cell] = false;
+        grid.clear(cell);
         let covered = |c: usize| grid.has(c) || grid.neighbours(c).contains(&true);
         let needed = grid.around(cell).into_iter().chain([cell]).any(|c| is_ink.has(c) && !covered(c));
-        grid.cells[cell] = !beside_line || needed;
+        if !beside_line || needed {
+            grid.set(cell);
+        }
     }
 }

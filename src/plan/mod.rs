@@ -1,14 +1,16 @@
-//! What a frame needs: which method over which facets, and in which batches.
+//! What a frame needs: which method over which facets, in which batches, and in how many pieces of the page.
 
 pub mod batches;
 pub mod detail;
 mod horizon;
 pub mod left_out;
 pub mod method;
+pub mod pieces;
 
 pub use batches::{Batch, batches};
 pub use detail::Detail;
 pub use method::{Border, Method, Share, Thrift, Visibility};
+pub use pieces::{Piece, Pieces};
 
 /// What is drawn, whatever the eye.
 #[derive(Debug, Clone, Copy, PartialEq)]

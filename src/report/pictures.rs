@@ -3,7 +3,7 @@
 use std::io;
 
 use crate::error::{Error, Result};
-use crate::ink::{self, InkRaster};
+use crate::ink::{self, InkRaster, Marks};
 use crate::truth::Mask;
 use crate::truth::metrics::Measured;
 
@@ -27,7 +27,7 @@ pub struct Picture {
 /// # Errors
 /// [`Error::Output`] where PNG cannot hold it.
 pub fn mask_picture(name: String, raster: &InkRaster) -> Result<Picture> {
-    picture(name, |png| ink::write_mask(raster, png))
+    picture(name, |png| ink::write_mask(&Marks::from(raster), png))
 }
 
 /// Truth drawn one pixel wide.

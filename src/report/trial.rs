@@ -13,7 +13,7 @@ use super::pictures::{Picture, difference_picture, mask_picture};
 use super::results::{AtDistance, Band, DrawnLevel, Place, Run};
 use crate::error::Result;
 use crate::gpu::Gpu;
-use crate::ink::{InkRaster, Kind, Pixel, trace};
+use crate::ink::{InkRaster, Kind, Marks, Pixel, trace};
 use crate::plan::{Method, Plan};
 use crate::render::{Frame, PassTime, Renderer};
 use crate::surface::Surface;
@@ -106,7 +106,7 @@ impl Trial<'_> {
 
     fn result(&self, timed: Timed, mask: &Mask, scores: &Scores, [mask_name, difference]: [String; 2]) -> Run {
         let agreement = scores.agreement();
-        let chains = trace(&timed.first.raster);
+        let chains = trace(&Marks::from(&timed.first.raster));
         let short = chains.iter().filter(|chain| chain.points.len() < FRAGMENT).count();
         let walks = self.plan.method == Method::Walk;
         Run {

@@ -22,7 +22,7 @@ pub struct RimEdge {
 /// # Errors
 /// As [`Dem::window`].
 pub fn rim(dem: &Dem) -> Result<Vec<RimEdge>> {
-    if dem.is_filed() && dem.voids() == 0 {
+    if dem.is_filed() && dem.survey(&|_| ())?.voids == 0 {
         return Ok(border(dem));
     }
     let mut edges = Vec::new();

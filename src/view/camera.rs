@@ -64,23 +64,28 @@ impl Camera {
         forward + right * d.x - up * d.y
     }
 
-    /// The page's map projection as two inward normals in the map (x east, y north): a direction v is on the page only
-    /// where both n . v >= 0. `None` where the projection is no wedge of less than half the horizon. A pixel of margin.
+    /// The page's map projection as two inward normals: see [`Self::wedge_of`].
     pub fn wedge(&self) -> Option<[DVec2; 2]> {
-        let [right, up, forward] = self.axes();
-        let (width, height) = (f64::from(self.width), f64::from(self.height));
-        let tangents = DVec2::new(width / 2.0 + 1.0, height / 2.0 + 1.0) / self.focal();
+        self.wedge_of(DVec2::ZERO, DVec2::new(f64::from(self.width), f64::from(self.height)))
+    }
+
+    /// The map projection of a rectangle of the page, given in pixels, as two inward normals in the map (x east, y
+    /// north): a direction v is in it only where both n . v >= 0. `None` where the projection is no wedge of less than
+    /// half the horizon. A pixel of margin.
+    pub fn wedge_of(&self, low: DVec2, high: DVec2) -> Option<[DVec2; 2]> {
+        let (low, high) = (low - 1.0, high + 1.0);
         let sees = |d: DVec3| {
-            let w = d.dot(forward);
-            w > 0.0 && d.dot(right).abs() <= tangents.x * w && d.dot(up).abs() <= tangents.y * w
+            let (place, w) = self.project(self.eye + d);
+            w > 0.0 && place.cmpge(low).all() && place.cmple(high).all()
         };
         if sees(DVec3::Z) || sees(DVec3::NEG_Z) {
             return None;
         }
-        let ahead = self.azimuth.to_radians();
-        let corners = [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)];
-        let angles = corners.map(|(x, y)| {
-            let d = forward + right * (tangents.x * x) + up * (tangents.y * y);
+        let middle = self.ray((low + high) / 2.0);
+        let ahead = middle.x.atan2(middle.y);
+        let corners = [low, DVec2::new(low.x, high.y), DVec2::new(high.x, low.y), high];
+        let angles = corners.map(|place| {
+            let d = self.ray(place);
             let angle = d.x.atan2(d.y) - ahead;
             angle.sin().atan2(angle.cos())
         });

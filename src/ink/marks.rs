@@ -1,0 +1,104 @@
+//! The ink of a page of any size, as a list.
+//!
+//! A page of a thousand million pixels has some hundred thousand inked ones: they alone are kept, 16 bytes each, in
+//! reading order. So are pixels of the cover that ink all but encloses, since tracing fills holes of the cover and none
+//! of the sky. A page drawn in pieces gives the same list as in one. Cost: one look at each pixel, on every core.
+
+use rayon::prelude::*;
+
+use super::{InkRaster, Kind, Pixel};
+use crate::plan::Piece;
+use crate::plan::pieces::Rectangle;
+
+/// Of 8 neighbours of a pixel of the cover, inked ones that all but enclose it: holes have two pixels at most.
+const ENCLOSED: usize = 7;
+
+/// A pixel and its place on the page.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Mark {
+    /// From the left.
+    pub column: u32,
+    /// From the top.
+    pub row: u32,
+    /// What it shows.
+    pub pixel: Pixel,
+}
+
+/// The inked pixels of a page, and those that ink encloses.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Marks {
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    list: Vec<Mark>,
+    /// Where each row begins in the list, and where the last ends.
+    rows: Vec<usize>,
+}
+
+impl Marks {
+    /// The marks of a page of so many pixels across and down, in any order; none may be given twice or lie outside.
+    pub fn new([width, height]: [u32; 2], mut list: Vec<Mark>) -> Self {
+        list.sort_unstable_by_key(|mark| (mark.row, mark.column));
+        let rows = (0..=height).map(|row| list.partition_point(|mark| mark.row < row)).collect();
+        Self { width, height, list, rows }
+    }
+
+    /// In reading order.
+    pub fn iter(&self) -> impl Iterator<Item = &Mark> {
+        self.list.iter()
+    }
+
+    /// The inked ones, in reading order.
+    pub fn ink(&self) -> impl Iterator<Item = &Mark> {
+        self.iter().filter(|mark| mark.pixel.is_ink())
+    }
+
+    /// How many pixels are ink.
+    pub fn inked(&self) -> usize {
+        self.ink().count()
+    }
+
+    /// The marks of a row from left to right; none outside the page.
+    pub fn row(&self, row: i64) -> &[Mark] {
+        let inside = usize::try_from(row).ok().filter(|row| row + 1 < self.rows.len());
+        inside.map_or(&[], |row| &self.list[self.rows[row]..self.rows[row + 1]])
+    }
+
+    /// The pixel in this column and row, if it is a mark.
+    pub fn at(&self, column: i64, row: i64) -> Option<Pixel> {
+        let row = self.row(row);
+        let found = row.binary_search_by_key(&column, |mark| i64::from(mark.column));
+        found.ok().map(|i| row[i].pixel)
+    }
+}
+
+/// The marks of a page that was drawn in one.
+impl From<&InkRaster> for Marks {
+    fn from(raster: &InkRaster) -> Self {
+        let size = [raster.width, raster.height];
+        let whole = Rectangle { origin: [0, 0], size };
+        Self::new(size, of_piece(raster, Piece { kept: whole, drawn: whole }))
+    }
+}
+
+/// The marks of a piece, which was drawn as `raster`, halo and all.
+pub fn of_piece(raster: &InkRaster, piece: Piece) -> Vec<Mark> {
+    let [left, top] = [0, 1].map(|axis| piece.kept.origin[axis] - piece.drawn.origin[axis]);
+    let [width, height] = piece.kept.size;
+    let [x, y] = piece.drawn.origin;
+    let of_row = |row: u32| {
+        let start = row as usize * raster.width as usize;
+        let pixels = &raster.pixels[start + left as usize..][..width as usize];
+        let marks = (left..).zip(pixels).filter(move |&(column, pixel)| is_mark(raster, column, row, *pixel));
+        marks.map(move |(column, &pixel)| Mark { column: x + column, row: y + row, pixel })
+    };
+    (top..top + height).into_par_iter().flat_map_iter(of_row).collect()
+}
+
+fn is_mark(raster: &InkRaster, column: u32, row: u32, pixel: Pixel) -> bool {
+    let is_ink = |dx: i64, dy: i64| raster.at(i64::from(column) + dx, i64::from(row) + dy).is_some_and(Pixel::is_ink);
+    let around = || (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (dx, dy))).filter(|&(dx, dy)| is_ink(dx, dy)).count();
+    // Most pixels have no ink beside them.
+    pixel.is_ink() || (pixel.kind() == Kind::Cover && (is_ink(-1, 0) || is_ink(1, 0)) && around() >= ENCLOSED)
+}
