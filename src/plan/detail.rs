@@ -163,7 +163,12 @@ impl<'a> Demand<'a> {
         let pyramid = self.pyramid;
         let (Some(bounds), Some(horizon)) = (pyramid.bounds(origin, step), &mut self.horizon) else { return };
         let [low, high] = bounds.map(DVec3::truncate);
-        if step > pyramid.finest_step() && (step > CELL_STEPS || horizon.is_wide(low, high)) {
+        let wide = horizon.is_wide(low, high);
+        if step > CELL_STEPS && !wide {
+            // So far and narrow, or beside the page, that it hides little.
+            return;
+        }
+        if step > pyramid.finest_step() && wide {
             let half = CHUNK_QUADS * step / 2;
             for [x, y] in [[0, 0], [half, 0], [0, half], [half, half]] {
                 self.raise([origin[0] + x, origin[1] + y], step / 2, deviation);

@@ -87,7 +87,13 @@ impl Horizon {
 
     /// Whether a rectangle of the map takes so much of the page that its parts are better looked at one by one.
     pub fn is_wide(&self, low: DVec2, high: DVec2) -> bool {
-        self.reach(low, high).is_none_or(|reach| self.touched(reach.any).len() > FINE_COLUMNS)
+        match self.reach(low, high) {
+            Some(reach) => self.touched(reach.any).len() > FINE_COLUMNS,
+            // Wholly behind the eye, or around it.
+            None => [low, high, DVec2::new(low.x, high.y), DVec2::new(high.x, low.y)]
+                .into_iter()
+                .any(|corner| (corner - self.eye.truncate()).dot(self.ahead) > 0.0),
+        }
     }
 
     /// Raises the horizon by the fences of a square of the map, lowered by `deviation` metres; `None` where it has voids.

@@ -222,16 +222,24 @@ impl Lattice {
         self.chunks.iter().any(|chunk| chunk.coarser != 0)
     }
 
-    /// How many facets exist, of the patches of `dem` and not collapsed. Cost: a look at each.
+    /// How many facets exist, of the patches of `dem` and not collapsed. Cost: a look at each of chunks that may lack some.
     pub fn facets(&self, dem: &Dem) -> u64 {
         let last = [dem.columns(), dem.rows()].map(|samples| (samples as u32 - 1) * CELL_STEPS);
+        let whole = dem.voids() == 0;
+        let complete = |chunk: &Chunk| {
+            let inside = (0..2).all(|axis| chunk.origin[axis] + chunk.size() <= last[axis]);
+            whole && inside && chunk.coarser == 0
+        };
         let exists = |id: &u32| {
             let [a, b, c] = self.facet(*id);
             let inside = [a, b, c].iter().all(|v| v.x <= last[0] && v.y <= last[1]);
-            inside && a != b && b != c && c != a && lies_on_patch(dem, [a, b, c])
+            inside && a != b && b != c && c != a && (whole || lies_on_patch(dem, [a, b, c]))
         };
-        let ids = 0..self.chunks.len() as u32 * CHUNK_FACETS;
-        ids.into_par_iter().filter(exists).count() as u64
+        let of_chunk = |(slot, chunk): (usize, &Chunk)| {
+            let first = slot as u32 * CHUNK_FACETS;
+            if complete(chunk) { CHUNK_FACETS as usize } else { (first..first + CHUNK_FACETS).filter(exists).count() }
+        };
+        self.chunks.par_iter().enumerate().map(of_chunk).sum::<usize>() as u64
     }
 
     /// The three vertices of a facet, counter-clockwise seen from above; two are the same where it has collapsed beside
