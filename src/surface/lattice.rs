@@ -163,7 +163,7 @@ impl Lattice {
         let mut tree = Self::empty(dem, coarsest_step)?.tree;
         let step = |size: u32| size / CHUNK_QUADS;
         tree.grow(from, growth);
-        tree.balance();
+        tree.balance(growth);
         let sides = tree.larger_neighbours();
         let kept = tree.number(|origin, size| keep(origin, step(size)));
         if kept.len() as u64 > MOST_CHUNKS {
