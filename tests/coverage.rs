@@ -68,21 +68,26 @@ fn triangles(renderer: &Renderer<'_>, shot: &Shot, size: [u32; 2]) -> Vec<[Verte
 }
 
 fn check(name: &str, surface: &Surface, n: u32, camera: &Camera) -> Vec<[Vertex; 3]> {
+    let renderer = renderer(gpu(), surface, n, BY_ID, [camera.width, camera.height]);
+    check_frame(&format!("{name}, level {n}"), &renderer, camera)
+}
+
+/// Compares a frame with the device's own; returns its triangles.
+pub fn check_frame(name: &str, renderer: &Renderer<'_>, camera: &Camera) -> Vec<[Vertex; 3]> {
     let size = [camera.width, camera.height];
-    let renderer = renderer(gpu(), surface, n, BY_ID, size);
-    let shot = shoot(gpu(), &renderer, camera);
-    let triangles = triangles(&renderer, &shot, size);
+    let shot = shoot(gpu(), renderer, camera);
+    let triangles = triangles(renderer, &shot, size);
     let found = compare(&shot.pixels, &draw(gpu(), &triangles, size));
-    println!("{name}, level {n}, {} triangles: {found:?}", triangles.len());
-    assert!(found.covered > 1000, "{name}, level {n}: {found:?}");
-    assert_eq!(found.coverage, 0, "{name}, level {n}: {found:?}");
-    assert!(found.ids as f64 <= HARDWARE_IDS * found.covered as f64, "{name}, level {n}: {found:?}");
-    assert!(found.depth <= HARDWARE_DEPTH, "{name}, level {n}: {found:?}");
+    println!("{name}, {} triangles: {found:?}", triangles.len());
+    assert!(found.covered > 1000, "{name}: {found:?}");
+    assert_eq!(found.coverage, 0, "{name}: {found:?}");
+    assert!(found.ids as f64 <= HARDWARE_IDS * found.covered as f64, "{name}: {found:?}");
+    assert!(found.depth <= HARDWARE_DEPTH, "{name}: {found:?}");
     triangles
 }
 
 /// From outside, looking at the middle, the whole DEM on the page or nearly.
-fn from_outside(surface: &Surface, azimuth: f64, altitude: f64, away: f64, size: [u32; 2]) -> Camera {
+pub fn from_outside(surface: &Surface, azimuth: f64, altitude: f64, away: f64, size: [u32; 2]) -> Camera {
     let dem = surface.dem();
     let [west, south, east, north] = dem.extent();
     let [low, high] = dem.range().expect("heights").map(f64::from);

@@ -18,15 +18,21 @@ use wgpu::BufferUsages;
 use crate::scenes::{Random, gpu, level};
 
 /// Walk units in a lattice step of the finest level.
-const UNITS: i32 = 256;
-const WALK: &str = concat!(
+pub const UNITS: i32 = 256;
+pub const WALK: &str = concat!(
     hachure::shader!("scene", "lattice", "surface", "wide", "ink", "walk"),
     include_str!("kernels/walk_probe.wgsl")
 );
 const WIDE: &str = concat!(hachure::shader!("wide"), include_str!("kernels/wide_probe.wgsl"));
 
 /// Runs a kernel over `count` invocations with these buffers and returns `results`.
-fn run(name: &'static str, source: &str, constants: &[(&str, f64)], data: &[(&str, &[u8])], count: u32) -> Vec<u32> {
+pub fn run(
+    name: &'static str,
+    source: &str,
+    constants: &[(&str, f64)],
+    data: &[(&str, &[u8])],
+    count: u32,
+) -> Vec<u32> {
     let gpu: &Gpu = gpu();
     let size = u64::from(count) * 16;
     let mut buffers: HashMap<&str, wgpu::Buffer> = HashMap::new();
@@ -139,19 +145,20 @@ impl Field {
 
 /// A share of a segment, exactly: numerator over positive denominator.
 #[derive(Debug, Clone, Copy)]
-struct Share(i128, i128);
+pub struct Share(pub i128, pub i128);
 
 impl Share {
-    fn before(&self, other: &Self) -> bool {
+    /// Whether it comes first.
+    pub fn before(&self, other: &Self) -> bool {
         self.0 * other.1 < other.0 * self.1
     }
 }
 
-/// Where a segment enters the open interior of a facet, `None` if it has no part in it.
-fn entry(origin: IVec2, end: IVec2, corners: [IVec2; 3]) -> Option<Share> {
+/// Where a segment enters the open interior of a facet, or of another convex polygon, `None` if it has no part in it.
+pub fn entry<const N: usize>(origin: IVec2, end: IVec2, corners: [IVec2; N]) -> Option<Share> {
     let (mut enter, mut leave) = (Share(0, 1), Share(1, 1));
-    for k in 0..3 {
-        let (p, q) = (corners[k].as_i64vec2(), corners[(k + 1) % 3].as_i64vec2());
+    for k in 0..N {
+        let (p, q) = (corners[k].as_i64vec2(), corners[(k + 1) % N].as_i64vec2());
         // Positive inside: rows grow southwards, corners run counter-clockwise seen from above.
         let side = |v: IVec2| -i128::from((q - p).perp_dot(v.as_i64vec2() - p));
         let (a, b) = (side(origin), side(end));

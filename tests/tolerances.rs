@@ -239,3 +239,8 @@ pub const CONTOUR_PIXELS: f64 = 0.05;
 ///
 /// Example: level 1 lies 0.0027 px off, level 4 a sixteenth of that, 0.00017 px; 0.00013 to 0.00022 px pass.
 pub const SECOND_ORDER: f64 = 0.2;
+
+/// How far the place where a walk enters a facet may lie from the exact one, steps of the facet's chunk.
+///
+/// Example: on a way of 2^25 walk units f32 shares are 2 units off, at the finest level a hundredth of a step.
+pub const ENTERED_STEPS: f64 = 0.05;

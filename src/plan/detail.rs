@@ -103,6 +103,7 @@ impl View {
 struct Demand<'a> {
     pyramid: &'a Pyramid,
     view: View,
+    has_voids: bool,
     /// `None` where all land counts as seen.
     horizon: Option<Horizon>,
     /// Largest deviation for each metre of distance, metres.
@@ -126,6 +127,7 @@ impl<'a> Demand<'a> {
                 eye: camera.eye - surface.dem().position(0, 0).with_z(0.0),
                 inward: [&[forward][..], &sides, &ends].concat(),
             },
+            has_voids: surface.dem().voids() > 0,
             horizon: Horizon::new(surface, camera),
             tolerance: error_px / corner,
             hidden: HashSet::new(),
@@ -200,6 +202,12 @@ impl Growth for Demand<'_> {
             return false;
         }
         deviation > self.tolerance * slack * self.distance(bounds)
+    }
+
+    /// Beside a coarser chunk a facet of level 1 spans two cells, one of which may lack its patch.
+    fn stands_among_equals(&self, origin: [u32; 2], size: u32) -> bool {
+        let step = size / CHUNK_QUADS;
+        self.has_voids && step == CELL_STEPS && self.pyramid.fences(origin, step).is_none()
     }
 
     fn done(&mut self, origin: [u32; 2], size: u32, split: bool) {

@@ -167,7 +167,7 @@ impl Lattice {
     pub fn grow(dem: &Dem, coarsest_step: u32, from: [f64; 2], growth: &mut impl Growth) -> Result<Quadtree> {
         let mut tree = Self::empty(dem, coarsest_step)?.tree;
         tree.grow(from, growth);
-        tree.balance();
+        tree.balance(growth);
         Ok(tree)
     }
 

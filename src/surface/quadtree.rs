@@ -26,6 +26,9 @@ pub trait Growth {
     /// Whether the square with this north-west corner and size is split.
     fn splits(&mut self, corner: [u32; 2], size: u32) -> bool;
 
+    /// Whether no larger square may touch this one.
+    fn stands_among_equals(&self, corner: [u32; 2], size: u32) -> bool;
+
     /// Hears that a square, split or not, and all in it is done.
     fn done(&mut self, corner: [u32; 2], size: u32, split: bool);
 }
@@ -82,13 +85,15 @@ impl Quadtree {
         growth.done(square.0, square.1, splits);
     }
 
-    /// Splits leaves until none is more than twice as large as another that touches it, be it in a corner.
-    pub fn balance(&mut self) {
+    /// Splits leaves until none is more than twice as large as another that touches it, be it in a corner, nor larger
+    /// than one that `growth` wants among equals.
+    pub fn balance(&mut self, growth: &impl Growth) {
         let mut open = self.leaves();
         while let Some((_, square)) = open.pop() {
+            let largest = square.1 * if growth.stands_among_equals(square.0, square.1) { 1 } else { 2 };
             for around in AROUND {
                 // Its ancestors are split one after the other: each new leaf looks around itself in turn.
-                while let Some((node, beside)) = self.neighbour(square, around).filter(|(_, b)| b.1 > 2 * square.1) {
+                while let Some((node, beside)) = self.neighbour(square, around).filter(|(_, b)| b.1 > largest) {
                     open.extend(self.split_leaf(node, beside));
                 }
             }

@@ -1,0 +1,143 @@
+//! Frames of several levels: chunks have the same vertices on the sides they share, no pixel of the surface is missed,
+//! the device's own rasterizer covers the same pixels.
+
+use std::collections::HashMap;
+
+use glam::DVec3;
+use hachure::plan::{Border, Detail, Plan, Thrift};
+use hachure::render::Renderer;
+use hachure::surface::lattice::{CHUNK_QUADS, CHUNK_SIDE, CHUNK_VERTICES};
+use hachure::surface::{LatticePoint, Surface};
+use hachure::view::Camera;
+
+use crate::common::gpu;
+use crate::coverage;
+use crate::drawn;
+use crate::drawn::{BY_ID, CLIPPED, Random, Shot, look, over};
+use crate::mesh::{facets, pinholes};
+use crate::mixed::variety;
+use crate::quadtrees::moor;
+use crate::scenes::rough;
+
+const PAGE: [u32; 2] = [360, 240];
+
+fn renderer(surface: &Surface, error_px: f64, thrift: Thrift, size: [u32; 2]) -> Renderer<'_> {
+    let plan = Plan { thrift, ..Plan::new(Detail::Adaptive { error_px }, BY_ID, Border::Off) };
+    Renderer::new(gpu(), surface, plan, size).expect("a renderer")
+}
+
+/// A frame from a clean slate. The first one brings its lattice to the device.
+fn shoot(renderer: &Renderer<'_>, camera: &Camera) -> Shot {
+    renderer.frame(camera).expect("a frame");
+    drawn::shoot(gpu(), renderer, camera)
+}
+
+fn scenes() -> Vec<Surface> {
+    let dems =
+        [rough(90, 75, 1.0, 0.5, false), rough(60, 50, 2.0, 2.0, true), rough(200, 97, 0.1, 0.02, false), moor()];
+    dems.map(Surface::new).into()
+}
+
+/// Eyes near the ground, in it, above it and far away.
+fn eyes(surface: &Surface, random: &mut Random, size: [u32; 2]) -> Vec<Camera> {
+    let dem = surface.dem();
+    let cell = dem.cell().x;
+    let mut near = |above: f64| {
+        let place = std::iter::repeat_with(|| {
+            let [c, r] = [dem.columns(), dem.rows()].map(|n| random.between(0.2, n as f64 - 1.2));
+            LatticePoint { x: (c * 64.0) as u32, y: (r * 64.0) as u32 }
+        });
+        let at = place.into_iter().find(|at| surface.position(*at).is_some()).expect("land");
+        let eye = over(surface, f64::from(at.x) / 64.0, f64::from(at.y) / 64.0, above * cell);
+        look(eye, random.between(0.0, 360.0), random.between(-50.0, 15.0), size)
+    };
+    let mut cameras: Vec<_> = [8.0, 2.0, 0.5, 0.05, -0.02].into_iter().map(&mut near).collect();
+    let [west, south, east, north] = dem.extent();
+    let azimuth = random.between(0.0, 360.0);
+    let (sin, cos) = azimuth.to_radians().sin_cos();
+    let middle = DVec3::new(west + east, south + north, 0.0) / 2.0;
+    cameras.push(look(middle + DVec3::new(-sin, -cos, 0.4) * (east - west), azimuth, -22.0, size));
+    cameras
+}
+
+/// How many vertices that chunks share were compared; how many of them differ between two chunks.
+fn unlike(renderer: &Renderer<'_>, shot: &Shot) -> [usize; 2] {
+    let lattice = renderer.lattice();
+    let mut first: HashMap<LatticePoint, [i32; 4]> = HashMap::new();
+    let (mut compared, mut unlike) = (0, 0);
+    for (chunk, screens) in lattice.chunks().iter().zip(shot.screens.chunks_exact(CHUNK_VERTICES as usize)) {
+        // Left out: nothing was written.
+        if screens.iter().all(|screen| *screen == [0; 4]) {
+            continue;
+        }
+        for (v, screen) in (0..).zip(screens) {
+            let at = [v % CHUNK_SIDE, v / CHUNK_SIDE];
+            if at.iter().all(|k| (1..CHUNK_QUADS).contains(k)) {
+                continue;
+            }
+            if let Some(other) = first.insert(chunk.vertex(at), *screen) {
+                compared += 1;
+                unlike += usize::from(other != *screen);
+            }
+        }
+    }
+    [compared, unlike]
+}
+
+#[test]
+fn a_vertex_unlike_its_neighbours_is_noticed() {
+    let surface = &scenes()[0];
+    let renderer = renderer(surface, 1.0, Thrift::Nothing, PAGE);
+    let camera = eyes(surface, &mut Random(5), PAGE)[0];
+    let mut shot = shoot(&renderer, &camera);
+    assert_eq!(unlike(&renderer, &shot)[1], 0);
+    let slot = renderer.lattice().chunks().iter().position(|chunk| chunk.coarser != 0).expect("a seam");
+    let bits = renderer.lattice().chunks()[slot].coarser;
+    let at = [16, 16 * CHUNK_SIDE + 32, 32 * CHUNK_SIDE + 16, 16 * CHUNK_SIDE][bits.trailing_zeros() as usize];
+    shot.screens[slot * CHUNK_VERTICES as usize + at as usize][0] ^= 1;
+    assert!(unlike(&renderer, &shot)[1] > 0);
+}
+
+#[test]
+fn frames_of_several_levels_have_one_vertex_a_place_and_no_pinhole() {
+    let (mut covered, mut uncovered, mut seams, mut clipped, mut compared) = (0, 0, 0, 0, 0);
+    for (seed, surface) in (1..).zip(scenes()) {
+        let mut random = Random(seed + 50);
+        for error_px in [0.6, 8.0] {
+            let renderer = renderer(&surface, error_px, Thrift::LeaveOut, PAGE);
+            for camera in eyes(&surface, &mut random, PAGE) {
+                let shot = shoot(&renderer, &camera);
+                let what = format!("scene {seed}, {error_px} px, {camera:?}");
+                let [shared, wrong] = unlike(&renderer, &shot);
+                assert_eq!(wrong, 0, "{what}: of {shared} shared vertices");
+                let mesh = facets(&surface, &renderer.lattice());
+                let depths: Vec<u32> = shot.pixels.iter().map(|p| p[1]).collect();
+                let (holes, none) = pinholes(&mesh, &camera, renderer.near(), &depths);
+                assert!(holes.is_empty(), "{what}: {} pinholes, {:?}", holes.len(), holes[0]);
+                covered += depths.len() - none;
+                uncovered += none;
+                compared += shared;
+                seams += variety(&renderer.lattice())[1];
+                clipped += shot.screens.iter().filter(|s| s[3] & CLIPPED != 0).count();
+            }
+        }
+    }
+    println!("{covered} px covered, {uncovered} not; {seams} seams; {compared} vertices compared, {clipped} clipped");
+    assert!(covered > 500_000 && uncovered > 50_000 && seams > 400 && clipped > 1000 && compared > 50_000);
+}
+
+#[test]
+fn coverage_of_several_levels_is_the_hardwares() {
+    let mut seams = 0;
+    for (seed, surface) in (1..).zip(scenes()) {
+        for (azimuth, altitude, error_px) in [(20.0, -35.0, 1.0), (140.0, -8.0, 2.0)] {
+            let size = [1024, 512];
+            let camera = coverage::from_outside(&surface, azimuth, altitude, 1.1, size);
+            let renderer = renderer(&surface, error_px, Thrift::LeaveOut, size);
+            renderer.frame(&camera).expect("a frame");
+            coverage::check_frame(&format!("scene {seed}, {error_px} px"), &renderer, &camera);
+            seams += variety(&renderer.lattice())[1];
+        }
+    }
+    assert!(seams > 20, "{seams} seams");
+}
