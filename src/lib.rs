@@ -38,7 +38,8 @@
 //! World coordinates are metres, x east, y north, z up and exaggerated; angles are degrees, azimuth clockwise from grid
 //! north; pages are pixels from the top left corner. [`Georeference`](dem::Georeference) leads from there to the
 //! coordinates of the file and to longitude and latitude. Whatever can go wrong is an [`Error`](error::Error) of one
-//! line: what, where, remedy. A renderer draws as many frames as are asked of it; only the camera is uploaded for each.
+//! line: what, where, remedy. A renderer draws as many frames as are asked of it; for each the camera is uploaded, and of an adaptive
+//! lattice what is not there yet.
 //!
 //! # Modules
 //!

@@ -61,7 +61,7 @@ pub struct DrawArguments {
     /// Subdivisions of a cell's edge: 1, 2, 4, 8, 16, 32 or 64; auto: each part of the DEM as fine as the page shows
     #[arg(long, value_name = "N|auto", value_parser = values::level_choice, default_value = "auto", help_heading = "Surface")]
     level: LevelChoice,
-    /// --level auto only: how far facets may deviate from the surface on the page, in pixels [default: 0.25]
+    /// --level auto only: how far facets may deviate from the surface on the page, in pixels [default: 0.2]
     #[arg(long, value_name = "PX", value_parser = values::error_px, help_heading = "Surface")]
     error_px: Option<f64>,
 

@@ -18,7 +18,7 @@ use crate::surface::{Lattice, Level, Pyramid, Surface};
 use crate::view::Camera;
 
 /// Largest deviation of facets on the page unless told otherwise, px.
-pub const ERROR_PX: f64 = 0.25;
+pub const ERROR_PX: f64 = 0.2;
 /// How many times as far facets may deviate where all of them face one way, so that no line is near.
 const FAR_FROM_LINES: f64 = 8.0;
 
