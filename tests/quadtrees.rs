@@ -174,7 +174,7 @@ pub fn above(surface: &Surface, random: &mut Random) -> Camera {
 pub fn moor() -> Dem {
     let mut random = Random::new(8);
     let height = |i: usize| ((i % 331) as f32 / 20.0).sin() * ((i / 331) as f32 / 27.0).cos() * 9.0;
-    let mut height = |i| if random.below(3000) == 0 { f32::NAN } else { height(i) };
+    let mut height = |i| if random.below(14_000) == 0 { f32::NAN } else { height(i) };
     let heights = (0..331 * 290).map(&mut height).collect();
     Dem::from_heights(331, DVec2::splat(20.0), DVec2::new(325_000.0, 4_118_000.0), heights)
 }

@@ -75,12 +75,9 @@ fn unlike(renderer: &Renderer<'_>, shot: &Shot) -> [usize; 2] {
             if at.iter().all(|k| (1..CHUNK_QUADS).contains(k)) {
                 continue;
             }
-            match first.insert(chunk.vertex(at), *screen) {
-                Some(other) => {
-                    compared += 1;
-                    unlike += usize::from(other != *screen);
-                }
-                None => {}
+            if let Some(other) = first.insert(chunk.vertex(at), *screen) {
+                compared += 1;
+                unlike += usize::from(other != *screen);
             }
         }
     }

@@ -90,6 +90,8 @@ impl Fences {
 
 impl Slopes {
     const NONE: Self = Self { least: Vec2::INFINITY, largest: Vec2::NEG_INFINITY };
+    /// Of what may fold over.
+    const ANY: Self = Self { least: Vec2::NEG_INFINITY, largest: Vec2::INFINITY };
 
     fn with(self, other: Self) -> Self {
         Self { least: self.least.min(other.least), largest: self.largest.max(other.largest) }
@@ -289,6 +291,9 @@ fn slopes(patch: &Patch, half: usize) -> Slopes {
     // Corners 0, 1, 2 of patch 0 are NW, SW, SE, of patch 1 NW, SE, NE.
     let (east, north) = if half == 0 { ([1, 2], [1, 0]) } else { ([0, 2], [1, 2]) };
     let (east, north) = (patch.differences(east), patch.differences(north));
+    if east.iter().any(|e| e.x <= 0.0) || north.iter().any(|n| n.y <= 0.0) {
+        return Slopes::ANY;
+    }
     let slopes = east.into_iter().zip(north).map(|(e, n)| DVec2::new(e.z / e.x, n.z / n.y).as_vec2());
     slopes.fold(Slopes::NONE, |all, slope| all.with(Slopes { least: slope, largest: slope }))
 }
