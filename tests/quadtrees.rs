@@ -11,7 +11,7 @@ use hachure::surface::quadtree::NO_SLOT;
 use hachure::surface::{Lattice, LatticePoint, Surface};
 use hachure::view::Camera;
 
-use crate::mixed::{Kind, exists, flat, lattice, leaves, may_be_coarse, sides, variety};
+use crate::mixed::{Kind, exists, flat, has_void, lattice, leaves, may_be_coarse, sides, variety};
 use crate::scenes::{Random, rough};
 
 /// What is wrong with a lattice's squares, none of it dropped but voids.
@@ -64,6 +64,9 @@ fn wrong_squares(dem: &Dem, lattice: &Lattice) -> Option<String> {
         let coarser = sides((corner, size), |at| holds(at).is_some_and(|(_, other, _)| *other > size));
         if chunk.coarser != coarser {
             return Some(format!("{chunk:?} has coarser sides {coarser:b}"));
+        }
+        if step == CELL_STEPS && coarser != 0 && has_void(dem, corner, step) {
+            return Some(format!("{chunk:?} with a void lies beside a coarser one"));
         }
         if step > CELL_STEPS && !may_be_coarse(dem, corner, step) {
             return Some(format!("{chunk:?} has a void, or an edge of the DEM between its vertices"));

@@ -17,7 +17,7 @@ use crate::scenes::{level, rough};
 
 const PAGE: [u32; 2] = [240, 160];
 /// So small that what is seen is much finer than what is not.
-const ERROR_PX: f64 = 0.02;
+const ERROR_PX: f64 = 0.004;
 /// How many times as far facets may deviate away from lines.
 const AWAY_FROM_LINES: f64 = 8.0;
 
