@@ -1,5 +1,6 @@
 //! Every integration test in one binary: linked once, one module a subject.
 
+mod agreement;
 mod borders;
 mod chosen_view;
 mod cli;
@@ -26,12 +27,15 @@ mod memory;
 mod mesh;
 mod mixed;
 mod pieces;
+mod pool;
+mod pyramids;
 mod quadtrees;
 mod reflection;
 mod report;
 mod same_bytes;
 mod scenes;
 mod seams;
+mod seen;
 mod shell;
 mod silhouettes;
 mod times;

@@ -11,7 +11,7 @@ use hachure::surface::quadtree::NO_SLOT;
 use hachure::surface::{Lattice, LatticePoint, Surface};
 use hachure::view::Camera;
 
-use crate::mixed::{Kind, exists, flat, lattice, leaves, may_be_coarse, sides, variety};
+use crate::mixed::{Kind, exists, flat, has_void, lattice, leaves, may_be_coarse, sides, variety};
 use crate::scenes::{Random, rough};
 
 /// What is wrong with a lattice's squares, none of it dropped but voids.
@@ -66,6 +66,9 @@ fn wrong_squares(dem: &Dem, lattice: &Lattice) -> Option<String> {
         let coarser = sides((corner, size), |at| holds(at).is_some_and(|(_, other, _)| *other > size));
         if chunk.coarser != coarser {
             return Some(format!("{chunk:?} has coarser sides {coarser:b}"));
+        }
+        if step == CELL_STEPS && coarser != 0 && has_void(dem, corner, step) {
+            return Some(format!("{chunk:?} with a void lies beside a coarser one"));
         }
         if step > CELL_STEPS && !may_be_coarse(dem, corner, step) {
             return Some(format!("{chunk:?} has a void, or an edge of the DEM between its vertices"));
@@ -176,7 +179,7 @@ pub fn above(surface: &Surface, random: &mut Random) -> Camera {
 pub fn moor() -> Dem {
     let mut random = Random::new(8);
     let height = |i: usize| ((i % 331) as f32 / 20.0).sin() * ((i / 331) as f32 / 27.0).cos() * 9.0;
-    let mut height = |i| if random.below(3000) == 0 { f32::NAN } else { height(i) };
+    let mut height = |i| if random.below(14_000) == 0 { f32::NAN } else { height(i) };
     let heights = (0..331 * 290).map(&mut height).collect();
     Dem::from_heights(331, DVec2::splat(20.0), DVec2::new(325_000.0, 4_118_000.0), heights)
 }

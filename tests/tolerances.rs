@@ -244,3 +244,30 @@ pub const SECOND_ORDER: f64 = 0.2;
 ///
 /// Example: on a way of 2^25 walk units f32 shares are 2 units off, at the finest level a hundredth of a step.
 pub const ENTERED_STEPS: f64 = 0.05;
+
+/// How many times as far as the pyramid says facets may leave the surface: between sides that bend to different sides.
+///
+/// Example: facets that are said to leave the surface by 1 m leave it by 1.3 m at most.
+pub const DEVIATION_MOST: f64 = 1.3;
+
+/// Least share of what the pyramid says facets deviate by that they do deviate by, median of the squares of a level.
+///
+/// Example: facets that are said to leave the surface by 1 m leave it by 20 cm or more in half of the squares.
+pub const DEVIATION_SHARE: f64 = 0.2;
+
+/// How far slopes of facets may lie outside those of the control polygons of their square, as a share of their span:
+/// patches also bend sideways.
+///
+/// Example: of slopes between 0.1 and 0.5 a facet may have 0.08.
+pub const FACET_SLOPES: f64 = 0.05;
+
+/// Share of facets that may be steeper than that.
+///
+/// Example: of 100 000 facets 10, where patches nearly fold over.
+pub const STEEPER_SHARE: f64 = 0.0001;
+
+/// Share of ink of coarse facets that may lie farther than [`REACH_PX`] from ink of fine ones: where a line ends, a small
+/// error across it is a long way along it.
+///
+/// Example: of 400 px at most 24, two or three at each end of eight lines.
+pub const COARSE_STRAYS: f64 = 0.06;

@@ -94,6 +94,8 @@ impl Fences {
 
 impl Slopes {
     const NONE: Self = Self { least: [f32::INFINITY; 2], largest: [f32::NEG_INFINITY; 2] };
+    /// Of what may fold over.
+    const ANY: Self = Self { least: [f32::NEG_INFINITY; 2], largest: [f32::INFINITY; 2] };
 
     fn with(self, other: Self) -> Self {
         let of = |a: [f32; 2], b: [f32; 2], pick: fn(f32, f32) -> f32| [pick(a[0], b[0]), pick(a[1], b[1])];
@@ -329,6 +331,9 @@ fn slopes(patch: &Patch, half: usize) -> Slopes {
     // Corners 0, 1, 2 of patch 0 are NW, SW, SE, of patch 1 NW, SE, NE.
     let (east, north) = if half == 0 { ([1, 2], [1, 0]) } else { ([0, 2], [1, 2]) };
     let (east, north) = (patch.differences(east), patch.differences(north));
+    if east.iter().any(|e| e.x <= 0.0) || north.iter().any(|n| n.y <= 0.0) {
+        return Slopes::ANY;
+    }
     let slopes = east.into_iter().zip(north).map(|(e, n)| [(e.z / e.x) as f32, (n.z / n.y) as f32]);
     slopes.fold(Slopes::NONE, |all, slope| all.with(Slopes { least: slope, largest: slope }))
 }

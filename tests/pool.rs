@@ -1,0 +1,98 @@
+//! Tiles of samples in their places: they stay while asked for, the oldest go first, and what stays is what was brought.
+
+use std::collections::{HashMap, HashSet};
+
+use glam::DVec3;
+use hachure::gpu::pool::Pool;
+use hachure::plan::{Border, Detail, Method, Plan};
+use hachure::render::Renderer;
+use hachure::surface::{Chunk, Surface, Tile};
+use hachure::view::Camera;
+
+use crate::common::gpu;
+use crate::scenes::{Random, rough};
+
+const PAGE: [u32; 2] = [200, 150];
+
+fn tile(number: u32) -> Tile {
+    Tile::of(&Chunk { origin: [number * 2048, 0], step: 64, coarser: 0 })
+}
+
+#[test]
+fn tiles_keep_their_places_and_the_oldest_go_first() {
+    let capacity = 12;
+    let mut pool = Pool::new(capacity);
+    let mut random = Random::new(3);
+    // Of each tile its place and when it was asked for last.
+    let mut held: HashMap<u32, (u32, u32)> = HashMap::new();
+    let mut replaced = 0;
+    for frame in 1..500 {
+        let wanted: Vec<u32> = (0..random.below(13)).map(|_| random.below(30)).collect();
+        let different: HashSet<u32> = wanted.iter().copied().collect();
+        let tiles: Vec<Tile> = wanted.iter().map(|number| tile(*number)).collect();
+        let Some(placed) = pool.place(&tiles) else {
+            panic!("{} of {capacity} tiles refused", different.len());
+        };
+        let brought: HashSet<u32> = different.iter().copied().filter(|n| !held.contains_key(n)).collect();
+        let written: HashMap<u32, Tile> = placed.missing.iter().copied().collect();
+        assert_eq!(placed.missing.len(), brought.len(), "each missing tile once");
+        for (number, place) in wanted.iter().zip(&placed.places) {
+            assert!((*place as usize) < capacity);
+            match held.get(number) {
+                Some((kept, _)) => assert_eq!(kept, place, "a tile moved"),
+                None => assert_eq!(written.get(place), Some(&tile(*number)), "a tile is not brought to its place"),
+            }
+        }
+        // What had to go: asked for before this frame, and no later than what stays without being asked for.
+        let gone: Vec<u32> = held
+            .iter()
+            .filter(|(n, (p, _))| !different.contains(n) && written.contains_key(p))
+            .map(|(n, _)| *n)
+            .collect();
+        let latest = gone.iter().map(|n| held[n].1).max().unwrap_or(0);
+        held.retain(|n, _| !gone.contains(n));
+        let idle = held.iter().filter(|(n, _)| !different.contains(n)).map(|(_, (_, asked))| *asked);
+        assert!(idle.min().is_none_or(|oldest| latest <= oldest), "frame {frame}: a newer tile went");
+        replaced += gone.len();
+        held.extend(wanted.iter().zip(&placed.places).map(|(n, place)| (*n, (*place, frame))));
+        let places: HashSet<u32> = held.values().map(|(place, _)| *place).collect();
+        assert_eq!(places.len(), held.len(), "two tiles in one place");
+    }
+    assert!(replaced > 500, "{replaced} tiles replaced");
+}
+
+#[test]
+fn more_tiles_than_places_are_refused() {
+    let all: Vec<Tile> = (0..5).map(tile).collect();
+    assert!(Pool::new(5).place(&all).is_some());
+    assert_eq!(Pool::new(4).place(&all), None);
+    assert!(Pool::new(4).place(&[all[0], all[1], all[0], all[1], all[2], all[3]]).is_some(), "four different ones");
+}
+
+fn page(renderer: &Renderer<'_>, camera: &Camera) -> Vec<u8> {
+    bytemuck::cast_slice(&renderer.draw(camera).expect("a frame").raster.pixels).to_vec()
+}
+
+#[test]
+fn a_camera_that_jumps_draws_what_a_new_renderer_draws() {
+    let surface = Surface::new(rough(1100, 1000, 1.0, 0.5, false));
+    let plan = Plan::new(Detail::Adaptive { error_px: 0.15 }, Method::Walk, Border::On);
+    let make = || Renderer::new(gpu(), &surface, plan, PAGE).expect("a renderer");
+    let jumping = make();
+    let [west, south, east, north] = surface.dem().extent();
+    let mut random = Random::new(21);
+    let (mut tiles, mut pages) = (HashSet::new(), HashSet::new());
+    for frame in 0..10 {
+        let eye = DVec3::new(random.between(west, east), random.between(south, north), random.between(100.0, 900.0));
+        let azimuth = random.between(0.0, 360.0);
+        let camera = Camera { eye, azimuth, altitude: -20.0, fov: 70.0, width: PAGE[0], height: PAGE[1] };
+        let drawn = page(&jumping, &camera);
+        assert!(drawn == page(&make(), &camera), "frame {frame} differs");
+        tiles.extend(jumping.lattice().chunks().iter().map(Tile::of));
+        pages.insert(drawn);
+    }
+    let places = jumping.buffers().get("heights").expect("heights").size() / (33 * 33 * 4);
+    println!("{} tiles in {places} places", tiles.len());
+    assert!(tiles.len() as u64 > places, "{} tiles in {places} places: none was replaced", tiles.len());
+    assert_eq!(pages.len(), 10, "frames are alike");
+}
