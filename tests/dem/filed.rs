@@ -134,14 +134,14 @@ fn every_format_of_shared_terrain_is_read_by_windows() {
     let formats = shared.join("formats");
     let head = "<SRS>EPSG:32611</SRS><GeoTransform>273000, 27.5, 0, 4181000, 0, -27.5</GeoTransform>";
     let names = super::shared::HALF_DOME.into_iter().chain(["halfdome_scaled.vrt", "halfdome_u16.png"]);
-    for name in names {
+    for (i, name) in names.enumerate() {
         // All are in degrees, which are warped as a whole: their samples are laid on a map as they are.
         let path = formats.join(name).display().to_string();
         let path = if name.ends_with(".gz") { format!("/vsigzip/{path}") } else { path };
         let file = gdal::Dataset::open(&path).unwrap();
         let (columns, rows) = file.raster_size();
         let source = format!("<SimpleSource><SourceFilename>{path}</SourceFilename></SimpleSource>");
-        let vrt = sized_vrt(&dir.path().join("placed.vrt"), columns as u32, rows as u32, head, &source);
+        let vrt = sized_vrt(&dir.path().join(format!("placed_{i}.vrt")), columns as u32, rows as u32, head, &source);
         let options = ReadOptions { allow_remote: true, ..Default::default() };
         assert_eq!(difference(&both(&[vrt], options, SMALL)), None, "{name}");
     }
