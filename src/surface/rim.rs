@@ -33,13 +33,17 @@ pub fn rim(dem: &Dem) -> Result<Vec<RimEdge>> {
     Ok(edges)
 }
 
-/// The rim of a DEM without voids.
+/// The rim of a DEM without voids, in the same order.
 fn border(dem: &Dem) -> Vec<RimEdge> {
     let [east, south] = [dem.columns() as u32 - 1, dem.rows() as u32 - 1];
     let edge = |c, r, direction, half| RimEdge { sample: [c, r], direction, half };
-    let sides = (0..south).flat_map(|r| [edge(0, r, 1, 0), edge(east, r, 1, 1)]);
-    let ends = (0..east).flat_map(|c| [edge(c, 0, 0, 1), edge(c, south, 0, 0)]);
-    sides.chain(ends).collect()
+    let of_sample = |c, r| {
+        let along_row = (c < east && (r == 0 || r == south)).then(|| edge(c, r, 0, u32::from(r == 0)));
+        let down_column = (r < south && (c == 0 || c == east)).then(|| edge(c, r, 1, u32::from(c == east)));
+        along_row.into_iter().chain(down_column)
+    };
+    let of_row = |r| (0..=east).step_by(if r == 0 || r == south { 1 } else { east as usize }).map(move |c| (c, r));
+    (0..=south).flat_map(of_row).flat_map(|(c, r)| of_sample(c, r)).collect()
 }
 
 fn edges_of_row(samples: &Samples, r: usize) -> Vec<RimEdge> {
