@@ -73,7 +73,8 @@ fn draw_part(edge: RimEdge, at: vec2<u32>, along: vec2<u32>) -> u32 {
     let left = edge.direction == 1u && edge.half == 1u;
     let slot = slot_at(vec2<i32>(at) - select(vec2<i32>(0), vec2<i32>(1), vec2<bool>(left, above)));
     if slot == NO_SLOT {
-        return CELL_STEPS;
+        // Half a cell, the smallest chunk: the next one may be there.
+        return CHUNK_QUADS;
     }
     let chunk = chunks[slot];
     let from_origin = at - chunk.origin;

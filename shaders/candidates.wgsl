@@ -2,16 +2,7 @@
 // neighbours, between which a walk could meet an away facet. Most pairs lie in one chunk and are dismissed by its
 // summary; what remains is looked into by `pairs`.
 
-// Pixels for another pass, and the workgroups of 64 that it takes along x, as far as they go.
-struct Candidates {
-    groups_x: atomic<u32>,
-    groups_y: u32,
-    groups_z: u32,
-    count: atomic<u32>,
-    pixels: array<u32>,
-}
-
-@group(0) @binding(21) var<storage, read_write> out_candidates: Candidates;
+@group(0) @binding(21) var<storage, read_write> out_candidates: List;
 
 // Pixels across and down that one invocation works off: each pixel is read one and a half times instead of five.
 const COLUMNS: i32 = 4;
@@ -60,7 +51,7 @@ fn list(at: vec2<i32>, here: u32, neighbours: vec4<u32>) {
         | select(0u, 128u, is_open(here, neighbours.w, slot, summary));
     if pairs != 0u && at.x < i32(camera.size.x) {
         let n = atomicAdd(&out_candidates.count, 1u);
-        out_candidates.pixels[n] = pixel_index(at) | (pairs << 24u);
+        out_candidates.pixels[n] = listed(pixel_index(at), pairs);
         if n % 64u == 0u {
             atomicMax(&out_candidates.groups_x, min(n / 64u + 1u, MOST_GROUPS));
         }

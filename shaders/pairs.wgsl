@@ -1,25 +1,8 @@
 // One invocation a candidate pixel: keeps its pairs with sky, and those with an away facet in the rectangle of quads
 // that a walk between the two cannot leave. Few remain, and the walk finds them side by side.
 
-struct Candidates {
-    groups_x: u32,
-    groups_y: u32,
-    groups_z: u32,
-    count: u32,
-    pixels: array<u32>,
-}
-
-// Pixels for another pass, and the workgroups of 64 that it takes along x, as far as they go.
-struct Pairs {
-    groups_x: atomic<u32>,
-    groups_y: u32,
-    groups_z: u32,
-    count: atomic<u32>,
-    pixels: array<u32>,
-}
-
-@group(0) @binding(21) var<storage, read> candidates: Candidates;
-@group(0) @binding(22) var<storage, read_write> out_pairs: Pairs;
+@group(0) @binding(21) var<storage, read> candidates: ListRead;
+@group(0) @binding(22) var<storage, read_write> out_pairs: List;
 
 // Rectangles with more quads along a side are not looked into: the walk leaps better.
 const LARGEST_RECTANGLE: u32 = 16u;
@@ -127,12 +110,13 @@ fn is_open(p: u32, q: u32, chunk_p: Chunk) -> bool {
 @compute @workgroup_size(64)
 fn pairs(@builtin(global_invocation_id) invocation: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     for (var k = invocation.x; k < candidates.count; k += groups.x * 64u) {
-        let i = candidates.pixels[k] & 0xffffffu;
-        let at = vec2<i32>(vec2<u32>(i % camera.size.x, i / camera.size.x));
+        let item = candidates.pixels[k];
+        let i = listed_pixel(item);
+        let at = listed_place(item);
         let p = pixels[i].x;
         let chunk_p = chunks[(max(p, 1u) - 1u) / CHUNK_FACETS];
         var open = 0u;
-        for (var left = candidates.pixels[k] >> 24u; left != 0u; left &= left - 1u) {
+        for (var left = listed_neighbours(item); left != 0u; left &= left - 1u) {
             let to = at + neighbour(firstTrailingBit(left));
             if on_page(to) {
                 let q = pixels[pixel_index(to)].x;
@@ -143,7 +127,7 @@ fn pairs(@builtin(global_invocation_id) invocation: vec3<u32>, @builtin(num_work
         }
         if open != 0u {
             let n = atomicAdd(&out_pairs.count, 1u);
-            out_pairs.pixels[n] = i | (open << 24u);
+            out_pairs.pixels[n] = listed(i, open);
             if n % 64u == 0u {
                 atomicMax(&out_pairs.groups_x, min(n / 64u + 1u, MOST_GROUPS));
             }

@@ -1,4 +1,5 @@
-// One invocation a block of vertices, some columns and rows: of each the offset from its sample, the place on the page, the depth.
+// One invocation a block of vertices, some columns and rows: of each the offset from its sample, the place on the page,
+// the depth.
 // Chunks that share a vertex evaluate it from the same cell in the same way: they agree to the bit.
 
 @group(0) @binding(20) var<storage, read_write> out_places: array<vec4<f32>>;

@@ -4,34 +4,13 @@
 // facets beside a coarser chunk, are rare and left to `walk_rest`: drivers that run both sides of every branch pay for
 // them here.
 
-// Pixels for another pass, and the workgroups of 64 that it takes along x, as far as they go.
-struct Pairs {
-    groups_x: atomic<u32>,
-    groups_y: u32,
-    groups_z: u32,
-    count: atomic<u32>,
-    pixels: array<u32>,
-}
-
-// The same to read.
-struct PairsRead {
-    groups_x: u32,
-    groups_y: u32,
-    groups_z: u32,
-    count: u32,
-    pixels: array<u32>,
-}
-
-@group(0) @binding(21) var<storage, read> pairs: PairsRead;
+@group(0) @binding(21) var<storage, read> pairs: ListRead;
 @group(0) @binding(22) var<storage, read_write> out_ink: array<atomic<u32>>;
 @group(0) @binding(23) var<storage, read_write> out_counts: Counts;
-@group(0) @binding(24) var<storage, read_write> out_rest: Pairs;
+@group(0) @binding(24) var<storage, read_write> out_rest: List;
 
 // Whether what is rare is left to another pass.
 override defers: bool = true;
-
-// Walk units in a lattice step of the finest level.
-const UNITS: u32 = 256u;
 
 // A facet as a point and two edges, metres, eye-relative.
 struct Corners {
@@ -88,17 +67,6 @@ fn facet_hit(id: u32, px: vec2<f32>) -> vec2<i32> {
     return vec2<i32>(f.a * UNITS) + vec2<i32>(round(from_a(f, w.yz) * f32(UNITS)));
 }
 
-// The away facet a walk met and where it entered it, in walk units from the facet's vertex a.
-struct Meeting {
-    met: bool,
-    left_land: bool,
-    done: bool,
-    deferred: bool,
-    id: u32,
-    entered: vec2<f32>,
-    steps: u32,
-}
-
 // How the segment stands in a quad or passes its side: half 0 (south-west) or 1 (north-east) of the quad.
 fn half_at(z: i32, direction_z: i32) -> u32 {
     return select(select(0u, 1u, z > 0), select(0u, 1u, direction_z > 0), z == 0);
@@ -113,22 +81,15 @@ fn half_behind(crossed: vec2<bool>, d: vec2<i32>) -> u32 {
     return select(select(0u, 1u, d.y > 0), select(0u, 1u, d.x < 0), crossed.x);
 }
 
-fn lacks_vertex(f: Facet) -> bool {
-    return is_missing(f.a) || is_missing(f.b) || is_missing(f.c);
-}
-
 // Whether a half of a quad, which no coarser chunk is beside, is no facet.
 fn is_no_facet(chunk: Chunk, quad: vec2<u32>, half: u32) -> bool {
     let at = chunk.origin + quad * chunk.step;
-    let cell = at / CELL_STEPS;
+    let cell = vec2<i32>(at / CELL_STEPS);
     let sub = at % CELL_STEPS;
-    let above = sub.x > sub.y || (sub.x == sub.y && half == 1u);
-    let third = cell + select(vec2<u32>(0u, 1u), vec2<u32>(1u, 0u), above);
-    let last = scene.samples - 1u;
-    // Coarser chunks have no voids.
-    let void_corner = has_voids && chunk.step <= CELL_STEPS && all(cell < last)
-        && !(is_valid(cell.x, cell.y) && is_valid(cell.x + 1u, cell.y + 1u) && is_valid(third.x, third.y));
-    return void_corner || any(at + chunk.step > last * CELL_STEPS);
+    let patch_half = select(0u, 1u, sub.x > sub.y || (sub.x == sub.y && half == 1u));
+    // Coarser chunks have no voids, but some reach beyond the DEM.
+    let beyond = any(at + chunk.step > (scene.samples - 1u) * CELL_STEPS);
+    return beyond || (chunk.step <= CELL_STEPS && !patch_exists(cell.x, cell.y, patch_half));
 }
 
 // Whether some facet of a quad reaches out of it or has collapsed, for the coarser chunk beside it.
@@ -137,104 +98,6 @@ fn beside_coarser(coarser: u32, quad: vec2<u32>) -> bool {
     let last = quad == vec2<u32>(CHUNK_QUADS - 1u);
     return (first.y && (coarser & NORTH) != 0u) || (last.y && (coarser & SOUTH) != 0u)
         || (first.x && (coarser & WEST) != 0u) || (last.x && (coarser & EAST) != 0u);
-}
-
-// Twice the signed area between a vector and the way from one walk place to another.
-fn wide_cross(v: vec2<i32>, from_place: vec2<i32>, to_place: vec2<i32>) -> vec2<u32> {
-    let d = to_place - from_place;
-    return wide_sub(wide_mul(v.y, d.x), wide_mul(v.x, d.y));
-}
-
-// The share of a segment at which it enters the interior of a facet; 2 where it has no part in it.
-fn entry_share(f: Facet, origin: vec2<i32>, end: vec2<i32>) -> f32 {
-    let corners = array<vec2<i32>, 3>(vec2<i32>(f.a * UNITS), vec2<i32>(f.b * UNITS), vec2<i32>(f.c * UNITS));
-    var share = 0.0;
-    var left = false;
-    var right = false;
-    for (var k = 0u; k < 3u; k++) {
-        let p = corners[k];
-        let edge = corners[(k + 1u) % 3u] - p;
-        let here = wide_cross(edge, p, origin);
-        let there = wide_cross(edge, p, end);
-        if wide_sign(here) <= 0 && wide_sign(there) <= 0 {
-            return 2.0;
-        }
-        if wide_sign(here) <= 0 {
-            let before = -wide_f32(here);
-            share = max(share, before / (before + wide_f32(there)));
-        }
-        let side = wide_sign(wide_cross(end - origin, origin, p));
-        left = left || side < 0;
-        right = right || side > 0;
-    }
-    return select(2.0, share, left && right);
-}
-
-// What a segment meets first among the facets of a square of two by two quads beside a coarser chunk.
-fn meet_beside_coarser(slot: u32, quad: vec2<u32>, origin: vec2<i32>, end: vec2<i32>) -> Meeting {
-    var meeting: Meeting;
-    let chunk = chunks[slot];
-    var first = 2.0;
-    for (var k = 0u; k < 8u; k++) {
-        let at = (quad & ~vec2<u32>(1u)) + vec2<u32>((k >> 1u) & 1u, k >> 2u);
-        let id = slot * CHUNK_FACETS + quad_local(at) + (k & 1u);
-        let f = chunk_facet(chunk, at, k & 1u);
-        if is_collapsed(f) {
-            continue;
-        }
-        let missing = lacks_vertex(f);
-        if !missing && !is_away(id) {
-            continue;
-        }
-        let share = entry_share(f, origin, end);
-        if share < first {
-            first = share;
-            meeting.met = !missing;
-            meeting.left_land = missing;
-            meeting.id = id;
-            meeting.entered = vec2<f32>(origin - vec2<i32>(f.a * UNITS)) + vec2<f32>(end - origin) * share;
-        }
-    }
-    return meeting;
-}
-
-// How much later a segment meets the column line than the row line at a walk place, up to a positive factor.
-fn lead_between(lines: vec2<i32>, origin: vec2<i32>, d: vec2<i32>) -> vec2<u32> {
-    let to_line = select((lines - origin) * sign(d), vec2<i32>(1), d == vec2<i32>(0));
-    return wide_sub(wide_mul(to_line.x, abs(d.y)), wide_mul(to_line.y, abs(d.x)));
-}
-
-// The quad of a chunk at half or twice the step into which a segment comes by a quad at `step`; and which of its lines
-// it comes across.
-struct Arrival {
-    quad: vec2<i32>,
-    crossed: vec2<bool>,
-}
-
-fn arrival(step: u32, to_step: u32, quad: vec2<i32>, crossed: vec2<bool>, origin: vec2<i32>, d: vec2<i32>) -> Arrival {
-    let ahead = d > vec2<i32>(0);
-    if to_step > step {
-        let even = (quad & vec2<i32>(1)) == vec2<i32>(0);
-        return Arrival(quad >> vec2<u32>(1u), crossed & (even == ahead));
-    }
-    if to_step == step {
-        return Arrival(quad, crossed);
-    }
-    let near = select(vec2<i32>(1), vec2<i32>(0), ahead);
-    if all(crossed) {
-        return Arrival(quad * 2 + near, crossed);
-    }
-    // Across the line it is the nearer half; along it, whether the middle is met before the line.
-    let side = i32(step * UNITS);
-    let middle = quad * side + side / 2;
-    let lead = wide_sign(lead_between(select(middle, (quad + near) * side, crossed), origin, d));
-    let passed = select(-lead, lead, crossed.x);
-    var half = select(near, 1 - near, passed >= 0);
-    let still = select(d.x, d.y, crossed.x) == 0;
-    if still {
-        half = select(vec2<i32>(0), vec2<i32>(1), origin >= middle);
-    }
-    return Arrival(quad * 2 + select(half, near, crossed), crossed | vec2<bool>(passed == 0 && !still));
 }
 
 // Whether a segment runs along a line of the lattice: there it meets the interior of no facet.
@@ -425,15 +288,15 @@ fn is_behind(first: vec2<u32>, second: vec2<u32>) -> bool {
 fn walk(@builtin(global_invocation_id) invocation: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     var longest = 0u;
     for (var k = invocation.x; k < pairs.count; k += groups.x * 64u) {
-        let i = pairs.pixels[k] & 0xffffffu;
-        let one = vec2<i32>(vec2<u32>(i % camera.size.x, i / camera.size.x));
-        let first = pixels[i];
+        let item = pairs.pixels[k];
+        let one = listed_place(item);
+        let first = pixels[listed_pixel(item)];
         var place = vec2<i32>(0);
         if first.x != 0u {
             place = facet_hit(first.x - 1u, centre_of(one));
         }
         var deferred = 0u;
-        for (var left = pairs.pixels[k] >> 24u; left != 0u; left &= left - 1u) {
+        for (var left = listed_neighbours(item); left != 0u; left &= left - 1u) {
             let other = one + neighbour(firstTrailingBit(left));
             let second = pixels[pixel_index(other)];
             let swapped = is_behind(first, second);
@@ -455,7 +318,7 @@ fn walk(@builtin(global_invocation_id) invocation: vec3<u32>, @builtin(num_workg
         }
         if deferred != 0u {
             let n = atomicAdd(&out_rest.count, 1u);
-            out_rest.pixels[n] = i | (deferred << 24u);
+            out_rest.pixels[n] = listed(listed_pixel(item), deferred);
             if n % 64u == 0u {
                 atomicMax(&out_rest.groups_x, min(n / 64u + 1u, MOST_GROUPS));
             }

@@ -1,7 +1,7 @@
 // One invocation a pixel with pairs that `walk` has left: with neighbours that show no surface, or with a walk past
 // blocks that lack facets or past facets beside a coarser chunk.
 
-@group(0) @binding(25) var<storage, read> rest: PairsRead;
+@group(0) @binding(25) var<storage, read> rest: ListRead;
 
 // Where the map projection of a page place's ray leaves the DEM, in walk units; `origin` where it never meets it.
 fn map_exit(px: vec2<f32>, origin: vec2<i32>) -> vec2<i32> {
@@ -94,9 +94,9 @@ fn walk_pair(one: vec2<i32>, other: vec2<i32>) -> u32 {
 fn walk_rest(@builtin(global_invocation_id) invocation: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     var longest = 0u;
     for (var k = invocation.x; k < rest.count; k += groups.x * 64u) {
-        let i = rest.pixels[k] & 0xffffffu;
-        let at = vec2<i32>(vec2<u32>(i % camera.size.x, i / camera.size.x));
-        for (var left = rest.pixels[k] >> 24u; left != 0u; left &= left - 1u) {
+        let item = rest.pixels[k];
+        let at = listed_place(item);
+        for (var left = listed_neighbours(item); left != 0u; left &= left - 1u) {
             longest = max(longest, walk_pair(at, at + neighbour(firstTrailingBit(left))));
         }
     }

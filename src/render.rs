@@ -59,6 +59,7 @@ pub struct Renderer<'a> {
 /// A lattice on the device, and what draws it.
 struct Loaded {
     lattice: Lattice,
+    has_seams: bool,
     batches: Vec<Batch>,
     buffers: Buffers,
     stages: Stages,
@@ -91,7 +92,7 @@ impl<'a> Renderer<'a> {
         let buffers = Buffers::new(gpu, surface, &lattice, room, &rim, visibility, size)?;
         let parts = batches(room.chunks).last().map_or(1, |b| b.part() + 1);
         let stages = Stages::new(gpu, dem, &plan, !rim.is_empty(), parts, size)?;
-        let mut loaded = Loaded { batches: Vec::new(), lattice, buffers, stages };
+        let mut loaded = Loaded { batches: Vec::new(), has_seams: false, lattice, buffers, stages };
         loaded.bind(gpu, room, visibility)?;
         let renderer = Self { gpu, surface, plan, visibility, pieces, rim, loaded: RefCell::new(loaded) };
         renderer.load(&mut renderer.loaded.borrow_mut())?;
@@ -301,7 +302,7 @@ impl<'a> Renderer<'a> {
         work.empty("queue", "empty_queue")?;
         if round == 0 || several {
             work.record(tessellate_stage, group, tessellate::invocations(batch))?;
-            if loaded.lattice.has_seams() {
+            if loaded.has_seams {
                 work.record(seam_stage, group, seam::invocations(batch))?;
             }
         }
@@ -344,6 +345,7 @@ impl<'a> Renderer<'a> {
     fn load(&self, loaded: &mut Loaded) -> Result<()> {
         let Self { gpu, surface, visibility, .. } = self;
         loaded.batches = batches(loaded.lattice.chunks().len() as u32);
+        loaded.has_seams = loaded.lattice.has_seams();
         let Some(room) = loaded.buffers.load(gpu, surface, &loaded.lattice)? else { return Ok(()) };
         loaded.buffers =
             Buffers::new(gpu, surface, &loaded.lattice, room, &self.rim, *visibility, self.pieces.largest())?;

@@ -1,5 +1,5 @@
-//! What the pyramid says of the surface, against dense looks at it in f64: how far facets leave it, between which heights and
-//! slopes it lies, the fences of samples across each square.
+//! What the pyramid says of the surface, against dense looks at it in f64: how far facets leave it, between which heights
+//! it lies, the fences of samples across each square.
 
 use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
@@ -7,7 +7,7 @@ use hachure::surface::lattice::{CELL_STEPS, CHUNK_QUADS};
 use hachure::surface::{Chunk, LatticePoint, Pyramid, Surface};
 
 use crate::scenes::rough;
-use crate::tolerances::{DEVIATION_MOST, DEVIATION_SHARE, FACET_SLOPES, STEEPER_SHARE};
+use crate::tolerances::{DEVIATION_MOST, DEVIATION_SHARE};
 
 /// Places along a facet's sides at which it is compared with the surface.
 const DENSE: u32 = 8;
@@ -42,7 +42,7 @@ fn facets(surface: &Surface, origin: [u32; 2], step: u32) -> Vec<([LatticePoint;
 }
 
 /// The largest distance between facets and the surface at the same places of the lattice, metres; and how low and high they
-/// lie, how far beside their square, and between which slopes.
+/// lie and how far beside their square.
 fn farthest(surface: &Surface, vertices: [LatticePoint; 3], corners: [DVec3; 3]) -> f64 {
     let mut farthest = 0.0_f64;
     let side = DENSE.min(vertices[0].x.abs_diff(vertices[2].x).max(vertices[0].y.abs_diff(vertices[2].y)));
@@ -96,11 +96,11 @@ fn facets_leave_the_surface_as_far_as_the_pyramid_says() {
 }
 
 #[test]
-fn patches_lie_between_bounds_and_facets_between_slopes() {
+fn facets_lie_between_bounds() {
     for (i, surface) in scenes().iter().enumerate() {
         let pyramid = surface.pyramid().expect("in memory");
         let zero = surface.dem().position(0, 0).with_z(0.0);
-        let (mut steepest, mut outside, mut all) = (0.0_f64, 0, 0);
+        let mut all = 0;
         for step in [2, 8, 16, 64, 128].into_iter().filter(|step| *step <= pyramid.coarsest_step()) {
             for origin in squares(surface, step).step_by(1 + squares(surface, step).count() / 6) {
                 let facets = facets(surface, origin, step);
@@ -108,25 +108,16 @@ fn patches_lie_between_bounds_and_facets_between_slopes() {
                     assert!(facets.is_empty(), "scene {i}: {origin:?} of step {step} has facets and no bounds");
                     continue;
                 };
-                let slopes = pyramid.slopes(origin, step);
                 for (_, corners) in facets {
                     for p in corners.map(|p| p - zero) {
                         let inside = p.cmpge(low - 1e-6).all() && p.cmple(high + 1e-6).all();
                         assert!(inside, "scene {i}: {p} of {origin:?}, step {step}, lies outside {low} to {high}");
                     }
-                    let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-                    let slope = -normal.truncate() / normal.z;
-                    let [least, largest] = [slopes.least, slopes.largest].map(|s| DVec2::from_array(s.map(f64::from)));
-                    let beyond = (least - slope).max(slope - largest).max_element();
-                    let width = (largest - least).max_element();
                     all += 1;
-                    outside += usize::from(beyond > FACET_SLOPES * width);
-                    steepest = steepest.max(if width.is_finite() { beyond / width } else { 0.0 });
                 }
             }
         }
-        println!("scene {i}: of {all} facets {outside} steeper than said, up to {steepest:.4} of their span");
-        assert!(outside as f64 <= STEEPER_SHARE * all as f64, "scene {i}: {outside} of {all}");
+        assert!(all > 10_000, "scene {i}: {all} facets");
     }
 }
 

@@ -255,17 +255,6 @@ pub const DEVIATION_MOST: f64 = 1.3;
 /// Example: facets that are said to leave the surface by 1 m leave it by 20 cm or more in half of the squares.
 pub const DEVIATION_SHARE: f64 = 0.2;
 
-/// How far slopes of facets may lie outside those of the control polygons of their square, as a share of their span:
-/// patches also bend sideways.
-///
-/// Example: of slopes between 0.1 and 0.5 a facet may have 0.08.
-pub const FACET_SLOPES: f64 = 0.05;
-
-/// Share of facets that may be steeper than that.
-///
-/// Example: of 100 000 facets 10, where patches nearly fold over.
-pub const STEEPER_SHARE: f64 = 0.0001;
-
 /// Share of ink of coarse facets that may lie farther than [`REACH_PX`] from ink of fine ones: where a line ends, a small
 /// error across it is a long way along it.
 ///

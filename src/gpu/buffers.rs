@@ -107,11 +107,10 @@ impl Buffers {
     /// # Errors
     /// Whatever the driver reports.
     pub fn load(&mut self, gpu: &Gpu, surface: &Surface, lattice: &Lattice) -> Result<Option<Room>> {
-        let needs = Room::of(lattice);
-        let grown = self.room.grown(needs);
         let tiles: Vec<Tile> = lattice.chunks().iter().map(Tile::of).collect();
-        let Some(Placed { places, missing }) = self.pool.place(&tiles).filter(|_| grown == self.room) else {
-            return Ok(Some(grown));
+        let fits = tiles.len() <= self.room.chunks as usize && lattice.tree().nodes().len() <= self.room.nodes;
+        let Some(Placed { places, missing }) = self.pool.place(&tiles).filter(|_| fits) else {
+            return Ok(Some(self.room.grown(Room::of(lattice))));
         };
         for batch in missing.chunks(TILES_AT_ONCE) {
             for (place, tile) in batch {
@@ -165,7 +164,7 @@ impl Buffers {
         }
     }
 
-    /// Writes the camera: all a further frame uploads.
+    /// Writes the camera: all that a further frame of a uniform level uploads.
     ///
     /// # Errors
     /// [`Error::Gpu`] when the driver refuses.

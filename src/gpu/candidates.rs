@@ -5,7 +5,7 @@ use super::{Extent, Gpu, Pass};
 use crate::error::Result;
 
 /// The composed shader.
-pub const SOURCE: &str = crate::shader!("scene", "lattice", "candidates");
+pub const SOURCE: &str = crate::shader!("scene", "lattice", "list", "candidates");
 /// An empty list of pixels: workgroups of the pass that reads it along x, y and z, and the count.
 pub const NO_PIXELS: [u32; 4] = [0, 1, 1, 0];
 

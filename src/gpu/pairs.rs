@@ -4,7 +4,7 @@ use super::{Extent, Gpu, Pass};
 use crate::error::Result;
 
 /// The composed shader.
-pub const SOURCE: &str = crate::shader!("scene", "lattice", "pairs");
+pub const SOURCE: &str = crate::shader!("scene", "lattice", "list", "pairs");
 /// One invocation a candidate.
 pub const EXTENT: Extent = Extent::List("candidates");
 

@@ -4,7 +4,7 @@ use super::{Extent, Gpu, Pass};
 use crate::error::Result;
 
 /// The composed shader.
-pub const SOURCE: &str = crate::shader!("scene", "lattice", "surface", "wide", "ink", "walk");
+pub const SOURCE: &str = crate::shader!("scene", "lattice", "surface", "wide", "ink", "list", "levels", "walk");
 /// One invocation a pixel with open pairs.
 pub const EXTENT: Extent = Extent::List("pairs");
 

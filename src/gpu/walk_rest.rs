@@ -4,7 +4,8 @@ use super::{Extent, Gpu, Pass};
 use crate::error::Result;
 
 /// The composed shader.
-pub const SOURCE: &str = crate::shader!("scene", "lattice", "surface", "wide", "ink", "walk", "walk_rest");
+pub const SOURCE: &str =
+    crate::shader!("scene", "lattice", "surface", "wide", "ink", "list", "levels", "walk", "walk_rest");
 /// One invocation a pixel with such pairs.
 pub const EXTENT: Extent = Extent::List("rest");
 

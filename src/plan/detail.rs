@@ -12,16 +12,12 @@ use super::Thrift;
 use super::horizon::Horizon;
 use crate::error::Result;
 use crate::surface::lattice::{CELL_STEPS, CHUNK_QUADS, Role};
-use crate::surface::pyramid::Slopes;
 use crate::surface::quadtree::Growth;
 use crate::surface::{Lattice, Level, Pyramid, Surface};
 use crate::view::Camera;
 
 /// Largest deviation of facets on the page unless told otherwise, px.
 pub const ERROR_PX: f64 = 0.2;
-/// How many times as far facets may deviate where all of them face one way, so that no line is near.
-const FAR_FROM_LINES: f64 = 8.0;
-
 /// How many times as far as their deviation facets may leave a patch whose sides bend this way and that.
 const BENDS: f64 = 2.2;
 
@@ -146,20 +142,6 @@ impl<'a> Demand<'a> {
         self.view.eye.clamp(low, high).distance(self.view.eye)
     }
 
-    /// Whether a surface in a box with slopes between these faces the eye everywhere or nowhere.
-    fn faces_one_way(&self, [low, high]: [DVec3; 2], Slopes { least, largest }: Slopes) -> bool {
-        let (from, to) = (self.view.eye - high, self.view.eye - low);
-        // n . (eye - P) with n = (-p, -q, 1) is separable.
-        let products = |p: f32, q: f32, way: f64, other: f64| {
-            let [p, q] = [p, q].map(f64::from);
-            let all = [p * way, p * other, q * way, q * other];
-            [all.into_iter().fold(f64::INFINITY, f64::min), all.into_iter().fold(f64::NEG_INFINITY, f64::max)]
-        };
-        let east = products(least[0], largest[0], from.x, to.x);
-        let north = products(least[1], largest[1], from.y, to.y);
-        from.z > east[1] + north[1] || to.z < east[0] + north[0]
-    }
-
     /// Raises the horizon by the land of a square, part by part where it is wide.
     fn raise(&mut self, origin: [u32; 2], step: u32, deviation: f64) {
         let pyramid = self.pyramid;
@@ -192,8 +174,6 @@ impl Growth for Demand<'_> {
             // Seen or not: where the rim is wrong, so is what a neighbour shares with it.
             return true;
         }
-        // Lines run where facing flips: there facets must be good.
-        let slack = if self.faces_one_way(bounds, pyramid.slopes(origin, step)) { FAR_FROM_LINES } else { 1.0 };
         if !self.view.meets(bounds) {
             return false;
         }
@@ -201,7 +181,7 @@ impl Growth for Demand<'_> {
             self.hidden.insert((origin, size));
             return false;
         }
-        deviation > self.tolerance * slack * self.distance(bounds)
+        deviation > self.tolerance * self.distance(bounds)
     }
 
     /// Beside a coarser chunk a facet of level 1 spans two cells, one of which may lack its patch.

@@ -288,8 +288,3 @@ fn lies_on_patch(dem: &Dem, vertices: [LatticePoint; 3]) -> bool {
     let cell = 3 * CELL_STEPS as usize;
     patch_exists(dem, x / cell, y / cell, usize::from(x % cell > y % cell))
 }
-
-/// Which of its two patches each cell of row `r` has, from the west; see [`patch_exists`].
-pub fn patches_of_row(dem: &Dem, r: usize) -> impl Iterator<Item = [bool; 2]> {
-    (0..dem.columns() - 1).map(move |c| [0, 1].map(|half| patch_exists(dem, c, r, half)))
-}

@@ -262,16 +262,6 @@ impl Patch {
         Bulge { limit: 0.75 * longest(sides.as_flattened()), flat: 0.75 * longest(&means) + 0.05 * longest(&changes) }
     }
 
-    /// The six differences of control points in the direction from one corner to another.
-    pub fn differences(&self, [from, to]: [usize; 2]) -> [DVec3; 6] {
-        const PLACES: [[usize; 2]; 6] = [[0, 0], [1, 0], [2, 0], [0, 1], [1, 1], [0, 2]];
-        PLACES.map(|[j, k]| {
-            let beside =
-                |corner: usize| self.control[Self::index(j + usize::from(corner == 1), k + usize::from(corner == 2))];
-            beside(to) - beside(from)
-        })
-    }
-
     /// The point with barycentric weights `[a, b, c]`. A corner of weight 0 has no influence.
     pub fn point(&self, [a, b, c]: [f64; 3]) -> DVec3 {
         let p = &self.control;

@@ -3,7 +3,8 @@
 //! Method: PN facets of level n leave their patch by its [`Patch::bulge`]; facets coarser than the grid are
 //! measured against every sample they pass, and the bulge of the patches below them is added. A square that holds voids,
 //! or is cut by an edge of the DEM between its vertices, has no coarse facets: its deviation is infinite. Cost: two
-//! patches a cell, then one look at each sample for every coarser level. Memory: 1.4 bytes a sample.
+//! patches a cell, then one look at each sample for every coarser level. Memory: 2 bytes a
+//! sample, half a byte of large DEMs.
 
 use std::ops::Range;
 
@@ -63,7 +64,6 @@ struct Square {
     bulge: f32,
     /// How far the facets of a chunk that fills it leave the surface; of squares up to 32 cells, those of level 1.
     deviation: f32,
-    slopes: Slopes,
     /// NaN where it has voids; only of squares up to 32 cells.
     fences: Fences,
 }
@@ -78,40 +78,13 @@ pub struct Fences {
     pub along_north: f32,
 }
 
-/// Least and largest slopes of a surface, dz/d east and dz/d north.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
-pub struct Slopes {
-    /// Least, east and north.
-    pub least: [f32; 2],
-    /// Largest, east and north.
-    pub largest: [f32; 2],
-}
-
 impl Fences {
     const NONE: Self = Self { along_east: f32::NAN, along_north: f32::NAN };
 }
 
-impl Slopes {
-    const NONE: Self = Self { least: [f32::INFINITY; 2], largest: [f32::NEG_INFINITY; 2] };
-    /// Of what may fold over.
-    const ANY: Self = Self { least: [f32::NEG_INFINITY; 2], largest: [f32::INFINITY; 2] };
-
-    fn with(self, other: Self) -> Self {
-        let of = |a: [f32; 2], b: [f32; 2], pick: fn(f32, f32) -> f32| [pick(a[0], b[0]), pick(a[1], b[1])];
-        Self { least: of(self.least, other.least, f32::min), largest: of(self.largest, other.largest, f32::max) }
-    }
-}
-
 impl Square {
-    const EMPTY: Self = Self {
-        low: f32::INFINITY,
-        high: f32::NEG_INFINITY,
-        bulge: 0.0,
-        deviation: 0.0,
-        slopes: Slopes::NONE,
-        fences: Fences::NONE,
-    };
+    const EMPTY: Self =
+        Self { low: f32::INFINITY, high: f32::NEG_INFINITY, bulge: 0.0, deviation: 0.0, fences: Fences::NONE };
 
     fn with(self, other: Self) -> Self {
         Self {
@@ -119,7 +92,6 @@ impl Square {
             high: self.high.max(other.high),
             bulge: self.bulge.max(other.bulge),
             deviation: self.deviation.max(other.deviation),
-            slopes: self.slopes.with(other.slopes),
             fences: Fences::NONE,
         }
     }
@@ -207,11 +179,6 @@ impl Pyramid {
         Relief { low, high, beyond: bulge }
     }
 
-    /// Between which slopes the surface of the chunk at `origin` lies.
-    pub fn slopes(&self, origin: [u32; 2], step: u32) -> Slopes {
-        self.square(origin, step).slopes
-    }
-
     /// The fences across the square of the chunk at `origin`, of at most 32 cells; `None` where it has voids.
     pub fn fences(&self, origin: [u32; 2], step: u32) -> Option<Fences> {
         Some(self.square(origin, step).fences).filter(|fences| !fences.along_east.is_nan())
@@ -267,7 +234,7 @@ impl Layer {
                     let square = &mut squares[c / size];
                     let corners = [north[c], south[c], south[c + 1], north[c + 1]];
                     for half in (0..2).filter(|half| exists[*half]) {
-                        *square = square.with(of_patch(&Patch::of_cell(corners, half), half));
+                        *square = square.with(of_patch(&Patch::of_cell(corners, half)));
                     }
                 }
                 north = south;
@@ -312,7 +279,7 @@ impl Layer {
     }
 }
 
-fn of_patch(patch: &Patch, half: usize) -> Square {
+fn of_patch(patch: &Patch) -> Square {
     let heights = patch.control().map(|p| p.z as f32);
     let bulge = patch.bulge();
     Square {
@@ -320,22 +287,8 @@ fn of_patch(patch: &Patch, half: usize) -> Square {
         high: heights.into_iter().fold(f32::NEG_INFINITY, f32::max).next_up(),
         bulge: (bulge.limit as f32).next_up(),
         deviation: bulge.flat as f32,
-        slopes: slopes(patch, half),
         fences: Fences::NONE,
     }
-}
-
-/// Slopes of the control polygon east and north, between which those of the patch and of its facets lie but for its
-/// bending sideways.
-fn slopes(patch: &Patch, half: usize) -> Slopes {
-    // Corners 0, 1, 2 of patch 0 are NW, SW, SE, of patch 1 NW, SE, NE.
-    let (east, north) = if half == 0 { ([1, 2], [1, 0]) } else { ([0, 2], [1, 2]) };
-    let (east, north) = (patch.differences(east), patch.differences(north));
-    if east.iter().any(|e| e.x <= 0.0) || north.iter().any(|n| n.y <= 0.0) {
-        return Slopes::ANY;
-    }
-    let slopes = east.into_iter().zip(north).map(|(e, n)| [(e.z / e.x) as f32, (n.z / n.y) as f32]);
-    slopes.fold(Slopes::NONE, |all, slope| all.with(Slopes { least: slope, largest: slope }))
 }
 
 /// The fences of the square of `size` cells at sample (c, r); none where it has voids or leaves the samples.

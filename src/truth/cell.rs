@@ -26,11 +26,8 @@ impl Cell {
             let normal = (-surface.gradient(c + dc, r + dr)).extend(1.0).normalize();
             (dem.position(c + dc, r + dr) - eye, normal)
         };
-        let [nw, sw, se, ne] = [corner(0, 0), corner(0, 1), corner(1, 1), corner(1, 0)];
-        let patch = |half, [a, b, d]: [(DVec3, DVec3); 3]| {
-            patch_exists(dem, c, r, half).then(|| Patch::new([a.0, b.0, d.0], [a.1, b.1, d.1]))
-        };
-        Self { patches: [patch(0, [nw, sw, se]), patch(1, [nw, se, ne])] }
+        let corners = [corner(0, 0), corner(0, 1), corner(1, 1), corner(1, 0)];
+        Self { patches: [0, 1].map(|half| patch_exists(dem, c, r, half).then(|| Patch::of_cell(corners, half))) }
     }
 }
 

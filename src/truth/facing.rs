@@ -41,7 +41,7 @@ pub(super) fn of_patch(patch: Option<&Patch>, half: usize) -> Facing {
     let control = patch.control();
     // Corners 0, 1, 2 of patch 0 are NW, SW, SE, of patch 1 NW, SE, NE.
     let (south, east) = if half == 0 { ([0, 1], [1, 2]) } else { ([2, 1], [0, 2]) };
-    let (south, east) = (patch.differences(south), patch.differences(east));
+    let (south, east) = (differences(control, south), differences(control, east));
     let least = control.iter().copied().fold(DVec3::INFINITY, DVec3::min);
     let most = control.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
     let (middle, reach) = (least.midpoint(most), (most - least) / 2.0);
@@ -58,4 +58,13 @@ pub(super) fn of_patch(patch: Option<&Patch>, half: usize) -> Facing {
         }
     }
     if high < 0.0 { Facing::Toward } else { Facing::Away }
+}
+
+/// The six differences of control points in the direction from one corner to another.
+fn differences(control: &[DVec3; 10], [from, to]: [usize; 2]) -> [DVec3; 6] {
+    const PLACES: [[usize; 2]; 6] = [[0, 0], [1, 0], [2, 0], [0, 1], [1, 1], [0, 2]];
+    PLACES.map(|[j, k]| {
+        let beside = |corner: usize| control[Patch::index(j + usize::from(corner == 1), k + usize::from(corner == 2))];
+        beside(to) - beside(from)
+    })
 }
