@@ -162,7 +162,7 @@ fn segments(field: &Field, count: usize, random: &mut Random) -> Vec<[i32; 4]> {
             let mut at = || random.below((32 * side / grain) as u32 + 1) as i32 * grain;
             corner(LatticePoint { x: chunk.origin[0], y: chunk.origin[1] }) + IVec2::new(at(), at())
         };
-        let (origin, mut end) = (place(slot), place(other));
+        let (mut origin, mut end) = (place(slot), place(other));
         let reach = [1, 2, 8, 64][random.below(4) as usize];
         end = origin + (end - origin) / reach;
         match random.below(10) {
@@ -173,6 +173,7 @@ fn segments(field: &Field, count: usize, random: &mut Random) -> Vec<[i32; 4]> {
             4 | 5 => {
                 let mut small = || random.below(9) as i32 - 4;
                 let d = IVec2::new(small(), small()) * side / 2;
+                origin = origin / (side / 2) * (side / 2);
                 end = origin + d * (2 + random.below(40) as i32);
             }
             _ => {}

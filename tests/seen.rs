@@ -3,7 +3,8 @@
 
 use std::collections::HashMap;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
+use hachure::dem::Dem;
 use hachure::plan::{Border, Detail, Plan, Thrift, detail};
 use hachure::render::Renderer;
 use hachure::surface::{Chunk, Lattice, LatticePoint, Surface};
@@ -23,7 +24,7 @@ const AWAY_FROM_LINES: f64 = 8.0;
 
 /// Deviation that `error_px` allows for each metre of distance.
 fn tolerance(camera: &Camera, error_px: f64) -> f64 {
-    let half = glam::DVec2::new(f64::from(camera.width), f64::from(camera.height)) / 2.0 + 1.0;
+    let half = DVec2::new(f64::from(camera.width), f64::from(camera.height)) / 2.0 + 1.0;
     error_px / camera.focal().hypot(half.length())
 }
 
@@ -80,6 +81,13 @@ fn coarse(
     [seen.iter().filter(wrong).count(), lattice.chunks().iter().filter(far).count()]
 }
 
+/// Smooth waves: what is hidden lies little below what is seen.
+fn dunes() -> Dem {
+    let height = |c: f64, r: f64| 25.0 * (c / 6.0).sin() * (r / 5.0).cos() + 20.0 * ((c + r) / 30.0).sin();
+    let heights = (0..170 * 150).map(|i| height((i % 170) as f64, (i / 170) as f64) as f32).collect();
+    Dem::from_heights(170, DVec2::splat(10.0), DVec2::new(3e5, 4e6), heights)
+}
+
 /// Eyes near the ground, looking at the horizon.
 fn eye(surface: &Surface, random: &mut Random) -> Camera {
     let dem = surface.dem();
@@ -97,8 +105,7 @@ fn eye(surface: &Surface, random: &mut Random) -> Camera {
 }
 
 fn check(eyes: usize) {
-    let scenes =
-        [rough(150, 130, 1.0, 2.0, false), rough(150, 130, 2.0, 8.0, false), rough(120, 100, 1.0, 2.0, true), moor()];
+    let scenes = [rough(150, 130, 1.0, 2.0, false), dunes(), rough(120, 100, 1.0, 2.0, true), moor()];
     let (mut all_seen, mut all_hidden) = (0, 0);
     for (seed, surface) in (1..).zip(scenes.map(Surface::new)) {
         let plan = Plan { thrift: Thrift::Nothing, ..Plan::new(Detail::Uniform(level(4)), BY_ID, Border::Off) };
