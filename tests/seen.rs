@@ -105,17 +105,23 @@ fn eye(surface: &Surface, random: &mut Random) -> Camera {
 }
 
 fn check(eyes: usize) {
-    let scenes = [rough(150, 130, 1.0, 2.0, false), dunes(), rough(120, 100, 1.0, 2.0, true), moor()];
+    let scenes = [
+        (rough(150, 130, 1.0, 2.0, false), ERROR_PX),
+        (dunes(), ERROR_PX / 12.0),
+        (rough(120, 100, 1.0, 2.0, true), ERROR_PX),
+        (moor(), ERROR_PX / 12.0),
+    ];
     let (mut all_seen, mut all_hidden) = (0, 0);
-    for (seed, surface) in (1..).zip(scenes.map(Surface::new)) {
+    for (seed, (dem, error_px)) in (1..).zip(scenes) {
+        let surface = Surface::new(dem);
         let plan = Plan { thrift: Thrift::Nothing, ..Plan::new(Detail::Uniform(level(4)), BY_ID, Border::Off) };
         let renderer = Renderer::new(gpu(), &surface, plan, PAGE).expect("a renderer");
         let mut random = Random(seed);
         for _ in 0..eyes {
             let camera = eye(&surface, &mut random);
             let seen = winners(&renderer, &camera);
-            let lattice = detail::adaptive(&surface, &camera, ERROR_PX, Thrift::Nothing).expect("few chunks");
-            let [wrong, hidden] = coarse(&surface, &lattice, &camera, ERROR_PX, &seen);
+            let lattice = detail::adaptive(&surface, &camera, error_px, Thrift::Nothing).expect("few chunks");
+            let [wrong, hidden] = coarse(&surface, &lattice, &camera, error_px, &seen);
             assert_eq!(wrong, 0, "scene {seed}: of {} facets seen, {camera:?}", seen.len());
             all_seen += seen.len();
             all_hidden += hidden;
