@@ -15,6 +15,9 @@ use crate::mixed::{Kind, exists, flat, lattice, leaves, variety};
 use crate::scenes::Random;
 use crate::tolerances::ENTERED_STEPS;
 
+const PAIRS: &str =
+    concat!(hachure::shader!("scene", "lattice", "list", "pairs"), include_str!("kernels/pairs_probe.wgsl"));
+
 /// A lattice with facing bits.
 struct Field {
     dem: Dem,
@@ -116,6 +119,45 @@ impl Field {
                 note(entry, (!missing).then_some(id));
             }
         }
+    }
+
+    /// Whether pass `pairs` holds walks between facets open.
+    fn open(&self, pairs: &[[u32; 2]]) -> Vec<bool> {
+        let scene = SceneUniform::new(&self.dem, &self.lattice);
+        let chunks = chunk_uniforms(&self.lattice);
+        let data: [(&str, &[u8]); 8] = [
+            ("scene", bytemuck::bytes_of(&scene)),
+            ("chunks", bytemuck::cast_slice(&chunks)),
+            ("summaries", bytemuck::cast_slice(&self.summaries)),
+            ("facing_0", bytemuck::cast_slice(&self.facing)),
+            ("facing_1", &[]),
+            ("facing_2", &[]),
+            ("facing_3", &[]),
+            ("facet_pairs", bytemuck::cast_slice(pairs)),
+        ];
+        run("pairs_probe", PAIRS, &[], &data, pairs.len() as u32).chunks_exact(4).map(|f| f[0] == 1).collect()
+    }
+
+    /// The middle of a facet, walk units; `None` where it has collapsed or does not exist.
+    fn middle(&self, id: u32) -> Option<IVec2> {
+        let [a, b, c] = self.lattice.facet(id);
+        let is_facet = a != b && b != c && c != a && exists(&self.dem, [a, b, c]);
+        is_facet.then(|| (corner(a) + corner(b) + corner(c)) / 3)
+    }
+
+    /// A facet and another a few quads from it, in its chunk or beyond.
+    fn pair(&self, random: &mut Random) -> Option<[u32; 2]> {
+        let p = random.below(self.lattice.chunks().len() as u32 * CHUNK_FACETS);
+        let side = self.lattice.chunks()[(p / CHUNK_FACETS) as usize].step as i32 * UNITS;
+        let mut off = || (random.below(7) as i32 - 3) * side / 2;
+        let at = (self.middle(p)? + IVec2::new(off(), off())) / UNITS;
+        let (corner, size, slot) = *self.squares.iter().find(|(corner, size, _)| {
+            let inner = at - IVec2::new(corner[0] as i32, corner[1] as i32);
+            inner.cmpge(IVec2::ZERO).all() && inner.cmplt(IVec2::splat(*size as i32)).all()
+        })?;
+        let [x, y] = [at.x as u32 - corner[0], at.y as u32 - corner[1]].map(|at| at / (size / CHUNK_QUADS));
+        let q = slot.checked_mul(CHUNK_FACETS)? + (y / 8 * 4 + x / 8) * 128 + (x % 8 * 8 + y % 8) * 2 + random.below(2);
+        self.middle(q).map(|_| [p, q])
     }
 
     /// What the shader's walk meets.
@@ -252,4 +294,27 @@ fn walks_across_levels_meet_what_exact_arithmetic_meets() {
 #[ignore = "a minute: while working on walks"]
 fn many_walks_across_levels_meet_what_exact_arithmetic_meets() {
     check(300, 2000);
+}
+
+#[test]
+fn pairs_that_are_closed_meet_nothing() {
+    let (mut closed, mut beside) = (0, [0, 0]);
+    for seed in 1..=14 {
+        let (kind, _, dropped) = KINDS[seed as usize % KINDS.len()];
+        let mut random = Random::new(seed * 104_729);
+        let field = Field::new(kind, 12, dropped, &mut random);
+        let pairs: Vec<_> = (0..20_000).filter_map(|_| field.pair(&mut random)).collect();
+        for (pair, open) in pairs.iter().zip(field.open(&pairs)) {
+            closed += usize::from(!open);
+            let [p, q] = pair.map(|id| field.lattice.chunks()[(id / CHUNK_FACETS) as usize]);
+            beside[usize::from(p != q)] += usize::from(!open && p.coarser | q.coarser != 0);
+            let [Some(origin), Some(end)] = pair.map(|id| field.middle(id)) else { continue };
+            if !open && origin != end {
+                let met = field.twin(origin, end);
+                assert!(!matches!(met, Ok(Some(_))), "seed {seed}, {kind:?}: {pair:?} are closed and meet {met:?}");
+            }
+        }
+    }
+    println!("{closed} pairs are closed, {beside:?} of them in and between chunks beside coarser ones");
+    assert!(closed > 5000 && beside.iter().all(|n| *n > 200), "{closed}, {beside:?}");
 }
