@@ -100,19 +100,10 @@ fn arrival(step: u32, to_step: u32, quad: vec2<i32>, crossed: vec2<bool>, origin
     if to_step == step {
         return Arrival(quad, crossed);
     }
+    // Across a line the nearer half. Along the side quads are looked at two by two, so that either half will do, unless the
+    // segment never leaves its own.
     let near = select(vec2<i32>(1), vec2<i32>(0), ahead);
-    if all(crossed) {
-        return Arrival(quad * 2 + near, crossed);
-    }
-    // Across the line it is the nearer half; along it, whether the middle is met before the line.
     let side = i32(step * UNITS);
-    let middle = quad * side + side / 2;
-    let lead = wide_sign(lead_between(select(middle, (quad + near) * side, crossed), origin, d));
-    let passed = select(-lead, lead, crossed.x);
-    var half = select(near, 1 - near, passed >= 0);
-    let still = select(d.x, d.y, crossed.x) == 0;
-    if still {
-        half = select(vec2<i32>(0), vec2<i32>(1), origin >= middle);
-    }
-    return Arrival(quad * 2 + select(half, near, crossed), crossed | vec2<bool>(passed == 0 && !still));
+    let own = select(vec2<i32>(0), vec2<i32>(1), origin >= quad * side + side / 2);
+    return Arrival(quad * 2 + select(near, own, d == vec2<i32>(0)), crossed);
 }

@@ -36,6 +36,11 @@ fn corner(at: LatticePoint) -> IVec2 {
     IVec2::new(at.x as i32, at.y as i32) * UNITS
 }
 
+/// The facet of a half of the quad at column and row of a chunk.
+fn facet_in(slot: u32, [x, y]: [u32; 2], half: u32) -> u32 {
+    slot * CHUNK_FACETS + (y / 8 * 4 + x / 8) * 128 + (x % 8 * 8 + y % 8) * 2 + half
+}
+
 impl Field {
     /// One facet in `rarity` is away.
     fn new(kind: Kind, rarity: u32, dropped: u32, random: &mut Random) -> Self {
@@ -108,8 +113,7 @@ impl Field {
     fn of_quads(&self, slot: u32, at: [u32; 2], origin: IVec2, end: IVec2, note: &mut impl FnMut(Share, Option<u32>)) {
         for k in 0..8 {
             let [x, y] = [at[0] + (k >> 1) % 2, at[1] + k / 4];
-            let local = (y / 8 * 4 + x / 8) * 128 + (x % 8 * 8 + y % 8) * 2 + k % 2;
-            let id = slot * CHUNK_FACETS + local;
+            let id = facet_in(slot, [x, y], k % 2);
             let vertices = self.lattice.facet(id);
             let away = self.facing[(id / 32) as usize] >> (id % 32) & 1 == 1;
             let missing = !exists(&self.dem, vertices);
@@ -138,26 +142,38 @@ impl Field {
         run("pairs_probe", PAIRS, &[], &data, pairs.len() as u32).chunks_exact(4).map(|f| f[0] == 1).collect()
     }
 
-    /// The middle of a facet, walk units; `None` where it has collapsed or does not exist.
-    fn middle(&self, id: u32) -> Option<IVec2> {
+    /// A place inside a facet, walk units; `None` where it has collapsed or does not exist.
+    fn inside(&self, id: u32, random: &mut Random) -> Option<IVec2> {
         let [a, b, c] = self.lattice.facet(id);
         let is_facet = a != b && b != c && c != a && exists(&self.dem, [a, b, c]);
-        is_facet.then(|| (corner(a) + corner(b) + corner(c)) / 3)
+        let [u, v] = [1 + random.below(14) as i32, 1 + random.below(14) as i32];
+        let [u, v] = if u + v < 16 { [u, v] } else { [15 - u, 15 - v] };
+        let from_a = |to: LatticePoint, share: i32| (corner(to) - corner(a)) / 16 * share;
+        is_facet.then(|| corner(a) + from_a(b, u.max(1)) + from_a(c, v.max(1)))
     }
 
     /// A facet and another a few quads from it, in its chunk or beyond.
     fn pair(&self, random: &mut Random) -> Option<[u32; 2]> {
-        let p = random.below(self.lattice.chunks().len() as u32 * CHUNK_FACETS);
+        let slot = random.below(self.lattice.chunks().len() as u32);
+        // Along a side of its chunk, mostly.
+        let [x, y] = match random.below(5) {
+            0 => [random.below(2), random.below(32)],
+            1 => [30 + random.below(2), random.below(32)],
+            2 => [random.below(32), random.below(2)],
+            3 => [random.below(32), 30 + random.below(2)],
+            _ => [random.below(32), random.below(32)],
+        };
+        let p = facet_in(slot, [x, y], random.below(2));
         let side = self.lattice.chunks()[(p / CHUNK_FACETS) as usize].step as i32 * UNITS;
         let mut off = || (random.below(7) as i32 - 3) * side / 2;
-        let at = (self.middle(p)? + IVec2::new(off(), off())) / UNITS;
+        let beyond = IVec2::new(off(), off());
+        let at = (self.inside(p, random)? + beyond) / UNITS;
         let (corner, size, slot) = *self.squares.iter().find(|(corner, size, _)| {
             let inner = at - IVec2::new(corner[0] as i32, corner[1] as i32);
             inner.cmpge(IVec2::ZERO).all() && inner.cmplt(IVec2::splat(*size as i32)).all()
         })?;
         let [x, y] = [at.x as u32 - corner[0], at.y as u32 - corner[1]].map(|at| at / (size / CHUNK_QUADS));
-        let q = slot.checked_mul(CHUNK_FACETS)? + (y / 8 * 4 + x / 8) * 128 + (x % 8 * 8 + y % 8) * 2 + random.below(2);
-        self.middle(q).map(|_| [p, q])
+        (slot != NO_SLOT).then(|| [p, facet_in(slot, [x, y], random.below(2))])
     }
 
     /// What the shader's walk meets.
@@ -308,7 +324,7 @@ fn pairs_that_are_closed_meet_nothing() {
             closed += usize::from(!open);
             let [p, q] = pair.map(|id| field.lattice.chunks()[(id / CHUNK_FACETS) as usize]);
             beside[usize::from(p != q)] += usize::from(!open && p.coarser | q.coarser != 0);
-            let [Some(origin), Some(end)] = pair.map(|id| field.middle(id)) else { continue };
+            let [Some(origin), Some(end)] = pair.map(|id| field.inside(id, &mut random)) else { continue };
             if !open && origin != end {
                 let met = field.twin(origin, end);
                 assert!(!matches!(met, Ok(Some(_))), "seed {seed}, {kind:?}: {pair:?} are closed and meet {met:?}");
