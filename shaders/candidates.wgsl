@@ -17,13 +17,12 @@ fn shown(at: vec2<i32>) -> u32 {
 fn blocks_between(local_p: u32, local_q: u32) -> u32 {
     let p = local_p >> 7u;
     let q = local_q >> 7u;
-    let low_x = min(p & 3u, q & 3u);
-    let high_x = max(p & 3u, q & 3u);
-    let low_y = min(p, q) >> 2u;
-    let high_y = max(p, q) >> 2u;
-    let row = ((2u << high_x) - 1u) & ~((1u << low_x) - 1u);
-    let rows = ((16u << (4u * high_y)) - 1u) & ~((1u << (4u * low_y)) - 1u);
-    return (row * 0x1111u) & rows;
+    let low = min(p % CHUNK_BLOCKS, q % CHUNK_BLOCKS);
+    let high = max(p % CHUNK_BLOCKS, q % CHUNK_BLOCKS);
+    let row = (2u << high) - (1u << low);
+    let first = min(p, q) / CHUNK_BLOCKS * CHUNK_BLOCKS;
+    let last = max(p, q) / CHUNK_BLOCKS * CHUNK_BLOCKS;
+    return (row << first) | (row << last);
 }
 
 // Whether a walk between two pixels must be looked at; `slot` and `summary` belong to `p`.

@@ -45,17 +45,17 @@ fn away_halves(nw: Vertex, ne: Vertex, sw: Vertex, se: Vertex) -> u32 {
     return select(0u, 1u, away_0) | select(0u, 2u, away_1);
 }
 
-@compute @workgroup_size(64)
-fn facing(@builtin(global_invocation_id) invocation: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {
-    let slot = batch.first_slot + group.y;
-    if !in_wedge(bounds_of(slot)) {
+@compute @workgroup_size(16, 4)
+fn facing(@builtin(global_invocation_id) invocation: vec3<u32>) {
+    let slot = batch.first_slot + invocation.y;
+    if slot >= camera.chunks || !in_wedge(bounds_of(slot)) {
         return;
     }
     let chunk = chunks[slot];
     let ragged = has_voids
         || any(chunk.origin + CHUNK_QUADS * chunk.step > (scene.samples - 1u) * CELL_STEPS);
     var quad = local_quad(invocation.x * 32u);
-    var v = group.y * CHUNK_VERTICES + quad.y * CHUNK_SIDE + quad.x;
+    var v = invocation.y * CHUNK_VERTICES + quad.y * CHUNK_SIDE + quad.x;
     var bits = 0u;
     var missing = 0u;
     // Two columns of eight quads, row by row: each vertex is read once.
@@ -78,7 +78,7 @@ fn facing(@builtin(global_invocation_id) invocation: vec3<u32>, @builtin(workgro
         north = south;
         north_east = south_east;
     }
-    out_facing[(batch.part_slot + group.y) * CHUNK_WORDS + invocation.x] = bits;
+    out_facing[(batch.part_slot + invocation.y) * CHUNK_WORDS + invocation.x] = bits;
     let block = invocation.x >> 2u;
     let summary = select(0u, 1u << block, bits != 0u) | (select(0u, 1u, missing != 0u) << (block + 16u));
     if summary != 0u {

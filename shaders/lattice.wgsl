@@ -12,12 +12,12 @@ struct Facet {
 fn local_quad(local: u32) -> vec2<u32> {
     let block = local >> 7u;
     let quad = (local >> 1u) & 63u;
-    return vec2<u32>((block & 3u) * 8u + (quad >> 3u), (block >> 2u) * 8u + (quad & 7u));
+    return vec2<u32>(block % CHUNK_BLOCKS * 8u + (quad >> 3u), block / CHUNK_BLOCKS * 8u + (quad & 7u));
 }
 
 // The inverse: number within its chunk of half 0 of a quad.
 fn quad_local(quad: vec2<u32>) -> u32 {
-    let block = (quad.y >> 3u) * 4u + (quad.x >> 3u);
+    let block = (quad.y >> 3u) * CHUNK_BLOCKS + (quad.x >> 3u);
     return block * 128u + ((quad.x & 7u) * 8u + (quad.y & 7u)) * 2u;
 }
 

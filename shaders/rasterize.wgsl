@@ -113,16 +113,16 @@ fn rasterize_facet(id: u32, a: vec3<i32>, b: vec3<i32>, c: vec3<i32>, v: u32, aw
     }
 }
 
-@compute @workgroup_size(64)
-fn rasterize(@builtin(global_invocation_id) invocation: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {
-    let slot = batch.first_slot + group.y;
-    if !in_view(bounds_of(slot)) {
+@compute @workgroup_size(32, 2)
+fn rasterize(@builtin(global_invocation_id) invocation: vec3<u32>) {
+    let slot = batch.first_slot + invocation.y;
+    if slot >= camera.seen || !in_view(bounds_of(slot)) {
         return;
     }
     let local = invocation.x * STRIP_FACETS;
     let quad = local_quad(local);
     var id = slot * CHUNK_FACETS + local;
-    var v = group.y * CHUNK_VERTICES + quad.y * CHUNK_SIDE + quad.x;
+    var v = invocation.y * CHUNK_VERTICES + quad.y * CHUNK_SIDE + quad.x;
     let bits = emitted_bits(id);
     var nw = screens[v].xyz;
     var ne = screens[v + 1u].xyz;

@@ -17,11 +17,12 @@ struct Camera {
     eye_height: vec2<f32>,  // metres, high part and remainder
     centre: vec2<f32>,      // half the page in pixels
     focal: f32,             // pixels per unit of tangent
-    pad: u32,
+    chunks: u32,            // of the frame
     size: vec2<u32>,        // pixels across, down, of what is drawn: the page or a piece of it
     wedge: vec4<f32>,       // inward normals of the two sides of its map projection; 0 where it is no wedge
     origin: vec2<i32>,      // the page's column and row of its top left pixel
-    pad_end: vec2<u32>,
+    seen: u32,              // chunks in the first slots that are drawn
+    pad: u32,
 }
 
 struct Batch {
@@ -69,11 +70,13 @@ override thrifty: bool = true;
 @group(0) @binding(16) var<storage, read> pixels: array<vec2<u32>>;
 
 const CELL_STEPS: u32 = 64u;
-const CHUNK_QUADS: u32 = 32u;
-const CHUNK_FACETS: u32 = 2048u;
-const CHUNK_SIDE: u32 = 33u;
-const CHUNK_VERTICES: u32 = 1089u;
-const CHUNK_WORDS: u32 = 64u;
+const CHUNK_QUADS: u32 = 16u;
+// Blocks of 8 x 8 quads along a chunk's edge.
+const CHUNK_BLOCKS: u32 = 2u;
+const CHUNK_FACETS: u32 = 512u;
+const CHUNK_SIDE: u32 = 17u;
+const CHUNK_VERTICES: u32 = 289u;
+const CHUNK_WORDS: u32 = 16u;
 // Workgroups along one dimension.
 const MOST_GROUPS: u32 = 65535u;
 const NO_SLOT: u32 = 0xffffffffu;

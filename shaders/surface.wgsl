@@ -31,8 +31,8 @@ fn tangent(edge: vec3<f32>, normal: vec3<f32>, scale: f32) -> vec3<f32> {
 }
 
 // Samples along a tile's edge.
-const TILE_SIDE: u32 = 33u;
-const TILE_SAMPLES: u32 = 1089u;
+const TILE_SIDE: u32 = 17u;
+const TILE_SAMPLES: u32 = 289u;
 
 // Index of the sample at column and row `at` of a tile.
 fn tile_sample(tile: u32, at: vec2<u32>) -> u32 {

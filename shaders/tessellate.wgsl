@@ -51,21 +51,21 @@ fn block_columns(step: u32) -> u32 {
 }
 
 fn block_rows(step: u32) -> u32 {
-    return select(6u, 11u, step == CELL_STEPS / 2u);
+    return select(6u, CHUNK_SIDE, step == CELL_STEPS / 2u);
 }
 
-@compute @workgroup_size(64)
-fn tessellate(@builtin(global_invocation_id) invocation: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {
-    let slot = batch.first_slot + group.y;
+@compute @workgroup_size(16, 4)
+fn tessellate(@builtin(global_invocation_id) invocation: vec3<u32>) {
+    let slot = batch.first_slot + invocation.y;
     let chunk = chunks[slot];
     let columns = block_columns(chunk.step);
     let across = CHUNK_QUADS / columns + 1u;
     let first = vec2<u32>(invocation.x % across * columns, invocation.x / across * block_rows(chunk.step));
-    if first.y >= CHUNK_SIDE || !in_wedge(bounds_of(slot)) {
+    if slot >= camera.chunks || first.y >= CHUNK_SIDE || !in_wedge(bounds_of(slot)) {
         return;
     }
     let end = min(first + vec2<u32>(columns, block_rows(chunk.step)), vec2<u32>(CHUNK_SIDE));
-    let base = group.y * CHUNK_VERTICES;
+    let base = invocation.y * CHUNK_VERTICES;
     if chunk.step >= CELL_STEPS {
         // Every vertex is a sample.
         for (var row = first.y; row < end.y; row++) {

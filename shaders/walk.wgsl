@@ -150,12 +150,12 @@ fn walk_between(origin: vec2<i32>, end: vec2<i32>) -> Meeting {
         var lead = lead_between(lines, origin, d);
         let per_column = wide_mul_u32(u32(side), u32(abs(d.y)));
         let per_row = wide_mul_u32(u32(side), u32(abs(d.x)));
-        let chunk_at = quad >> vec2<u32>(5u);
+        let chunk_at = quad >> vec2<u32>(firstTrailingBit(CHUNK_QUADS));
         // Node by node: leaps over a chunk or a block where nothing can happen.
         loop {
             steps += 1u;
             let inner = vec2<u32>(quad) & vec2<u32>(CHUNK_QUADS - 1u);
-            let block = (inner.y >> 3u) * 4u + (inner.x >> 3u);
+            let block = (inner.y >> 3u) * CHUNK_BLOCKS + (inner.x >> 3u);
             let eventful = ((summary >> block) & 0x10001u) != 0u;
             let node = select(select(8u, 1u, eventful || !thrifty), CHUNK_QUADS, summary == 0u && thrifty);
             let in_node = inner & vec2<u32>(node - 1u);
@@ -215,7 +215,7 @@ fn walk_between(origin: vec2<i32>, end: vec2<i32>) -> Meeting {
             let moved = select(to_side, vec2<u32>(count), !leaves & vec2<bool>(!all(leaves)));
             crossed = leaves | vec2<bool>(at_corner);
             quad += heading * vec2<i32>(moved);
-            if any(chunk_at != (quad >> vec2<u32>(5u))) {
+            if any(chunk_at != (quad >> vec2<u32>(firstTrailingBit(CHUNK_QUADS)))) {
                 break;
             }
             left -= moved;

@@ -224,7 +224,7 @@ impl<'a> Renderer<'a> {
                 remedy: "use a lower --level or a --crop".into(),
             });
         };
-        loaded.buffers.write_camera(self.gpu, &CameraUniform::new(self.surface.dem(), camera)?)?;
+        loaded.buffers.write_camera(self.gpu, &self.camera_uniform(&loaded, camera)?)?;
         for (stage, extent) in [(vertices, tessellate::invocations(batch)), (seams, seam::invocations(batch))] {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
             stage.pass.record(&mut pass, &stage.groups[0], extent);
@@ -269,7 +269,7 @@ impl<'a> Renderer<'a> {
 
     fn run(&self, camera: &Camera, piece: Piece, timer: Option<&mut Timer>) -> Result<()> {
         let loaded = self.loaded.borrow();
-        let uniform = CameraUniform::new(self.surface.dem(), camera)?.cut_to(camera, piece.drawn);
+        let uniform = self.camera_uniform(&loaded, camera)?.cut_to(camera, piece.drawn);
         loaded.buffers.write_camera(self.gpu, &uniform)?;
         let mut work = Work::new(self.gpu, &loaded.buffers, timer);
         work.clear(&["pixels", "ink", "summaries", "counts"])?;
@@ -309,7 +309,7 @@ impl<'a> Renderer<'a> {
         if round == 0 {
             work.record(facing_stage, group, facing::invocations(batch))?;
         }
-        work.record(small, group, rasterize::invocations(&self.seen(loaded, batch)))?;
+        work.record(small, group, rasterize::invocations(batch, self.seen(loaded)))?;
         work.record(large, group, Extent::List("queue"))?;
         if several {
             work.submit()?;
@@ -317,12 +317,17 @@ impl<'a> Renderer<'a> {
         Ok(())
     }
 
-    /// What of a batch may appear. Hidden away facets count where depths of both sides are compared.
-    fn seen(&self, loaded: &Loaded, batch: &Batch) -> Batch {
+    fn camera_uniform(&self, loaded: &Loaded, camera: &Camera) -> Result<CameraUniform> {
+        let uniform = CameraUniform::new(self.surface.dem(), camera)?;
+        Ok(CameraUniform { chunks: loaded.lattice.chunks().len() as u32, seen: self.seen(loaded), ..uniform })
+    }
+
+    /// How many chunks, in the first slots, may appear. Hidden away facets count where depths of both sides are compared.
+    fn seen(&self, loaded: &Loaded) -> u32 {
         if self.plan.thrift == Thrift::Nothing || self.visibility == Visibility::TwoDepths {
-            return *batch;
+            return loaded.lattice.chunks().len() as u32;
         }
-        Batch { chunks: loaded.lattice.seen().saturating_sub(batch.first_slot).min(batch.chunks), ..*batch }
+        loaded.lattice.seen()
     }
 
     /// Brings to the device what a camera asks for where each frame has its own lattice: one for all pieces.

@@ -85,7 +85,7 @@ fn coarse_chunks_draw_what_the_grid_draws() {
         let surface = &Surface::new(dem);
         for eye in [DVec3::new(-2600.0, -4300.0, 900.0), DVec3::new(300.0, -5000.0, 1500.0)].map(|eye| eye * nearer) {
             let camera = from_aside(surface, eye);
-            let (raster, [levels, seams]) = draw(surface, Detail::Adaptive { error_px: 0.25 }, &camera, Border::On);
+            let (raster, [levels, seams]) = draw(surface, Detail::Adaptive { error_px: 0.15 }, &camera, Border::On);
             let uniform = draw(surface, level(4), &camera, Border::On).0;
             let of = |kind| [&raster, &uniform].map(|raster| centres(raster, kind));
             let (lines, borders) = (of(Kind::Silhouette), of(Kind::Border));

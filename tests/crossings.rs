@@ -38,7 +38,7 @@ fn corner(at: LatticePoint) -> IVec2 {
 
 /// The facet of a half of the quad at column and row of a chunk.
 fn facet_in(slot: u32, [x, y]: [u32; 2], half: u32) -> u32 {
-    slot * CHUNK_FACETS + (y / 8 * 4 + x / 8) * 128 + (x % 8 * 8 + y % 8) * 2 + half
+    slot * CHUNK_FACETS + (y / 8 * (CHUNK_QUADS / 8) + x / 8) * 128 + (x % 8 * 8 + y % 8) * 2 + half
 }
 
 impl Field {
@@ -97,7 +97,7 @@ impl Field {
                 continue;
             }
             let pair = (*size / CHUNK_QUADS) as i32 * UNITS * 2;
-            for (y, x) in (0..16).flat_map(|y| (0..16).map(move |x| (y, x))) {
+            for (y, x) in (0..CHUNK_QUADS as i32 / 2).flat_map(|y| (0..CHUNK_QUADS as i32 / 2).map(move |x| (y, x))) {
                 let corner_of_pair = low + IVec2::new(x, y) * pair;
                 if touches(corner_of_pair, corner_of_pair + pair) {
                     self.of_quads(*slot, [x as u32 * 2, y as u32 * 2], origin, end, &mut note);
@@ -157,11 +157,11 @@ impl Field {
         let slot = random.below(self.lattice.chunks().len() as u32);
         // Along a side of its chunk, mostly.
         let [x, y] = match random.below(5) {
-            0 => [random.below(2), random.below(32)],
-            1 => [30 + random.below(2), random.below(32)],
-            2 => [random.below(32), random.below(2)],
-            3 => [random.below(32), 30 + random.below(2)],
-            _ => [random.below(32), random.below(32)],
+            0 => [random.below(2), random.below(CHUNK_QUADS)],
+            1 => [CHUNK_QUADS - 2 + random.below(2), random.below(CHUNK_QUADS)],
+            2 => [random.below(CHUNK_QUADS), random.below(2)],
+            3 => [random.below(CHUNK_QUADS), CHUNK_QUADS - 2 + random.below(2)],
+            _ => [random.below(CHUNK_QUADS), random.below(CHUNK_QUADS)],
         };
         let p = facet_in(slot, [x, y], random.below(2));
         let side = self.lattice.chunks()[(p / CHUNK_FACETS) as usize].step as i32 * UNITS;

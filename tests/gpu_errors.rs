@@ -48,15 +48,15 @@ fn a_camera_of_another_page_is_refused() {
 
 #[test]
 fn facets_beyond_their_ids_are_refused_with_numbers() {
-    // 1448 x 1448 chunks of 2048 facets have IDs, 1449 x 1449 have not; at level 64 a chunk is half a cell.
+    // 2896 x 2896 chunks of 512 facets have IDs, 2900 x 2900 have not; at level 64 a chunk is a quarter of a cell.
     assert!(Lattice::uniform(&flat(725, 725), level(64)).is_ok());
     let error =
-        refused(Lattice::uniform(&flat(726, 726), level(64)), &["level 64", "4305920000 facets", "2097151", "--level"]);
+        refused(Lattice::uniform(&flat(726, 726), level(64)), &["level 64", "4305920000 facets", "8388607", "--level"]);
     assert!(matches!(error, Error::Limit { .. }));
     refused(Lattice::uniform(&flat(131_001, 2), level(1)), &["131001 x 2", "131000", "--crop"]);
     assert!(Lattice::uniform(&flat(131_000, 2), level(1)).is_ok());
-    // 1024 x 2048 chunks would need an ID of 2^32 - 1, and a pixel holds ID + 1.
-    refused(Lattice::uniform(&flat(513, 1025), level(64)), &["level 64", "2097152 chunks"]);
+    // 2048 x 4096 chunks would need an ID of 2^32 - 1, and a pixel holds ID + 1.
+    refused(Lattice::uniform(&flat(513, 1025), level(64)), &["level 64", "8388608 chunks"]);
     assert!(Lattice::uniform(&flat(512, 1025), level(64)).is_ok());
 }
 

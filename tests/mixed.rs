@@ -87,7 +87,7 @@ pub fn lattice(dem: &Dem, kind: Kind, dropped: u32, random: &mut Random) -> Latt
         (!drops && holds_facet(dem, origin, step)).then_some(Role::Seen)
     };
     let tree = Lattice::grow(dem, kind.steps[0], from, &mut Chance { dem, random, kind }).expect("few chunks");
-    Lattice::adaptive(tree, keep).expect("few chunks")
+    Lattice::adaptive(dem, tree, keep).expect("few chunks")
 }
 
 fn holds_facet(dem: &Dem, origin: [u32; 2], step: u32) -> bool {

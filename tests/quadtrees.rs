@@ -14,6 +14,11 @@ use hachure::view::Camera;
 use crate::mixed::{Kind, exists, flat, has_void, lattice, leaves, may_be_coarse, sides, variety};
 use crate::scenes::{Random, rough};
 
+/// Whether a square begins on the land's rectangle.
+fn starts_on(dem: &Dem, [x, y]: [u32; 2]) -> bool {
+    x < (dem.columns() as u32 - 1) * CELL_STEPS && y < (dem.rows() as u32 - 1) * CELL_STEPS
+}
+
 /// What is wrong with a lattice's squares, none of it dropped but voids.
 fn wrong_squares(dem: &Dem, lattice: &Lattice) -> Option<String> {
     let squares = leaves(lattice);
@@ -63,7 +68,9 @@ fn wrong_squares(dem: &Dem, lattice: &Lattice) -> Option<String> {
         if chunk.origin != corner || chunk.step != step {
             return Some(format!("{chunk:?} lies at {corner:?}, size {size}"));
         }
-        let coarser = sides((corner, size), |at| holds(at).is_some_and(|(_, other, _)| *other > size));
+        let coarser = sides((corner, size), |at| {
+            holds(at).is_some_and(|(corner, other, _)| *other > size && starts_on(dem, *corner))
+        });
         if chunk.coarser != coarser {
             return Some(format!("{chunk:?} has coarser sides {coarser:b}"));
         }

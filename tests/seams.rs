@@ -93,7 +93,9 @@ fn a_vertex_unlike_its_neighbours_is_noticed() {
     assert_eq!(unlike(&renderer, &shot)[1], 0);
     let slot = renderer.lattice().chunks().iter().position(|chunk| chunk.coarser != 0).expect("a seam");
     let bits = renderer.lattice().chunks()[slot].coarser;
-    let at = [16, 16 * CHUNK_SIDE + 32, 32 * CHUNK_SIDE + 16, 16 * CHUNK_SIDE][bits.trailing_zeros() as usize];
+    let (half, end) = (CHUNK_QUADS / 2, CHUNK_QUADS);
+    let at =
+        [half, half * CHUNK_SIDE + end, end * CHUNK_SIDE + half, half * CHUNK_SIDE][bits.trailing_zeros() as usize];
     shot.screens[slot * CHUNK_VERTICES as usize + at as usize][0] ^= 1;
     assert!(unlike(&renderer, &shot)[1] > 0);
 }

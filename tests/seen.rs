@@ -57,7 +57,7 @@ fn coarse(
         leaves(lattice).into_iter().map(|(corner, size, slot)| (corner, slot << 8 | size.ilog2())).collect();
     let chunk_of = |at: [u32; 2]| {
         let square = |log2: u32| squares.get(&at.map(|v| v >> log2 << log2)).filter(|s| **s & 255 == log2);
-        lattice.chunks()[(5..20).find_map(square).expect("a square").to_owned() as usize >> 8]
+        lattice.chunks()[(4..20).find_map(square).expect("a square").to_owned() as usize >> 8]
     };
     let wrong = |facet: &&[LatticePoint; 3]| {
         let points = facet.map(|at| surface.position(at).expect("land").distance(camera.eye));

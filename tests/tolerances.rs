@@ -80,8 +80,8 @@ pub const LEVEL_STRAYS: f64 = 0.01;
 
 /// Least number of facets that a walk over a plain passes for each node it visits.
 ///
-/// Example: two neighbouring pixels 200 cells apart at level 4 have 1 600 facets between them: at most 80 nodes.
-pub const FACETS_A_LEAP: f64 = 20.0;
+/// Example: two neighbouring pixels 200 cells apart at level 4 have 1 600 facets between them: at most 160 nodes.
+pub const FACETS_A_LEAP: f64 = 10.0;
 
 /// Share of border pixels that may lie on the rim where something hides it: a rim is drawn where its pixel or one of the
 /// four beside it shows something farther, so that it runs on for a pixel square to the silhouette, more at a slant.

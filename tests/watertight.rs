@@ -3,6 +3,7 @@
 
 use glam::DVec3;
 use hachure::surface::Surface;
+use hachure::surface::lattice::{CHUNK_FACETS, CHUNK_SIDE, CHUNK_VERTICES};
 use hachure::view::Camera;
 
 use crate::common::gpu;
@@ -43,10 +44,10 @@ impl Met {
 
 /// Screen vertices of a facet.
 fn corners(renderer: &hachure::render::Renderer<'_>, shot: &Shot, id: u32) -> [[i32; 4]; 3] {
-    let chunk = renderer.lattice().chunks()[(id / 2048) as usize];
+    let chunk = renderer.lattice().chunks()[(id / CHUNK_FACETS) as usize];
     renderer.lattice().facet(id).map(|at| {
         let [x, y] = [at.x - chunk.origin[0], at.y - chunk.origin[1]].map(|d| d / chunk.step);
-        shot.screens[(id / 2048 * 1089 + y * 33 + x) as usize]
+        shot.screens[(id / CHUNK_FACETS * CHUNK_VERTICES + y * CHUNK_SIDE + x) as usize]
     })
 }
 
@@ -84,7 +85,7 @@ fn check(surface: &Surface, n: u32, random: &mut Random, met: &mut Met) {
         assert!(holes.is_empty(), "level {n}: {} pinholes, first {:?}, {camera:?}", holes.len(), &holes[..1]);
         met.uncovered += uncovered;
         met.covered += depths.len() - uncovered;
-        met.add(renderer.lattice().chunks().len() as u32 * 2048, &renderer, &shot);
+        met.add(renderer.lattice().chunks().len() as u32 * CHUNK_FACETS, &renderer, &shot);
     }
 }
 

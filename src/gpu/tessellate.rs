@@ -15,7 +15,7 @@ pub fn pass(gpu: &Gpu, constants: &[(&str, f64)]) -> Result<Pass> {
     Pass::new(gpu, "tessellate", SOURCE, constants)
 }
 
-/// At most 64 blocks of vertices, one row a chunk.
+/// At most 16 blocks of vertices, one row a chunk.
 pub fn invocations(batch: &Batch) -> [u32; 2] {
-    [64, batch.chunks]
+    [16, batch.chunks]
 }

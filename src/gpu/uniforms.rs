@@ -49,16 +49,18 @@ pub struct CameraUniform {
     pub centre: [f32; 2],
     /// Pixels per unit of tangent.
     pub focal: f32,
-    /// Fills to 8 bytes.
-    pub pad: u32,
+    /// Chunks of the frame.
+    pub chunks: u32,
     /// Pixels across, down, of what is drawn.
     pub size: [u32; 2],
     /// Inward normals of the two sides of its map projection; 0 where it is no wedge.
     pub wedge: [f32; 4],
     /// The page's column and row of its top left pixel.
     pub origin: [i32; 2],
+    /// Chunks in the first slots that are drawn.
+    pub seen: u32,
     /// Fills to 16 bytes.
-    pub pad_end: [u32; 2],
+    pub pad: u32,
 }
 
 /// `Chunk` of scene.wgsl.
@@ -162,11 +164,12 @@ impl CameraUniform {
             eye_height: [high, (camera.eye.z - f64::from(high)) as f32],
             centre: [camera.width as f32 / 2.0, camera.height as f32 / 2.0],
             focal: camera.focal() as f32,
-            pad: 0,
+            chunks: 0,
             size: [camera.width, camera.height],
             wedge: wedge_words(camera.wedge()),
             origin: [0; 2],
-            pad_end: [0; 2],
+            seen: 0,
+            pad: 0,
         })
     }
 

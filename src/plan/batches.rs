@@ -1,9 +1,9 @@
 //! Chunks in batches that share one vertex buffer, so that memory does not grow with the level.
 
-/// Chunks of a batch: their vertices take 4096 x 1089 x 16 bytes = 71 MB in each of two buffers.
-pub const BATCH_CHUNKS: u32 = 4096;
+/// Chunks of a batch: their vertices take 16384 x 289 x 16 bytes = 76 MB in each of two buffers.
+pub const BATCH_CHUNKS: u32 = 16384;
 /// Chunks whose facing bits fill one storage binding of 128 MiB.
-pub const PART_CHUNKS: u32 = 1 << 19;
+pub const PART_CHUNKS: u32 = 1 << 21;
 
 /// A run of slots rasterized together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -17,7 +17,9 @@ use crate::surface::{Lattice, Level, Pyramid, Surface};
 use crate::view::Camera;
 
 /// Largest deviation of facets on the page unless told otherwise, px.
-pub const ERROR_PX: f64 = 0.2;
+pub const ERROR_PX: f64 = 0.15;
+/// Longest side of a facet on the page, px: lines may end wrongly by as much, however little the facets deviate.
+const SIDE_PX: f64 = 6.0;
 /// How many times as far as their deviation facets may leave a patch whose sides bend this way and that.
 const BENDS: f64 = 2.2;
 
@@ -57,7 +59,7 @@ pub fn adaptive(surface: &Surface, camera: &Camera, error_px: f64, thrift: Thrif
     let wedge = View::wedge(surface, camera);
     let from = dem.grid_place(camera.eye.truncate()) * f64::from(CELL_STEPS);
     let tree = Lattice::grow(dem, pyramid.coarsest_step(), from.to_array(), &mut demand)?;
-    Lattice::adaptive(tree, |origin, step| {
+    Lattice::adaptive(dem, tree, |origin, step| {
         let bounds = pyramid.bounds(origin, step)?;
         let seen = demand.view.meets(bounds) && !demand.is_hidden(origin, step);
         let crossed = thrift == Thrift::Nothing || wedge.meets(bounds);
@@ -104,6 +106,8 @@ struct Demand<'a> {
     horizon: Option<Horizon>,
     /// Largest deviation for each metre of distance, metres.
     tolerance: f64,
+    /// Largest step for each metre of distance, lattice units.
+    widest: f64,
     /// Squares found hidden, by their corner and size.
     hidden: HashSet<([u32; 2], u32)>,
 }
@@ -126,6 +130,7 @@ impl<'a> Demand<'a> {
             has_voids: surface.dem().voids() > 0,
             horizon: Horizon::new(surface, camera),
             tolerance: error_px / corner,
+            widest: SIDE_PX / corner / surface.dem().cell().max_element() * f64::from(CELL_STEPS),
             hidden: HashSet::new(),
         }
     }
@@ -135,6 +140,19 @@ impl<'a> Demand<'a> {
         let largest = CHUNK_QUADS * self.pyramid.coarsest_step();
         let mut sizes = std::iter::successors(Some(CHUNK_QUADS * step), |size| (*size < largest).then_some(2 * size));
         sizes.any(|size| self.hidden.contains(&(origin.map(|at| at / size * size), size)))
+    }
+
+    /// Whether all land of a square lies below the horizon, part by part.
+    fn below_horizon(&self, origin: [u32; 2], step: u32, depth: u32) -> bool {
+        let Some(bounds) = self.pyramid.bounds(origin, step) else { return true };
+        if self.horizon.as_ref().is_none_or(|horizon| horizon.hides(bounds)) {
+            return self.horizon.is_some();
+        }
+        let half = CHUNK_QUADS * step / 2;
+        let mut quarters = [[0, 0], [half, 0], [0, half], [half, half]].into_iter();
+        depth > 0
+            && step > self.pyramid.finest_step()
+            && quarters.all(|[x, y]| self.below_horizon([origin[0] + x, origin[1] + y], step / 2, depth - 1))
     }
 
     /// From the eye to the nearest place of a box, metres.
@@ -157,7 +175,9 @@ impl<'a> Demand<'a> {
             for [x, y] in [[0, 0], [half, 0], [0, half], [half, half]] {
                 self.raise([origin[0] + x, origin[1] + y], step / 2, deviation);
             }
-        } else {
+        }
+        let Some(horizon) = &mut self.horizon else { return };
+        if step <= CELL_STEPS {
             // Between samples land may dip below its fence, and facets below the land.
             let lowered = deviation * BENDS + f64::from(pyramid.relief(origin, step).beyond);
             horizon.raise(low, high, pyramid.fences(origin, step), lowered);
@@ -177,11 +197,12 @@ impl Growth for Demand<'_> {
         if !self.view.meets(bounds) {
             return false;
         }
-        if self.horizon.as_ref().is_some_and(|horizon| horizon.hides(bounds)) {
+        if self.below_horizon(origin, step, 2) {
             self.hidden.insert((origin, size));
             return false;
         }
-        deviation > self.tolerance * self.distance(bounds)
+        let distance = self.distance(bounds);
+        deviation > self.tolerance * distance || f64::from(step) > self.widest * distance
     }
 
     /// Beside a coarser chunk a facet of level 1 spans two cells, one of which may lack its patch.

@@ -9,10 +9,10 @@
 //!   SW----SE
 //! ```
 //!
-//! A chunk is 32 x 32 lattice quads at its level, in 4 x 4 blocks of 8 x 8 quads. Facet `local` of a chunk is
+//! A chunk is 16 x 16 lattice quads at its level, in 2 x 2 blocks of 8 x 8 quads. Facet `local` of a chunk is
 //! `block * 128 + quad in block * 2 + facet of quad`, blocks row by row, quads of a block column by column: a block's
 //! facing bits are four words in a row, and a column of 8 quads is what one invocation works off, vertex by vertex. A
-//! facet's ID in a frame is `slot * 2048 + local`.
+//! facet's ID in a frame is `slot * 512 + local`.
 
 use rayon::prelude::*;
 
@@ -23,7 +23,9 @@ use crate::error::{Error, Result};
 /// Lattice steps along a cell's edge: the finest level.
 pub const CELL_STEPS: u32 = 64;
 /// Lattice quads along a chunk's edge, whatever its level.
-pub const CHUNK_QUADS: u32 = 32;
+pub const CHUNK_QUADS: u32 = 16;
+/// Blocks of 8 x 8 quads along a chunk's edge.
+const CHUNK_BLOCKS: u32 = CHUNK_QUADS / 8;
 /// Facets of a chunk.
 pub const CHUNK_FACETS: u32 = 2 * CHUNK_QUADS * CHUNK_QUADS;
 /// Lattice vertices along a chunk's edge.
@@ -75,7 +77,7 @@ pub struct LatticePoint {
     pub x: u32,
 }
 
-/// 32 x 32 lattice quads at one level. Laid out as the shaders read it.
+/// 16 x 16 lattice quads at one level. Laid out as the shaders read it.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct Chunk {
@@ -176,9 +178,10 @@ impl Lattice {
     ///
     /// # Errors
     /// As [`Self::uniform`].
-    pub fn adaptive(mut tree: Quadtree, role: impl Fn([u32; 2], u32) -> Option<Role>) -> Result<Self> {
+    pub fn adaptive(dem: &Dem, mut tree: Quadtree, role: impl Fn([u32; 2], u32) -> Option<Role>) -> Result<Self> {
         let step = |size: u32| size / CHUNK_QUADS;
-        let sides = tree.larger_neighbours();
+        let sides =
+            tree.larger_neighbours([dem.columns(), dem.rows()].map(|samples| (samples as u32 - 1) * CELL_STEPS));
         let kept = tree.number(|origin, size| role(origin, step(size)));
         if kept.len() as u64 > MOST_CHUNKS {
             return Err(Error::Limit {
@@ -247,8 +250,8 @@ impl Lattice {
     pub fn facet(&self, id: u32) -> [LatticePoint; 3] {
         let chunk = self.chunks[(id / CHUNK_FACETS) as usize];
         let (block, quad) = (id % CHUNK_FACETS / 128, id % 128 / 2);
-        let column = block % 4 * 8 + quad / 8;
-        let row = block / 4 * 8 + quad % 8;
+        let column = block % CHUNK_BLOCKS * 8 + quad / 8;
+        let row = block / CHUNK_BLOCKS * 8 + quad % 8;
         let at = |dx: u32, dy: u32| chunk.vertex([column + dx, row + dy]);
         if id.is_multiple_of(2) { [at(0, 0), at(0, 1), at(1, 1)] } else { [at(0, 0), at(1, 1), at(1, 0)] }
     }

@@ -100,10 +100,14 @@ impl Quadtree {
         }
     }
 
-    /// Of each leaf, by its corner, the sides (bit 0 north, then clockwise) beyond which a larger leaf lies.
-    pub fn larger_neighbours(&self) -> HashMap<[u32; 2], u32> {
+    /// Of each leaf, by its corner, the sides (bit 0 north, then clockwise) beyond which a larger leaf lies that begins
+    /// before `end`.
+    pub fn larger_neighbours(&self, end: [u32; 2]) -> HashMap<[u32; 2], u32> {
+        let is_larger =
+            |beside: Square, square: Square| beside.1 > square.1 && beside.0[0] < end[0] && beside.0[1] < end[1];
         let of = |square: Square| {
-            let larger = |k: &usize| self.neighbour(square, AROUND[*k]).is_some_and(|(_, beside)| beside.1 > square.1);
+            let beside = |k: usize| self.neighbour(square, AROUND[k]);
+            let larger = |k: &usize| beside(*k).is_some_and(|(_, beside)| is_larger(beside, square));
             (0..4).filter(larger).map(|k| 1 << k).sum()
         };
         self.leaves().into_iter().map(|(_, square)| (square.0, of(square))).collect()

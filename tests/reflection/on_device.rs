@@ -55,15 +55,21 @@ const PAIRS: &str = concat!(
     }"
 );
 
-/// 3 x 2 chunks at level 2, the second of them all void.
+/// 6 x 4 chunks at level 2, four of them all void.
 fn lattice() -> (Dem, Lattice) {
     let [columns, rows] = [47, 31];
     let void = |i: usize| (15..=33).contains(&(i % columns)) && i / columns <= 17;
     let heights = (0..columns * rows).map(|i| if void(i) { f32::NAN } else { 7.0 }).collect();
     let dem = Dem::from_heights(columns, DVec2::splat(10.0), DVec2::ZERO, heights);
     let lattice = Lattice::uniform(&dem, level(2)).expect("IDs suffice");
-    assert_eq!(lattice.tree().roots(), [3, 2]);
-    assert_eq!(lattice.tree().nodes(), [0, NO_SLOT, 1, 2, 3, 4]);
+    assert_eq!(lattice.tree().roots(), [6, 4]);
+    let rows = [
+        [0, 1, NO_SLOT, NO_SLOT, 2, 3],
+        [4, 5, NO_SLOT, NO_SLOT, 6, 7],
+        [8, 9, 10, 11, 12, 13],
+        [14, 15, 16, 17, 18, 19],
+    ];
+    assert_eq!(lattice.tree().nodes(), rows.as_flattened());
     (dem, lattice)
 }
 
