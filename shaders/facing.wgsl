@@ -9,20 +9,15 @@ fn faces_eye(lowest: vec3<f32>, edge_1: vec3<f32>, edge_2: vec3<f32>) -> bool {
     return dot(cross(edge_1, edge_2), lowest) < 0.0;
 }
 
-// A vertex: its place on the lattice, offset and height from `places`, and flags where some may be missing.
+// A vertex: its place on the lattice, offset and height from `places`.
 struct Vertex {
     at: vec2<u32>,
     place: vec4<f32>,
-    flags: i32,
 }
 
-// The vertex at column and row `at` of a chunk, number `v` of the batch.
-fn vertex_of(chunk: Chunk, at: vec2<u32>, v: u32, ragged: bool) -> Vertex {
-    var flags = 0;
-    if ragged {
-        flags = screens[v].w;
-    }
-    return Vertex(chunk.origin + shared_vertex(chunk.coarser, at) * chunk.step, places[v], flags);
+// The vertex at column and row `at` of a chunk, number `v` in `places`.
+fn vertex_of(chunk: Chunk, at: vec2<u32>, v: u32) -> Vertex {
+    return Vertex(chunk.origin + shared_vertex(chunk.coarser, at) * chunk.step, places[v]);
 }
 
 fn edge_of(from_vertex: Vertex, to_vertex: Vertex) -> vec3<f32> {
@@ -31,8 +26,8 @@ fn edge_of(from_vertex: Vertex, to_vertex: Vertex) -> vec3<f32> {
 
 // Which halves of a quad lack a vertex, as two bits.
 fn lacking(nw: Vertex, ne: Vertex, sw: Vertex, se: Vertex) -> u32 {
-    let diagonal = nw.flags | se.flags;
-    return select(0u, 1u, ((diagonal | sw.flags) & MISSING) != 0) | select(0u, 2u, ((diagonal | ne.flags) & MISSING) != 0);
+    let diagonal = max(nw.place.w, se.place.w);
+    return select(0u, 1u, max(diagonal, sw.place.w) >= NO_HEIGHT) | select(0u, 2u, max(diagonal, ne.place.w) >= NO_HEIGHT);
 }
 
 // Which halves of a quad are facets and face away, as two bits: beside a coarser chunk some have collapsed.
@@ -52,23 +47,21 @@ fn facing(@builtin(global_invocation_id) invocation: vec3<u32>) {
         return;
     }
     let chunk = chunks[slot];
-    let ragged = has_voids
-        || any(chunk.origin + CHUNK_QUADS * chunk.step > (scene.samples - 1u) * CELL_STEPS);
     var quad = local_quad(invocation.x * 32u);
-    var v = invocation.y * CHUNK_VERTICES + quad.y * CHUNK_SIDE + quad.x;
+    var v = vertex_index(chunk, quad);
     var bits = 0u;
     var missing = 0u;
     // Two columns of eight quads, row by row: each vertex is read once.
     let one = vec2<u32>(1u, 0u);
-    var north_west = vertex_of(chunk, quad, v, ragged);
-    var north = vertex_of(chunk, quad + one, v + 1u, ragged);
-    var north_east = vertex_of(chunk, quad + one + one, v + 2u, ragged);
+    var north_west = vertex_of(chunk, quad, v);
+    var north = vertex_of(chunk, quad + one, v + 1u);
+    var north_east = vertex_of(chunk, quad + one + one, v + 2u);
     for (var k = 0u; k < 16u; k += 2u) {
         v += CHUNK_SIDE;
         quad.y += 1u;
-        let south_west = vertex_of(chunk, quad, v, ragged);
-        let south = vertex_of(chunk, quad + one, v + 1u, ragged);
-        let south_east = vertex_of(chunk, quad + one + one, v + 2u, ragged);
+        let south_west = vertex_of(chunk, quad, v);
+        let south = vertex_of(chunk, quad + one, v + 1u);
+        let south_east = vertex_of(chunk, quad + one + one, v + 2u);
         let lacks_west = lacking(north_west, north, south_west, south);
         let lacks_east = lacking(north, north_east, south, south_east);
         missing |= lacks_west | lacks_east;

@@ -155,7 +155,7 @@ fn rasterize_facet(id: u32, share: vec2<u32>, lane: u32) {
         let d = corner(half, k);
         let v = base + d.y * CHUNK_SIDE + d.x;
         let at = chunk.origin + shared_vertex(chunk.coarser, quad + d) * chunk.step;
-        polygons[lane][0][k] = vec4<f32>(camera_space(eye_relative(at / CELL_STEPS, places[v])), f32(k));
+        polygons[lane][0][k] = vec4<f32>(camera_space(eye_relative(at / CELL_STEPS, places[vertex_index(chunk, quad + d)])), f32(k));
         flags |= screens[v].w;
     }
     let planes = select(0u, 5u, (flags & CLIPPED) != 0);

@@ -22,14 +22,14 @@ struct Camera {
     wedge: vec4<f32>,       // inward normals of the two sides of its map projection; 0 where it is no wedge
     origin: vec2<i32>,      // the page's column and row of its top left pixel
     seen: u32,              // chunks in the first slots that are drawn
-    pad: u32,
+    fresh: u32,             // chunks whose vertices are not there yet
 }
 
 struct Batch {
     first_slot: u32,        // of the batch
     part_slot: u32,         // the same, within its part of the facing bits
     round: u32,             // 1: IDs where the depth is equal, 0: everything else
-    pad: u32,
+    passing: u32,           // 1: its vertices make way for those of the next batch, 0: they stay
 }
 
 struct Chunk {
@@ -40,6 +40,8 @@ struct Chunk {
     high: f32,
     beyond: f32,            // metres that its surface reaches beyond its square on the map
     tile: u32,              // which tile holds its samples
+    block: u32,             // which block of `places` holds its vertices
+    pad: u32,
 }
 
 override has_voids: bool = false;
@@ -101,8 +103,15 @@ const BESIDE: i32 = 31;
 const BEYOND_GUARD: i32 = 32;
 const CLIPPED: i32 = 48;
 const MISSING: i32 = 64;
+// Least height of a vertex that is missing.
+const NO_HEIGHT: f32 = 3e38;
 // X of a clipped or missing vertex: look at its flags.
 const NO_PLACE: i32 = -0x7fffffff - 1;
+
+// Index in `places` of the vertex at a column and row of a chunk.
+fn vertex_index(chunk: Chunk, at: vec2<u32>) -> u32 {
+    return chunk.block * CHUNK_VERTICES + at.y * CHUNK_SIDE + at.x;
+}
 
 // Nearer depth of the pixel; 0 is sky.
 fn pixel_depth(pixel: vec2<u32>) -> u32 {

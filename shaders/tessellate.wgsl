@@ -1,29 +1,14 @@
-// One invocation a block of vertices, some columns and rows: of each the offset from its sample, the place on the page,
-// the depth.
+// One invocation a block of vertices, some columns and rows, of a chunk whose vertices are not there yet: of each the
+// offset from its sample, and the sample's height. No camera counts.
 // Chunks that share a vertex evaluate it from the same cell in the same way: they agree to the bit.
 
 @group(0) @binding(20) var<storage, read_write> out_places: array<vec4<f32>>;
-@group(0) @binding(21) var<storage, read_write> out_screens: array<vec4<i32>>;
+@group(0) @binding(21) var<storage, read> fresh: array<u32>;
 
-fn view_flags(q: vec3<f32>) -> i32 {
-    let p = vec2<f32>(q.x, -q.y) * camera.focal;
-    let low = drawn_from() * q.z;
-    let high = drawn_to() * q.z;
-    return select(0, LEFT, p.x < low.x) | select(0, RIGHT, p.x > high.x)
-        | select(0, ABOVE, p.y < low.y) | select(0, BELOW, p.y > high.y)
-        | select(0, BEHIND, q.z < scene.near)
-        | select(0, BEYOND_GUARD, any(abs(p) > vec2<f32>(GUARD * q.z)));
-}
-
-fn store(i: u32, at: vec2<u32>, place: vec4<f32>, missing: bool) {
-    let q = camera_space(eye_relative(at / CELL_STEPS, place));
-    let flags = view_flags(q) | select(0, MISSING, missing || any(at > (scene.samples - 1u) * CELL_STEPS));
-    var screen = vec4<i32>(NO_PLACE, 0, 0, flags);
-    if (flags & (CLIPPED | MISSING)) == 0 {
-        screen = vec4<i32>(snapped(q), bitcast<i32>(depth_of(q)), flags);
-    }
-    out_places[i] = place;
-    out_screens[i] = screen;
+fn store(chunk: Chunk, column_row: vec2<u32>, place: vec4<f32>, missing: bool) {
+    let at = chunk.origin + column_row * chunk.step;
+    let none = missing || any(at > (scene.samples - 1u) * CELL_STEPS);
+    out_places[vertex_index(chunk, column_row)] = select(place, vec4<f32>(0.0, 0.0, 0.0, NO_HEIGHT), none);
 }
 
 // Two samples of a column, one below the other, and whether they are void.
@@ -56,23 +41,24 @@ fn block_rows(step: u32) -> u32 {
 
 @compute @workgroup_size(16, 4)
 fn tessellate(@builtin(global_invocation_id) invocation: vec3<u32>) {
-    let slot = batch.first_slot + invocation.y;
+    let number = batch.first_slot + invocation.y;
+    let slot = fresh[min(number, camera.fresh - 1u)];
     let chunk = chunks[slot];
     let columns = block_columns(chunk.step);
     let across = CHUNK_QUADS / columns + 1u;
     let first = vec2<u32>(invocation.x % across * columns, invocation.x / across * block_rows(chunk.step));
-    if slot >= camera.chunks || first.y >= CHUNK_SIDE || !in_wedge(bounds_of(slot)) {
+    if number >= camera.fresh || first.y >= CHUNK_SIDE || (batch.passing == 1u && !in_wedge(bounds_of(slot))) {
         return;
     }
     let end = min(first + vec2<u32>(columns, block_rows(chunk.step)), vec2<u32>(CHUNK_SIDE));
-    let base = invocation.y * CHUNK_VERTICES;
     if chunk.step >= CELL_STEPS {
         // Every vertex is a sample.
         for (var row = first.y; row < end.y; row++) {
             for (var column = first.x; column < end.x; column++) {
-                let at = chunk.origin + vec2<u32>(column, row) * chunk.step;
-                let height = heights[tile_sample(chunk.tile, vec2<u32>(column, row))];
-                store(base + row * CHUNK_SIDE + column, at, vec4<f32>(0.0, 0.0, 0.0, height), is_void(at / CELL_STEPS));
+                let column_row = vec2<u32>(column, row);
+                let height = heights[tile_sample(chunk.tile, column_row)];
+                let void_here = is_void((chunk.origin + column_row * chunk.step) / CELL_STEPS);
+                store(chunk, column_row, vec4<f32>(0.0, 0.0, 0.0, height), void_here);
             }
         }
         return;
@@ -90,8 +76,8 @@ fn tessellate(@builtin(global_invocation_id) invocation: vec3<u32>) {
         let next_cell = min(end.y, ((cell.y + 1u) * CELL_STEPS - chunk.origin.y) / chunk.step);
         for (; row < next_cell; row++) {
             for (var column = first.x; column < end.x; column++) {
-                let at = chunk.origin + vec2<u32>(column, row) * chunk.step;
-                let sub = at % CELL_STEPS;
+                let column_row = vec2<u32>(column, row);
+                let sub = (chunk.origin + column_row * chunk.step) % CELL_STEPS;
                 var p = below;
                 if sub.x > sub.y {
                     p = above;
@@ -100,7 +86,7 @@ fn tessellate(@builtin(global_invocation_id) invocation: vec3<u32>) {
                 let missing = north.void_west || (min(sub.x, sub.y) > 0u && south.void_east)
                     || (sub.x > sub.y && north.void_east) || (sub.y > sub.x && south.void_west);
                 let offset = patch_point(p, vec2<f32>(sub) / f32(CELL_STEPS));
-                store(base + row * CHUNK_SIDE + column, at, vec4<f32>(offset, p.height), missing);
+                store(chunk, column_row, vec4<f32>(offset, p.height), missing);
             }
         }
         north = south;

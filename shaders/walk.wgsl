@@ -20,26 +20,10 @@ struct Corners {
 }
 
 fn corners_of(chunk: Chunk, f: Facet) -> Corners {
-    let base = min(f.a, min(f.b, f.c)) / CELL_STEPS * CELL_STEPS;
-    let place = tile_place(chunk, base);
-    let sum = (f.a - base) + (f.b - base) + (f.c - base);
-    // Up to level 1 vertices are samples, at any finer level one patch has all three.
-    let samples = chunk.step >= CELL_STEPS;
-    let patch_here = patch_of(chunk.tile, place, sum.x > sum.y);
-    let a = corner_of(chunk, patch_here, place, f.a - base, samples);
-    let b = corner_of(chunk, patch_here, place, f.b - base, samples);
-    let c = corner_of(chunk, patch_here, place, f.c - base, samples);
-    return Corners(eye_relative(base / CELL_STEPS, vec4<f32>(a, patch_here.height)), b - a, c - a);
-}
-
-// Offset of a facet's vertex from the sample at `place` of a tile; `sub` is the way to it in lattice units.
-fn corner_of(chunk: Chunk, patch_here: Patch, place: vec2<u32>, sub: vec2<u32>, samples: bool) -> vec3<f32> {
-    let on_patch = patch_point(patch_here, vec2<f32>(sub) / f32(CELL_STEPS));
-    let columns = sub / CELL_STEPS;
-    let tile_steps = columns >> vec2<u32>(max(firstTrailingBit(chunk.step), 6u) - 6u);
-    let height = heights[tile_sample(chunk.tile, place + tile_steps)] - patch_here.height;
-    let flat = vec2<f32>(columns) * scene.cell * vec2<f32>(1.0, -1.0);
-    return select(on_patch, vec3<f32>(flat, height), samples);
+    let a = place_in(chunk, f.a);
+    let b = place_in(chunk, f.b);
+    let c = place_in(chunk, f.c);
+    return Corners(eye_relative(f.a / CELL_STEPS, a), edge_between(f.a, a, f.b, b), edge_between(f.a, a, f.c, c));
 }
 
 // Volumes that a ray spans with the edges of a facet: up to scale the perspective-correct barycentrics of where it

@@ -10,7 +10,7 @@ use crate::gpu::stages::Stages;
 use crate::gpu::uniforms::{Counts, near_plane};
 use crate::gpu::work::Work;
 use crate::gpu::{Buffers, CameraUniform, Clock, Extent, Gpu};
-use crate::gpu::{border, facing, rasterize, seam, tessellate};
+use crate::gpu::{border, facing, project, rasterize, seam, tessellate};
 use crate::ink::{InkRaster, Marks, marks};
 use crate::plan::left_out::{LeftOut, left_out};
 use crate::plan::{Batch, Border, Detail, Method, Piece, Pieces, Plan, Thrift, Visibility, batches, detail};
@@ -61,6 +61,7 @@ struct Loaded {
     lattice: Lattice,
     has_seams: bool,
     batches: Vec<Batch>,
+    room: Room,
     buffers: Buffers,
     stages: Stages,
 }
@@ -90,10 +91,9 @@ impl<'a> Renderer<'a> {
         let rim = if plan.border == Border::On { rim(dem)? } else { Vec::new() };
         let visibility = plan.method.visibility(gpu.int64);
         let buffers = Buffers::new(gpu, surface, &lattice, room, &rim, visibility, size)?;
-        let parts = batches(room.chunks).last().map_or(1, |b| b.part() + 1);
-        let stages = Stages::new(gpu, dem, &plan, !rim.is_empty(), parts, size)?;
-        let mut loaded = Loaded { batches: Vec::new(), has_seams: false, lattice, buffers, stages };
-        loaded.bind(gpu, room, visibility)?;
+        let stages = Stages::new(gpu, dem, &plan, !rim.is_empty(), room, size)?;
+        let mut loaded = Loaded { batches: Vec::new(), has_seams: false, room, lattice, buffers, stages };
+        loaded.bind(gpu, visibility)?;
         let renderer = Self { gpu, surface, plan, visibility, pieces, rim, loaded: RefCell::new(loaded) };
         renderer.load(&mut renderer.loaded.borrow_mut())?;
         Ok(renderer)
@@ -209,8 +209,8 @@ impl<'a> Renderer<'a> {
         Ok(start.elapsed().as_secs_f64() * 1e3)
     }
 
-    /// Uploads the camera and records the vertices of the scene's only batch, for callers that draw them by other
-    /// means. Chunks that cannot appear keep what they had, zeros at first.
+    /// Uploads the camera and records the vertices of the scene's only batch, for callers that submit them and draw them by
+    /// other means. Chunks that cannot appear keep what they had, zeros at first.
     ///
     /// # Errors
     /// [`Error::Limit`] when the scene has several batches, which share one vertex buffer; [`Error::Flag`] for an eye
@@ -218,17 +218,21 @@ impl<'a> Renderer<'a> {
     pub fn record_vertices(&self, camera: &Camera, encoder: &mut wgpu::CommandEncoder) -> Result<()> {
         self.look(camera)?;
         let loaded = self.loaded.borrow();
-        let ([batch], [vertices, seams, ..]) = (loaded.batches.as_slice(), &loaded.stages.per_batch) else {
+        let ([_], [vertices, seams, _, projection, ..]) = (loaded.batches.as_slice(), &loaded.stages.per_batch) else {
             return Err(Error::Limit {
                 what: format!("the vertices take {} batches, one can be drawn", loaded.batches.len()),
                 remedy: "use a lower --level or a --crop".into(),
             });
         };
         loaded.buffers.write_camera(self.gpu, &self.camera_uniform(&loaded, camera)?)?;
-        for (stage, extent) in [(vertices, tessellate::invocations(batch)), (seams, seam::invocations(batch))] {
+        let fresh = loaded.buffers.fresh();
+        let made = [(vertices, tessellate::invocations(fresh)), (seams, seam::invocations(fresh))];
+        let made = made.into_iter().filter(|_| fresh > 0);
+        for (stage, extent) in made.chain([(projection, project::invocations(self.seen(&loaded)))]) {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
             stage.pass.record(&mut pass, &stage.groups[0], extent);
         }
+        loaded.buffers.made_vertices();
         Ok(())
     }
 
@@ -290,26 +294,32 @@ impl<'a> Renderer<'a> {
         if let Some(stage) = &loaded.stages.border {
             work.record(stage, 0, border::invocations(&stage.pass, self.rim.len()))?;
         }
-        work.finish()
+        work.finish()?;
+        loaded.buffers.made_vertices();
+        Ok(())
     }
 
     /// One batch: its vertices, its facing, its pixels. A later round needs the vertices anew only where other batches
     /// have overwritten them.
     fn rasterize(&self, work: &mut Work<'_>, loaded: &Loaded, round: u32, i: usize, batch: &Batch) -> Result<()> {
         let group = i * self.visibility.rounds() as usize + round as usize;
-        let [tessellate_stage, seam_stage, facing_stage, small, large] = &loaded.stages.per_batch;
+        let [tessellate_stage, seam_stage, facing_stage, project_stage, small, large] = &loaded.stages.per_batch;
         let several = loaded.batches.len() > 1;
+        let (seen, fresh) = (batch.seen(self.seen(loaded)), loaded.buffers.fresh().min(batch.chunks));
         work.empty("queue", "empty_queue")?;
-        if round == 0 || several {
-            work.record(tessellate_stage, group, tessellate::invocations(batch))?;
+        if fresh > 0 && (round == 0 || several) {
+            work.record(tessellate_stage, group, tessellate::invocations(fresh))?;
             if loaded.has_seams {
-                work.record(seam_stage, group, seam::invocations(batch))?;
+                work.record(seam_stage, group, seam::invocations(fresh))?;
             }
         }
         if round == 0 {
             work.record(facing_stage, group, facing::invocations(batch))?;
         }
-        work.record(small, group, rasterize::invocations(batch, self.seen(loaded)))?;
+        if round == 0 || several {
+            work.record(project_stage, group, project::invocations(seen))?;
+        }
+        work.record(small, group, rasterize::invocations(seen))?;
         work.record(large, group, Extent::List("queue"))?;
         if several {
             work.submit()?;
@@ -319,7 +329,8 @@ impl<'a> Renderer<'a> {
 
     fn camera_uniform(&self, loaded: &Loaded, camera: &Camera) -> Result<CameraUniform> {
         let uniform = CameraUniform::new(self.surface.dem(), camera)?;
-        Ok(CameraUniform { chunks: loaded.lattice.chunks().len() as u32, seen: self.seen(loaded), ..uniform })
+        let (chunks, fresh) = (loaded.lattice.chunks().len() as u32, loaded.buffers.fresh());
+        Ok(CameraUniform { chunks, seen: self.seen(loaded), fresh, ..uniform })
     }
 
     /// How many chunks, in the first slots, may appear. Hidden away facets count where depths of both sides are compared.
@@ -354,14 +365,19 @@ impl<'a> Renderer<'a> {
         let Some(room) = loaded.buffers.load(gpu, surface, &loaded.lattice)? else { return Ok(()) };
         loaded.buffers =
             Buffers::new(gpu, surface, &loaded.lattice, room, &self.rim, *visibility, self.pieces.largest())?;
-        loaded.bind(gpu, room, *visibility)?;
+        if !Stages::serve(loaded.room, room) {
+            let has_rim = !self.rim.is_empty();
+            loaded.stages = Stages::new(gpu, surface.dem(), &self.plan, has_rim, room, self.pieces.largest())?;
+        }
+        loaded.room = room;
+        loaded.bind(gpu, *visibility)?;
         loaded.buffers.load(gpu, surface, &loaded.lattice).map(drop)
     }
 }
 
 impl Loaded {
     /// Binds the passes to the buffers, for as many batches as these have room for.
-    fn bind(&mut self, gpu: &Gpu, room: Room, visibility: Visibility) -> Result<()> {
-        self.stages.bind(gpu, &self.buffers, &batches(room.chunks), visibility.rounds())
+    fn bind(&mut self, gpu: &Gpu, visibility: Visibility) -> Result<()> {
+        self.stages.bind(gpu, &self.buffers, &batches(self.room.chunks), visibility.rounds())
     }
 }

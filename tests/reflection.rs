@@ -9,7 +9,7 @@ use hachure::gpu::pass::reflect;
 use hachure::gpu::sizes::{BLOCK, LARGEST_BINDING, fits, written};
 use hachure::gpu::uniforms::{BatchUniform, ChunkUniform, Counts, SceneUniform};
 use hachure::gpu::{CameraUniform, adjacency, border, candidates, compose, facing, pairs};
-use hachure::gpu::{rasterize, rasterize_large, seam, tessellate, toward_away, walk, walk_rest};
+use hachure::gpu::{project, rasterize, rasterize_large, seam, tessellate, toward_away, walk, walk_rest};
 use hachure::plan::Visibility;
 use hachure::plan::batches::{BATCH_CHUNKS, PART_CHUNKS};
 use hachure::surface::rim::RimEdge;
@@ -32,9 +32,12 @@ fn shaders() -> Vec<(&'static str, &'static str)> {
         ("toward_away", toward_away::SOURCE),
         ("candidates", candidates::SOURCE),
         ("pairs", pairs::SOURCE),
-        ("walk", walk::SOURCE),
-        ("walk_rest", walk_rest::SOURCE),
+        ("walk", walk::source(true)),
+        ("walk", walk::source(false)),
+        ("walk_rest", walk_rest::source(true)),
+        ("walk_rest", walk_rest::source(false)),
         ("seam", seam::SOURCE),
+        ("project", project::SOURCE),
     ];
     for visibility in [Visibility::Key64, Visibility::Key32, Visibility::TwoDepths] {
         all.push(("rasterize", rasterize::source(visibility)));
@@ -74,11 +77,11 @@ fn shared_structs() -> Vec<(&'static str, Layout)> {
         ("Scene", layout!(SceneUniform: cell, samples, roots, root_size, near)),
         (
             "Camera",
-            layout!(CameraUniform: right, up, forward, eye_cell, eye_offset, eye_height, centre, focal, chunks, size, wedge, origin, seen, pad),
+            layout!(CameraUniform: right, up, forward, eye_cell, eye_offset, eye_height, centre, focal, chunks, size, wedge, origin, seen, fresh),
         ),
-        ("Batch", layout!(BatchUniform: first_slot, part_slot, round, pad)),
+        ("Batch", layout!(BatchUniform: first_slot, part_slot, round, passing)),
         ("Counts", layout!(Counts: longest_walk, orphans, cut_short)),
-        ("Chunk", layout!(ChunkUniform: origin, step, coarser, low, high, beyond, tile)),
+        ("Chunk", layout!(ChunkUniform: origin, step, coarser, low, high, beyond, tile, block, pad)),
         ("RimEdge", layout!(RimEdge: sample, direction, half)),
     ]
 }
@@ -214,15 +217,15 @@ fn differences_between_rust_and_wgsl_are_noticed() {
 
 #[test]
 fn every_binding_fits_at_every_level() {
-    // 500 x 500 samples on the largest page.
-    let heights = vec![0.0; 500 * 500];
-    let dem = hachure::dem::Dem::from_heights(500, glam::DVec2::splat(30.0), glam::DVec2::ZERO, heights);
+    // 450 x 450 samples on the largest page.
+    let heights = vec![0.0; 450 * 450];
+    let dem = hachure::dem::Dem::from_heights(450, glam::DVec2::splat(30.0), glam::DVec2::ZERO, heights);
     for n in [1, 2, 4, 8, 16, 32, 64] {
         let lattice = Lattice::uniform(&dem, level(n)).expect("IDs suffice");
         let chunks = lattice.chunks().len() as u64;
         let room = Room::of(&lattice);
-        // Cells of 500 x 500 samples in tiles of 16 x 16.
-        assert_eq!((room.chunks as usize, room.tiles), (lattice.chunks().len(), 32 * 32));
+        // Cells of 450 x 450 samples in tiles of 16 x 16.
+        assert_eq!((room.chunks as usize, room.tiles), (lattice.chunks().len(), 29 * 29));
         let sizes = written(room, [16_384, 1024]).expect("a page of this size");
         for (name, size) in &sizes {
             assert!(fits(name, *size).is_ok(), "level {n}: {name} takes {size} bytes");

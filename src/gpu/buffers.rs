@@ -1,9 +1,11 @@
 //! Everything that lies on the device, each buffer under the name the shaders give it.
 //!
-//! A frame uploads the camera, its lattice, and those tiles of samples that are not there yet. No binding exceeds
-//! 128 MiB, whatever the level: vertices and the queue are sized by a batch, facing bits lie in up to four parts.
+//! A frame uploads the camera, its lattice, and those tiles of samples that are not there yet. Vertices stay from frame to
+//! frame where one batch has room for all. No binding exceeds 128 MiB, whatever the level: vertices and the queue are sized
+//! by a batch, facing bits lie in up to four parts.
 
 use std::borrow::Cow;
+use std::cell::Cell;
 use std::collections::{HashMap, HashSet};
 
 use bytemuck::Zeroable;
@@ -16,11 +18,11 @@ use super::sizes::{self, fits};
 use super::uniforms::{BatchUniform, CameraUniform, ChunkUniform, SceneUniform};
 use crate::dem::{Band, Dem};
 use crate::error::{Error, Result};
-use crate::plan::batches::PART_CHUNKS;
+use crate::plan::batches::{BATCH_CHUNKS, PART_CHUNKS};
 use crate::plan::{Batch, Visibility, batches};
 use crate::surface::rim::RimEdge;
 use crate::surface::tile::{TILE_SAMPLES, TileSamples};
-use crate::surface::{Lattice, Surface, Tile};
+use crate::surface::{Chunk, Lattice, Surface, Tile};
 
 /// Tiles sent to the device together, 13 KB each.
 const TILES_AT_ONCE: usize = 1024;
@@ -33,7 +35,9 @@ pub struct Buffers {
     batches: wgpu::Buffer,
     rounds: u32,
     room: Room,
-    pool: Pool,
+    tiles: Pool<Tile>,
+    blocks: Pool<Chunk>,
+    fresh: Cell<u32>,
 }
 
 /// For what there is room.
@@ -52,6 +56,11 @@ impl Room {
     pub fn of(lattice: &Lattice) -> Self {
         let tiles: HashSet<Tile> = lattice.chunks().iter().map(Tile::of).collect();
         Self { chunks: lattice.chunks().len() as u32, nodes: lattice.tree().nodes().len(), tiles: tiles.len() }
+    }
+
+    /// Whether the vertices of all chunks fit in one batch, and so stay from frame to frame.
+    pub fn keeps_vertices(&self) -> bool {
+        self.chunks <= BATCH_CHUNKS
     }
 
     /// Room for another as well, by doubling what is too small, so that it seldom grows.
@@ -84,7 +93,9 @@ impl Buffers {
             batches: upload_uniforms(gpu, &batch_uniforms(&batches(room.chunks), visibility.rounds())),
             rounds: visibility.rounds(),
             room,
-            pool: Pool::new(room.tiles),
+            tiles: Pool::new(room.tiles),
+            blocks: Pool::new(room.chunks as usize),
+            fresh: Cell::new(0),
         };
         let dem = surface.dem();
         buffers.uniform(gpu, "scene", bytemuck::bytes_of(&SceneUniform::new(dem, lattice)));
@@ -109,7 +120,7 @@ impl Buffers {
     pub fn load(&mut self, gpu: &Gpu, surface: &Surface, lattice: &Lattice) -> Result<Option<Room>> {
         let tiles: Vec<Tile> = lattice.chunks().iter().map(Tile::of).collect();
         let fits = tiles.len() <= self.room.chunks as usize && lattice.tree().nodes().len() <= self.room.nodes;
-        let Some(Placed { places, missing }) = self.pool.place(&tiles).filter(|_| fits) else {
+        let Some(Placed { places, missing }) = self.tiles.place(&tiles).filter(|_| fits) else {
             return Ok(Some(self.room.grown(Room::of(lattice))));
         };
         for batch in missing.chunks(TILES_AT_ONCE) {
@@ -127,12 +138,44 @@ impl Buffers {
             }
         }
         let pyramid = surface.pyramid()?;
-        let chunks = lattice.chunks().iter().zip(places);
-        let chunks: Vec<_> = chunks.map(|(chunk, tile)| ChunkUniform::new(*chunk, pyramid, tile)).collect();
+        let (blocks, fresh) = self.place_vertices(lattice.chunks());
+        let chunks = lattice.chunks().iter().zip(places).zip(blocks);
+        let chunks: Vec<_> =
+            chunks.map(|((chunk, tile), block)| ChunkUniform::new(*chunk, pyramid, tile, block)).collect();
         gpu.queue.write_buffer(self.get("chunks")?, 0, bytemuck::cast_slice(&chunks));
+        gpu.queue.write_buffer(self.get("fresh")?, 0, bytemuck::cast_slice(&fresh));
+        self.fresh.set(fresh.len() as u32);
         gpu.queue.write_buffer(self.get("nodes")?, 0, bytemuck::cast_slice(lattice.tree().nodes()));
         gpu.check()?;
         Ok(None)
+    }
+
+    /// Of each chunk the block of its vertices; and the slots of those whose vertices are not there yet.
+    fn place_vertices(&mut self, chunks: &[Chunk]) -> (Vec<u32>, Vec<u32>) {
+        let slots = 0..chunks.len() as u32;
+        if !self.room.keeps_vertices() {
+            return (slots.clone().map(|slot| slot % BATCH_CHUNKS).collect(), slots.collect());
+        }
+        if self.fresh.get() > 0 {
+            // The last ones were never made.
+            self.blocks = Pool::new(self.room.chunks as usize);
+        }
+        let Some(Placed { places, missing }) = self.blocks.place(chunks) else { return Default::default() };
+        let missing: HashSet<u32> = missing.into_iter().map(|(block, _)| block).collect();
+        let fresh = slots.filter(|slot| missing.contains(&places[*slot as usize])).collect();
+        (places, fresh)
+    }
+
+    /// How many chunks have no vertices yet.
+    pub fn fresh(&self) -> u32 {
+        self.fresh.get()
+    }
+
+    /// Notes that all chunks have their vertices, for as long as these stay.
+    pub fn made_vertices(&self) {
+        if self.room.keeps_vertices() {
+            self.fresh.set(0);
+        }
     }
 
     /// A buffer by the name the shaders give it.
@@ -212,7 +255,7 @@ fn batch_uniforms(batches: &[Batch], rounds: u32) -> Vec<BatchUniform> {
         first_slot: b.first_slot,
         part_slot: b.first_slot % PART_CHUNKS,
         round,
-        pad: 0,
+        passing: u32::from(batches.len() > 1),
     };
     batches.iter().flat_map(|b| (0..rounds).map(move |round| of(b, round))).collect()
 }

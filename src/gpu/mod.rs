@@ -11,6 +11,7 @@ pub mod facing;
 pub mod pairs;
 pub mod pass;
 pub mod pool;
+pub mod project;
 pub mod rasterize;
 pub mod rasterize_large;
 pub mod seam;

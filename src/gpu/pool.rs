@@ -1,63 +1,63 @@
-//! The tiles of samples on the device: which place each has, and which may be overwritten.
+//! What frames leave on the device for later ones, tiles of samples and blocks of vertices: which place each has, and which
+//! may be overwritten.
 
 use std::collections::HashMap;
+use std::hash::Hash;
 
-use crate::surface::Tile;
-
-/// Places for so many tiles. What a frame does not ask for stays until its place is needed.
-#[derive(Debug, Default)]
-pub struct Pool {
-    places: HashMap<Tile, u32>,
-    /// Of each place, the tile that it holds and the frame that asked for it last.
-    held: Vec<(Tile, u64)>,
+/// Places for so many items. What a frame does not ask for stays until its place is needed.
+#[derive(Debug)]
+pub struct Pool<T> {
+    places: HashMap<T, u32>,
+    /// Of each place, the item that it holds and the frame that asked for it last.
+    held: Vec<(T, u64)>,
     capacity: usize,
     frame: u64,
 }
 
-/// Tiles in their places.
+/// Items in their places.
 #[derive(Debug, PartialEq, Eq)]
-pub struct Placed {
-    /// Of each tile asked for.
+pub struct Placed<T> {
+    /// Of each item asked for.
     pub places: Vec<u32>,
     /// Those that are not there yet, with their places.
-    pub missing: Vec<(u32, Tile)>,
+    pub missing: Vec<(u32, T)>,
 }
 
-impl Pool {
+impl<T: Copy + Eq + Hash> Pool<T> {
     /// An empty pool.
     pub fn new(capacity: usize) -> Self {
-        Self { capacity, ..Self::default() }
+        Self { places: HashMap::new(), held: Vec::new(), capacity, frame: 0 }
     }
 
-    /// Where each tile is to be. `None` when there are more different ones than places.
-    pub fn place(&mut self, wanted: &[Tile]) -> Option<Placed> {
+    /// Where each item is to be. `None` when there are more different ones than places.
+    pub fn place(&mut self, wanted: &[T]) -> Option<Placed<T>> {
         self.frame += 1;
         let mut missing = Vec::new();
-        for tile in wanted {
-            match self.places.get(tile) {
+        for item in wanted {
+            match self.places.get(item) {
                 Some(place) => self.held[*place as usize].1 = self.frame,
-                None => missing.push(*tile),
+                None => missing.push(*item),
             }
         }
         let mut oldest = self.replaceable();
         let mut written = Vec::new();
-        for tile in missing {
-            if self.places.contains_key(&tile) {
+        for item in missing {
+            if self.places.contains_key(&item) {
                 continue;
             }
             let place = if self.held.len() < self.capacity {
-                self.held.push((tile, self.frame));
+                self.held.push((item, self.frame));
                 self.held.len() as u32 - 1
             } else {
                 let place = oldest.pop()?;
-                let (old, _) = std::mem::replace(&mut self.held[place as usize], (tile, self.frame));
+                let (old, _) = std::mem::replace(&mut self.held[place as usize], (item, self.frame));
                 self.places.remove(&old);
                 place
             };
-            self.places.insert(tile, place);
-            written.push((place, tile));
+            self.places.insert(item, place);
+            written.push((place, item));
         }
-        Some(Placed { places: wanted.iter().map(|tile| self.places[tile]).collect(), missing: written })
+        Some(Placed { places: wanted.iter().map(|item| self.places[item]).collect(), missing: written })
     }
 
     /// Places that this frame has not asked for, the one asked for longest ago last.

@@ -2,7 +2,7 @@
 
 use super::{Gpu, Pass};
 use crate::error::Result;
-use crate::plan::{Batch, Visibility};
+use crate::plan::Visibility;
 use crate::surface::lattice::CHUNK_FACETS;
 
 /// The composed shader that keeps what `visibility` says.
@@ -25,7 +25,7 @@ pub fn pass(gpu: &Gpu, visibility: Visibility, constants: &[(&str, f64)]) -> Res
 /// Facets of a column of eight quads.
 pub const STRIP_FACETS: u32 = 16;
 
-/// One invocation a column of eight quads, one row a chunk of those in the first `seen` slots of the frame.
-pub fn invocations(batch: &Batch, seen: u32) -> [u32; 2] {
-    [CHUNK_FACETS / STRIP_FACETS, seen.saturating_sub(batch.first_slot).min(batch.chunks)]
+/// One invocation a column of eight quads, one row a chunk.
+pub fn invocations(chunks: u32) -> [u32; 2] {
+    [CHUNK_FACETS / STRIP_FACETS, chunks]
 }

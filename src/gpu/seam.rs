@@ -2,7 +2,6 @@
 
 use super::{Gpu, Pass};
 use crate::error::Result;
-use crate::plan::Batch;
 use crate::surface::lattice::CHUNK_QUADS;
 
 /// The composed shader.
@@ -17,6 +16,6 @@ pub fn pass(gpu: &Gpu, constants: &[(&str, f64)]) -> Result<Pass> {
 }
 
 /// One invocation a vertex that may move, half of those on four sides; one row a chunk.
-pub fn invocations(batch: &Batch) -> [u32; 2] {
-    [2 * CHUNK_QUADS, batch.chunks]
+pub fn invocations(chunks: u32) -> [u32; 2] {
+    [2 * CHUNK_QUADS, chunks]
 }

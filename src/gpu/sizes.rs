@@ -55,6 +55,7 @@ pub fn written(room: Room, [width, height]: [u32; 2]) -> Result<Vec<(&'static st
         ("gradients_east", tiles),
         ("gradients_north", tiles),
         ("summaries", chunks * 4),
+        ("fresh", chunks * 4),
         ("places", batch * u64::from(CHUNK_VERTICES) * 16),
         ("screens", batch * u64::from(CHUNK_VERTICES) * 16),
         ("queue", LIST_HEADER + batch * u64::from(CHUNK_FACETS) * 4),

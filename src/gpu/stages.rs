@@ -1,17 +1,17 @@
 //! The passes of a frame, compiled once, with what they bind.
 
-use super::buffers::Buffers;
+use super::buffers::{Buffers, Room};
 use super::work::Stage;
 use super::{Extent, Gpu, Pass};
-use super::{border, compose, facing, rasterize, rasterize_large, seam, silhouette, tessellate};
+use super::{border, compose, facing, project, rasterize, rasterize_large, seam, silhouette, tessellate};
 use crate::dem::Dem;
 use crate::error::Result;
-use crate::plan::{Batch, Method, Plan, Thrift};
+use crate::plan::{Batch, Method, Plan, Thrift, batches};
 
 /// The passes of a plan.
 pub struct Stages {
-    /// `tessellate`, `seam`, `facing`, `rasterize`, `rasterize_large`: for each round of each batch.
-    pub per_batch: [Stage; 5],
+    /// `tessellate`, `seam`, `facing`, `project`, `rasterize`, `rasterize_large`: for each round of each batch.
+    pub per_batch: [Stage; 6],
     /// Those of the method, and how far each reaches.
     pub silhouettes: Vec<(Stage, Extent)>,
     /// Where there is a rim to draw.
@@ -21,27 +21,28 @@ pub struct Stages {
 }
 
 impl Stages {
-    /// Compiles what a plan needs. Facing bits lie in so many parts.
+    /// Compiles what a plan needs, for buffers with so much room.
     ///
     /// # Errors
     /// See [`Pass::new`].
-    pub fn new(gpu: &Gpu, dem: &Dem, plan: &Plan, has_rim: bool, parts: u32, size: [u32; 2]) -> Result<Self> {
+    pub fn new(gpu: &Gpu, dem: &Dem, plan: &Plan, has_rim: bool, room: Room, size: [u32; 2]) -> Result<Self> {
         let flag = |on: bool| f64::from(u8::from(on));
         let constants = [
             ("has_voids", flag(dem.voids() > 0)),
-            ("facing_parts", f64::from(parts)),
+            ("facing_parts", f64::from(facing_parts(room))),
             ("two_depths", flag(matches!(plan.method, Method::TowardAway { .. }))),
             ("thrifty", flag(plan.thrift == Thrift::LeaveOut)),
             ("conservative", flag(plan.method == Method::TowardAway { wide: true })),
         ];
         let visibility = plan.method.visibility(gpu.int64);
         let stage = |pass: Pass| Stage { pass, groups: Vec::new() };
-        let silhouettes = silhouette::passes(gpu, plan.method, size, &constants)?.into_iter();
+        let silhouettes = silhouette::passes(gpu, plan.method, room, size, &constants)?.into_iter();
         Ok(Self {
             per_batch: [
                 stage(tessellate::pass(gpu, &constants)?),
                 stage(seam::pass(gpu, &constants)?),
                 stage(facing::pass(gpu, &constants)?),
+                stage(project::pass(gpu, &constants)?),
                 stage(rasterize::pass(gpu, visibility, &constants)?),
                 stage(rasterize_large::pass(gpu, visibility, &constants)?),
             ],
@@ -49,6 +50,11 @@ impl Stages {
             border: has_rim.then(|| border::pass(gpu, &constants)).transpose()?.map(stage),
             compose: stage(compose::pass(gpu, &constants)?),
         })
+    }
+
+    /// Whether passes compiled for so much room serve another.
+    pub fn serve(room: Room, other: Room) -> bool {
+        facing_parts(room) == facing_parts(other) && room.keeps_vertices() == other.keeps_vertices()
     }
 
     /// Binds all passes to these buffers, for frames of up to so many batches.
@@ -67,4 +73,9 @@ impl Stages {
         }
         Ok(())
     }
+}
+
+/// In how many parts facing bits lie.
+fn facing_parts(room: Room) -> u32 {
+    batches(room.chunks).last().map_or(1, |batch| batch.part() + 1)
 }

@@ -2,7 +2,6 @@
 
 use super::{Gpu, Pass};
 use crate::error::Result;
-use crate::plan::Batch;
 
 /// The composed shader.
 pub const SOURCE: &str = crate::shader!("scene", "lattice", "surface", "cull", "tessellate");
@@ -16,6 +15,6 @@ pub fn pass(gpu: &Gpu, constants: &[(&str, f64)]) -> Result<Pass> {
 }
 
 /// At most 16 blocks of vertices, one row a chunk.
-pub fn invocations(batch: &Batch) -> [u32; 2] {
-    [16, batch.chunks]
+pub fn invocations(chunks: u32) -> [u32; 2] {
+    [16, chunks]
 }

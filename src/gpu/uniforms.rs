@@ -59,8 +59,8 @@ pub struct CameraUniform {
     pub origin: [i32; 2],
     /// Chunks in the first slots that are drawn.
     pub seen: u32,
-    /// Fills to 16 bytes.
-    pub pad: u32,
+    /// Chunks whose vertices are not there yet.
+    pub fresh: u32,
 }
 
 /// `Chunk` of scene.wgsl.
@@ -81,6 +81,10 @@ pub struct ChunkUniform {
     pub beyond: f32,
     /// Which tile holds its samples.
     pub tile: u32,
+    /// Which block of `places` holds its vertices.
+    pub block: u32,
+    /// Fills to 8 bytes.
+    pub pad: u32,
 }
 
 /// `Batch` of scene.wgsl.
@@ -93,8 +97,8 @@ pub struct BatchUniform {
     pub part_slot: u32,
     /// Which round over the facets this is.
     pub round: u32,
-    /// Fills to 16 bytes.
-    pub pad: u32,
+    /// 1: its vertices make way for those of the next batch, 0: they stay.
+    pub passing: u32,
 }
 
 /// `Counts` of ink.wgsl.
@@ -123,11 +127,11 @@ impl SceneUniform {
 }
 
 impl ChunkUniform {
-    /// A chunk with its samples in a tile.
-    pub fn new(chunk: Chunk, pyramid: &Pyramid, tile: u32) -> Self {
+    /// A chunk with its samples in a tile and its vertices in a block.
+    pub fn new(chunk: Chunk, pyramid: &Pyramid, tile: u32, block: u32) -> Self {
         let Chunk { origin, step, coarser } = chunk;
         let Relief { low, high, beyond } = pyramid.relief(origin, step);
-        Self { origin, step, coarser, low, high, beyond, tile }
+        Self { origin, step, coarser, low, high, beyond, tile, block, pad: 0 }
     }
 }
 
@@ -169,7 +173,7 @@ impl CameraUniform {
             wedge: wedge_words(camera.wedge()),
             origin: [0; 2],
             seen: 0,
-            pad: 0,
+            fresh: 0,
         })
     }
 

@@ -3,8 +3,15 @@
 use super::{Extent, Gpu, Pass};
 use crate::error::Result;
 
-/// The composed shader.
-pub const SOURCE: &str = crate::shader!("scene", "lattice", "surface", "wide", "ink", "list", "levels", "walk");
+/// The composed shader, for frames whose vertices are all at hand, or those of one batch at a time.
+pub fn source(keeps_vertices: bool) -> &'static str {
+    if keeps_vertices {
+        crate::shader!("scene", "lattice", "surface", "vertex_kept", "wide", "ink", "list", "levels", "walk")
+    } else {
+        crate::shader!("scene", "lattice", "surface", "vertex_anew", "wide", "ink", "list", "levels", "walk")
+    }
+}
+
 /// One invocation a pixel with open pairs.
 pub const EXTENT: Extent = Extent::List("pairs");
 
@@ -12,6 +19,6 @@ pub const EXTENT: Extent = Extent::List("pairs");
 ///
 /// # Errors
 /// See [`Pass::new`].
-pub fn pass(gpu: &Gpu, constants: &[(&str, f64)]) -> Result<Pass> {
-    Pass::new(gpu, "walk", SOURCE, constants)
+pub fn pass(gpu: &Gpu, keeps_vertices: bool, constants: &[(&str, f64)]) -> Result<Pass> {
+    Pass::new(gpu, "walk", source(keeps_vertices), constants)
 }

@@ -3,9 +3,37 @@
 use super::{Extent, Gpu, Pass};
 use crate::error::Result;
 
-/// The composed shader.
-pub const SOURCE: &str =
-    crate::shader!("scene", "lattice", "surface", "wide", "ink", "list", "levels", "walk", "walk_rest");
+/// The composed shader, for frames whose vertices are all at hand, or those of one batch at a time.
+pub fn source(keeps_vertices: bool) -> &'static str {
+    if keeps_vertices {
+        crate::shader!(
+            "scene",
+            "lattice",
+            "surface",
+            "vertex_kept",
+            "wide",
+            "ink",
+            "list",
+            "levels",
+            "walk",
+            "walk_rest"
+        )
+    } else {
+        crate::shader!(
+            "scene",
+            "lattice",
+            "surface",
+            "vertex_anew",
+            "wide",
+            "ink",
+            "list",
+            "levels",
+            "walk",
+            "walk_rest"
+        )
+    }
+}
+
 /// One invocation a pixel with such pairs.
 pub const EXTENT: Extent = Extent::List("rest");
 
@@ -13,6 +41,6 @@ pub const EXTENT: Extent = Extent::List("rest");
 ///
 /// # Errors
 /// See [`Pass::new`].
-pub fn pass(gpu: &Gpu, constants: &[(&str, f64)]) -> Result<Pass> {
-    Pass::new(gpu, "walk_rest", SOURCE, &[constants, &[("defers", 0.0)]].concat())
+pub fn pass(gpu: &Gpu, keeps_vertices: bool, constants: &[(&str, f64)]) -> Result<Pass> {
+    Pass::new(gpu, "walk_rest", source(keeps_vertices), &[constants, &[("defers", 0.0)]].concat())
 }

@@ -19,6 +19,11 @@ impl Batch {
     pub fn part(&self) -> u32 {
         self.first_slot / PART_CHUNKS
     }
+
+    /// How many of its chunks are among those in the first `seen` slots.
+    pub fn seen(&self, seen: u32) -> u32 {
+        seen.saturating_sub(self.first_slot).min(self.chunks)
+    }
 }
 
 /// The batches of so many chunks, in the order of their slots.

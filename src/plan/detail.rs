@@ -18,8 +18,11 @@ use crate::view::Camera;
 
 /// Largest deviation of facets on the page unless told otherwise, px.
 pub const ERROR_PX: f64 = 0.15;
-/// Longest side of a facet on the page, px: lines may end wrongly by as much, however little the facets deviate.
-const SIDE_PX: f64 = 6.0;
+/// How many times as long as their largest deviation sides of facets may be on the page: lines may end wrongly by as much,
+/// however little the facets deviate.
+const SIDES: f64 = 25.0;
+/// How many times as far facets may deviate where all face the eye, or all face away: no line runs there.
+const CALM: f64 = 4.0;
 /// How many times as far as their deviation facets may leave a patch whose sides bend this way and that.
 const BENDS: f64 = 2.2;
 
@@ -130,7 +133,7 @@ impl<'a> Demand<'a> {
             has_voids: surface.dem().voids() > 0,
             horizon: Horizon::new(surface, camera),
             tolerance: error_px / corner,
-            widest: SIDE_PX / corner / surface.dem().cell().max_element() * f64::from(CELL_STEPS),
+            widest: SIDES * error_px / corner / surface.dem().cell().max_element() * f64::from(CELL_STEPS),
             hidden: HashSet::new(),
         }
     }
@@ -153,6 +156,16 @@ impl<'a> Demand<'a> {
         depth > 0
             && step > self.pyramid.finest_step()
             && quarters.all(|[x, y]| self.below_horizon([origin[0] + x, origin[1] + y], step / 2, depth - 1))
+    }
+
+    /// Whether all facets of a square, at every level, face the eye, or all face away.
+    fn faces_one_way(&self, origin: [u32; 2], step: u32, [low, high]: [DVec3; 2]) -> bool {
+        let to_eye = [self.view.eye - high, self.view.eye - low];
+        // How far the eye may lie above the plane of a facet.
+        let [[a, b], [c, d]] = self.pyramid.slopes(origin, step).map(|slope| to_eye.map(|way| slope * way.truncate()));
+        let least = to_eye[0].z - a.max(b).max(c).max(d).element_sum();
+        let most = to_eye[1].z - a.min(b).min(c).min(d).element_sum();
+        least > 0.0 || most < 0.0
     }
 
     /// From the eye to the nearest place of a box, metres.
@@ -201,7 +214,8 @@ impl Growth for Demand<'_> {
             self.hidden.insert((origin, size));
             return false;
         }
-        let distance = self.distance(bounds);
+        let calm = self.faces_one_way(origin, step, bounds);
+        let distance = self.distance(bounds) * if calm { CALM } else { 1.0 };
         deviation > self.tolerance * distance || f64::from(step) > self.widest * distance
     }
 

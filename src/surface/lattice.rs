@@ -79,7 +79,7 @@ pub struct LatticePoint {
 
 /// 16 x 16 lattice quads at one level. Laid out as the shaders read it.
 #[repr(C)]
-#[derive(Debug, Clone, Copy, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct Chunk {
     /// Lattice place of its north-west vertex, (X, Y).
     pub origin: [u32; 2],

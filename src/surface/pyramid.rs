@@ -53,6 +53,51 @@ pub struct Relief {
     pub beyond: f32,
 }
 
+/// Between which slopes the surface and all facets over a square lie, rounded outwards: s = q / (127 - |q|) dz/d east and
+/// dz/d north.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+struct Slopes {
+    low: [i8; 2],
+    high: [i8; 2],
+}
+
+impl Slopes {
+    const NONE: Self = Self { low: [i8::MAX; 2], high: [i8::MIN; 2] };
+
+    /// Those of a patch. Facets have sides along east and north, chords of the patch or of several: their slopes lie
+    /// between the least and the largest of the control points' first differences.
+    fn of_patch(patch: &Patch, half: usize) -> Self {
+        let control = patch.control();
+        let mut range = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+        for (j, k) in [(0, 0), (1, 0), (2, 0), (0, 1), (1, 1), (0, 2)] {
+            let [a, b, c] = [(j, k), (j + 1, k), (j, k + 1)].map(|(j, k)| control[Patch::index(j, k)]);
+            // Patch 0 has its corners at NW, SW, SE, patch 1 at NW, SE, NE.
+            let (east, north) = if half == 0 { (c - b, a - b) } else { (c - a, c - b) };
+            for (axis, slope) in [east.z / east.x, north.z / north.y].into_iter().enumerate() {
+                range[0][axis] = range[0][axis].min(slope);
+                range[1][axis] = range[1][axis].max(slope);
+            }
+        }
+        let coded = |slope: f64| 127.0 * slope / (1.0 + slope.abs());
+        let [low, high] = range;
+        Self { low: low.map(|slope| coded(slope).floor() as i8), high: high.map(|slope| coded(slope).ceil() as i8) }
+    }
+
+    fn with(self, other: Self) -> Self {
+        Self {
+            low: [0, 1].map(|axis| self.low[axis].min(other.low[axis])),
+            high: [0, 1].map(|axis| self.high[axis].max(other.high[axis])),
+        }
+    }
+
+    /// Lowest and highest slopes: dz/d east, dz/d north.
+    fn range(self) -> [DVec2; 2] {
+        let decoded = |q: i8| f64::from(q) / (127.0 - f64::from(q).abs()).max(1e-9);
+        [self.low, self.high].map(|slopes| DVec2::from(slopes.map(decoded)))
+    }
+}
+
 /// What is known of a square, metres.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -66,6 +111,7 @@ struct Square {
     deviation: f32,
     /// NaN where it has voids; only of squares up to 32 cells.
     fences: Fences,
+    slopes: Slopes,
 }
 
 /// Rows and columns of samples that cross a square, metres.
@@ -83,8 +129,14 @@ impl Fences {
 }
 
 impl Square {
-    const EMPTY: Self =
-        Self { low: f32::INFINITY, high: f32::NEG_INFINITY, bulge: 0.0, deviation: 0.0, fences: Fences::NONE };
+    const EMPTY: Self = Self {
+        low: f32::INFINITY,
+        high: f32::NEG_INFINITY,
+        bulge: 0.0,
+        deviation: 0.0,
+        fences: Fences::NONE,
+        slopes: Slopes::NONE,
+    };
 
     fn with(self, other: Self) -> Self {
         Self {
@@ -93,6 +145,7 @@ impl Square {
             bulge: self.bulge.max(other.bulge),
             deviation: self.deviation.max(other.deviation),
             fences: Fences::NONE,
+            slopes: self.slopes.with(other.slopes),
         }
     }
 }
@@ -179,6 +232,11 @@ impl Pyramid {
         Relief { low, high, beyond: bulge }
     }
 
+    /// Lowest and highest dz/d east and dz/d north of the surface and all facets of the chunk at `origin`.
+    pub fn slopes(&self, origin: [u32; 2], step: u32) -> [DVec2; 2] {
+        self.square(origin, step).slopes.range()
+    }
+
     /// The fences across the square of the chunk at `origin`, of at most 32 cells; `None` where it has voids.
     pub fn fences(&self, origin: [u32; 2], step: u32) -> Option<Fences> {
         Some(self.square(origin, step).fences).filter(|fences| !fences.along_east.is_nan())
@@ -234,7 +292,7 @@ impl Layer {
                     let square = &mut squares[c / size];
                     let corners = [north[c], south[c], south[c + 1], north[c + 1]];
                     for half in (0..2).filter(|half| exists[*half]) {
-                        *square = square.with(of_patch(&Patch::of_cell(corners, half)));
+                        *square = square.with(of_patch(&Patch::of_cell(corners, half), half));
                     }
                 }
                 north = south;
@@ -279,7 +337,7 @@ impl Layer {
     }
 }
 
-fn of_patch(patch: &Patch) -> Square {
+fn of_patch(patch: &Patch, half: usize) -> Square {
     let heights = patch.control().map(|p| p.z as f32);
     let bulge = patch.bulge();
     Square {
@@ -288,6 +346,7 @@ fn of_patch(patch: &Patch) -> Square {
         bulge: (bulge.limit as f32).next_up(),
         deviation: bulge.flat as f32,
         fences: Fences::NONE,
+        slopes: Slopes::of_patch(patch, half),
     }
 }
 

@@ -1,0 +1,20 @@
+//! Pass `project`: where the vertices of the chunks that may appear lie on the page.
+
+use super::{Gpu, Pass};
+use crate::error::Result;
+
+/// The composed shader.
+pub const SOURCE: &str = crate::shader!("scene", "lattice", "surface", "cull", "project");
+
+/// Compiles the pass.
+///
+/// # Errors
+/// See [`Pass::new`].
+pub fn pass(gpu: &Gpu, constants: &[(&str, f64)]) -> Result<Pass> {
+    Pass::new(gpu, "project", SOURCE, constants)
+}
+
+/// 32 invocations a chunk, one row a chunk.
+pub fn invocations(chunks: u32) -> [u32; 2] {
+    [32, chunks]
+}
