@@ -92,7 +92,7 @@ fn run(filters: &[String]) -> Result<usize> {
         }
         let vertices = Renderer::new(&gpu, &surface, Plan::new(level, Method::Walk, Border::Off), PAGE)?;
         let mut draw = DepthDraw::new(&gpu, PAGE)?;
-        draw.load(&gpu, &vertices.lattice(), vertices.lattice().seen())?;
+        draw.load(&gpu, &vertices.lattice(), 0..vertices.lattice().seen())?;
         let baseline = Baseline { gpu: &gpu, vertices: &vertices, draw };
         vertices.frame(&camera)?;
         let pixels = gpu.read(vertices.buffers().get("pixels")?, u64::from(PAGE[0]) * u64::from(PAGE[1]) * 8)?;

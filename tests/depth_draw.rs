@@ -12,11 +12,8 @@ use hachure::view::Camera;
 
 use crate::scenes::{level, look, rough};
 
-/// Powers of two: elsewhere places on the page are rounded once more on their way through clip coordinates, and a facet
-/// of a pixel loses or gains one where it is off by 1/256 px.
-const PAGE: [u32; 2] = [512, 256];
-/// Rows of this page are shorter than what rows of a texture are aligned to.
-const NARROW: [u32; 2] = [32, 256];
+/// Sides that are no powers of two, and rows that are no multiple of what those of a texture are aligned to.
+const PAGE: [u32; 2] = [331, 200];
 /// Pixels that may show another facet: equal depths, facets across the guard band.
 const MOST_OTHERS: f64 = 0.01;
 
@@ -33,16 +30,15 @@ fn numbering(clock: Clock) -> &'static Gpu {
 }
 
 /// From outside: facets around the eye would be clipped, and those the draw leaves out.
-fn camera(surface: &Surface, page: [u32; 2]) -> Camera {
+fn camera(surface: &Surface) -> Camera {
     let [west, south, east, north] = surface.dem().extent();
     let middle = DVec3::new((west + east) / 2.0, (south + north) / 2.0, 0.0);
-    look(middle + DVec3::new(-1600.0, -1700.0, 500.0), middle, 60.0, page)
+    look(middle + DVec3::new(-1600.0, -1700.0, 500.0), middle, 60.0, PAGE)
 }
 
 /// ID + 1 of each pixel of the last frame, by our passes.
 fn ours(gpu: &Gpu, renderer: &Renderer<'_>) -> Vec<u32> {
-    let [width, height] = renderer.pieces().page();
-    let size = u64::from(width) * u64::from(height) * 8;
+    let size = u64::from(PAGE[0]) * u64::from(PAGE[1]) * 8;
     let bytes = gpu.read(renderer.buffers().get("pixels").expect("pixels"), size).expect("pixels");
     bytemuck::pod_collect_to_vec::<u8, [u32; 2]>(&bytes).iter().map(|pixel| pixel[0]).collect()
 }
@@ -56,20 +52,21 @@ fn others(a: &[u32], b: &[u32]) -> f64 {
 }
 
 /// Draws two views one after the other, of which the lattice may differ, and compares each with our passes.
-fn draw_and_compare(surface: &Surface, detail: Detail, page: [u32; 2]) {
-    let (gpu, view) = (numbering(Clock::Wall), camera(surface, page));
+fn draw_and_compare(surface: &Surface, detail: Detail) {
+    let (gpu, view) = (numbering(Clock::Wall), camera(surface));
     let plan = Plan::new(detail, Method::Walk, Border::Off);
-    let renderer = Renderer::new(gpu, surface, plan, page).expect("a renderer");
+    let renderer = Renderer::new(gpu, surface, plan, PAGE).expect("a renderer");
     let mut floor = Floor::new(&renderer, 1 << 20).expect("a floor");
     let mut lattices = Vec::new();
     for eye in [view.eye, view.eye + DVec3::new(200.0, 300.0, 0.0)] {
-        renderer.frame(&Camera { eye, ..view }).expect("a frame");
+        let camera = Camera { eye, ..view };
+        renderer.frame(&camera).expect("a frame");
         lattices.push(renderer.lattice().chunks().to_vec());
-        assert!(floor.draw_ms().expect("a draw").expect("a time") > 0.0);
+        assert!(floor.draw_ms(&camera).expect("a draw").expect("a time") > 0.0);
         let (expected, drawn) = (ours(gpu, &renderer), floor.ids().expect("IDs"));
         let share = others(&expected, &drawn);
-        println!("{detail:?}, {page:?}: {:.3} % of the pixels show another facet", share * 100.0);
-        assert!(share < MOST_OTHERS, "{detail:?}, {page:?}: {share} of the pixels show another facet");
+        println!("{detail:?}: {:.3} % of the pixels show another facet", share * 100.0);
+        assert!(share < MOST_OTHERS, "{detail:?}: {share} of the pixels show another facet");
         // Negative control: one facet on, and the comparison must notice.
         let shifted: Vec<u32> = drawn.iter().map(|id| if *id == 0 { 0 } else { id + 1 }).collect();
         assert!(others(&expected, &shifted) > 0.9, "the comparison is blind");
@@ -84,16 +81,15 @@ fn the_draw_shows_the_facets_of_our_passes() {
     for voids in [false, true] {
         let surface = Surface::new(rough(120, 110, 1.0, 6.0, voids));
         for detail in [level(1).into(), level(4).into(), Detail::Adaptive { error_px: 0.2 }] {
-            draw_and_compare(&surface, detail, PAGE);
+            draw_and_compare(&surface, detail);
         }
-        draw_and_compare(&surface, level(2).into(), NARROW);
     }
 }
 
 #[test]
 fn stamps_time_copy_and_draw() {
     let surface = Surface::new(rough(70, 60, 1.0, 6.0, false));
-    let camera = camera(&surface, PAGE);
+    let camera = camera(&surface);
     for clock in [Clock::Wall, Clock::Timestamps] {
         let gpu = numbering(clock);
         if gpu.info.device_type == wgpu::DeviceType::Cpu {
@@ -103,7 +99,7 @@ fn stamps_time_copy_and_draw() {
         let renderer = Renderer::new(gpu, &surface, plan, PAGE).expect("a renderer");
         let [mut little, much] = [1 << 12, 1 << 28].map(|bytes| Floor::new(&renderer, bytes).expect("a floor"));
         renderer.frame(&camera).expect("a frame");
-        let draw = little.draw_ms().expect("a draw").expect("a time");
+        let draw = little.draw_ms(&camera).expect("a draw").expect("a time");
         assert!(draw.is_finite() && draw > 0.0, "{clock:?}: {draw} ms");
         let [few, many] = [&little, &much].map(|floor| floor.copy_ms().expect("a copy").expect("a time"));
         assert!(many > few, "{clock:?}: 256 MiB take {many} ms, 4 KiB {few} ms");
@@ -117,9 +113,10 @@ fn several_vertex_batches_cannot_be_drawn() {
     let gpu = numbering(Clock::Wall);
     let renderer =
         Renderer::new(gpu, &surface, Plan::new(level(32), Method::Walk, Border::Off), PAGE).expect("a renderer");
-    renderer.frame(&camera(&surface, PAGE)).expect("a frame");
+    let camera = camera(&surface);
+    renderer.frame(&camera).expect("a frame");
     let mut floor = Floor::new(&renderer, 1 << 20).expect("a floor");
-    assert!(floor.lacks_vertices() && floor.draw_ms().expect("no error").is_none());
+    assert!(floor.lacks_vertices() && floor.draw_ms(&camera).expect("no error").is_none());
 }
 
 #[test]

@@ -2,8 +2,8 @@
 //!
 //! One indexed draw of the vertices that the passes `tessellate` and `seam` left, into Depth32Float and R32Uint, both
 //! sides, nearer wins: the least that any hidden-surface method on the device must do once vertices are there. u32
-//! indices name the facets in the order of their IDs, those of the chunks that are rasterized alone. Vertices are not
-//! found again: their time is that of the two passes.
+//! indices name the facets chunk by chunk, those that are rasterized alone. Vertices are not found again: their time is
+//! that of the two passes.
 //!
 //! Does not handle: several vertex batches, which share one buffer; facets across the near plane or the guard band, of
 //! which vertices have no place: they are left out, which costs nothing.
@@ -33,9 +33,9 @@ pub struct DepthDraw {
     facets: Option<Facets>,
 }
 
-/// The indices of the chunks they were made for.
+/// The indices, and the slots and chunks they were made for.
 struct Facets {
-    chunks: Vec<Chunk>,
+    drawn: Vec<(u32, Chunk)>,
     indices: wgpu::Buffer,
     count: u32,
 }
@@ -70,17 +70,19 @@ impl DepthDraw {
         Ok(Self { pipeline, bindings: reflect(NAME, source)?.bindings, ids, depths, facets: None })
     }
 
-    /// Takes the facets of the chunks in the first `seen` slots of a lattice. Indices are made anew where those are
-    /// others than before.
+    /// Takes the facets of the chunks in these slots of a lattice. Indices are made anew where those are others than
+    /// before.
     ///
     /// # Errors
     /// [`Error::Gpu`] when the driver refuses.
-    pub fn load(&mut self, gpu: &Gpu, lattice: &Lattice, seen: u32) -> Result<()> {
-        let chunks = lattice.chunks().get(..seen as usize).unwrap_or(lattice.chunks());
-        if self.facets.as_ref().is_some_and(|facets| facets.chunks == chunks) {
+    pub fn load(&mut self, gpu: &Gpu, lattice: &Lattice, slots: impl IntoIterator<Item = u32>) -> Result<()> {
+        let chunk = |slot: u32| Some((slot, *lattice.chunks().get(slot as usize)?));
+        let drawn: Vec<(u32, Chunk)> = slots.into_iter().filter_map(chunk).collect();
+        if self.facets.as_ref().is_some_and(|facets| facets.drawn == drawn) {
             return Ok(());
         }
-        let corners: Vec<u32> = (0..chunks.len() as u32 * CHUNK_FACETS).flat_map(|id| corners(lattice, id)).collect();
+        let ids = drawn.iter().flat_map(|(slot, _)| slot * CHUNK_FACETS..(slot + 1) * CHUNK_FACETS);
+        let corners: Vec<u32> = ids.flat_map(|id| corners(lattice, id)).collect();
         let indices = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some(NAME),
             size: (corners.len() as u64 * 4).max(wgpu::COPY_BUFFER_ALIGNMENT),
@@ -88,7 +90,7 @@ impl DepthDraw {
             mapped_at_creation: false,
         });
         gpu.queue.write_buffer(&indices, 0, bytemuck::cast_slice(&corners));
-        self.facets = Some(Facets { chunks: chunks.to_vec(), indices, count: corners.len() as u32 });
+        self.facets = Some(Facets { drawn, indices, count: corners.len() as u32 });
         // Sent at once, so that the draw does not wait for it.
         gpu.queue.submit([]);
         gpu.wait()
@@ -153,7 +155,14 @@ impl DepthDraw {
         gpu.queue.submit([encoder.finish()]);
         let bytes = gpu.read(&buffer, size)?;
         let rows = bytes.chunks_exact(row as usize).map(|row| &row[..texture.width() as usize * 4]);
-        Ok(rows.flat_map(bytemuck::pod_collect_to_vec::<u8, u32>).collect())
+        Ok(rows.flat_map(bytemuck::pod_collect_to_vec::<u8, u32>).map(|primitive| self.id(primitive)).collect())
+    }
+
+    /// ID + 1 of a facet from its number + 1 in the draw.
+    fn id(&self, primitive: u32) -> u32 {
+        let chunk = primitive.saturating_sub(1) / CHUNK_FACETS;
+        let slot = self.facets.as_ref().and_then(|facets| facets.drawn.get(chunk as usize)).map(|(slot, _)| *slot);
+        slot.filter(|_| primitive > 0).map_or(0, |slot| primitive + (slot - chunk) * CHUNK_FACETS)
     }
 }
 

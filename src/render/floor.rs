@@ -7,7 +7,9 @@ use crate::gpu::clock::time_of;
 use crate::gpu::sizes::LIST_HEADER;
 use crate::gpu::{BareCopy, DepthDraw};
 use crate::ink::Kind;
+use crate::plan::Thrift;
 use crate::plan::cost::{PassCost, Quantities};
+use crate::plan::detail::across;
 use crate::view::Camera;
 
 impl Renderer<'_> {
@@ -69,18 +71,22 @@ impl<'a> Floor<'a> {
         })
     }
 
-    /// How long one draw takes of the facets that the last frame rasterized, from the vertices it left, ms; `None` where
-    /// the driver stamps none, or where [`Self::lacks_vertices`].
+    /// How long one draw takes of the facets that the last frame, that of `camera`, rasterized, from the vertices it left,
+    /// ms; `None` where the driver stamps none, or where [`Self::lacks_vertices`].
     ///
     /// # Errors
     /// Whatever the driver reports.
-    pub fn draw_ms(&mut self) -> Result<Option<f64>> {
+    pub fn draw_ms(&mut self, camera: &Camera) -> Result<Option<f64>> {
         if self.lacks_vertices() {
             return Ok(None);
         }
-        let Renderer { gpu, loaded, .. } = self.renderer;
+        let Renderer { gpu, surface, plan, loaded, .. } = self.renderer;
         let loaded = loaded.borrow();
-        self.draw.load(gpu, &loaded.lattice, self.renderer.seen(&loaded))?;
+        // Chunks beside the page have the vertices of an earlier frame.
+        let across = across(surface, &loaded.lattice, camera)?;
+        let slots = (0..self.renderer.seen(&loaded)).zip(across);
+        let drawn = slots.filter(|(_, across)| *across || plan.thrift == Thrift::Nothing).map(|(slot, _)| slot);
+        self.draw.load(gpu, &loaded.lattice, drawn)?;
         time_of(gpu, |encoder| self.draw.record(gpu, &loaded.buffers, encoder))
     }
 

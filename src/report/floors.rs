@@ -5,6 +5,7 @@ use super::trial::median;
 use super::words::milliseconds;
 use crate::error::Result;
 use crate::render::Floor;
+use crate::view::Camera;
 
 /// Times taken in turn with the warm frames.
 pub(super) struct Floors {
@@ -20,10 +21,10 @@ impl Floors {
         Self { bytes, copies: Vec::new(), draws: Vec::new(), lacks_vertices: false }
     }
 
-    /// Takes both times once.
-    pub fn add(&mut self, floor: &mut Floor<'_>) -> Result<()> {
+    /// Takes both times once, after the frame of a camera.
+    pub fn add(&mut self, floor: &mut Floor<'_>, camera: &Camera) -> Result<()> {
         self.copies.push(floor.copy_ms()?);
-        self.draws.push(floor.draw_ms()?);
+        self.draws.push(floor.draw_ms(camera)?);
         self.lacks_vertices |= floor.lacks_vertices();
         Ok(())
     }

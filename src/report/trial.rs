@@ -91,12 +91,13 @@ impl Trial<'_> {
         let mut floors = self.floor.then(|| Floors::new(bytes));
         let (mut times, mut mask_hashes, mut next) = (Vec::new(), Vec::new(), None);
         for step in 1..=self.repeat {
-            times.push(renderer.time_of_frame(&moved(self.camera, step))?);
+            let camera = moved(self.camera, step);
+            times.push(renderer.time_of_frame(&camera)?);
             let raster = renderer.read()?.raster;
             mask_hashes.push(hash(&raster));
             next.get_or_insert_with(|| mask_of(&raster, renderer.near()));
             if let (Some(floors), Some(floor)) = (&mut floors, &mut floor) {
-                floors.add(floor)?;
+                floors.add(floor, &camera)?;
             }
         }
         times.sort_by(f64::total_cmp);
