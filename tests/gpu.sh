@@ -9,8 +9,9 @@ views=${HACHURE_VIEWS:-../shared/views.json}
 dems=${HACHURE_DEMS:-$(dirname "$views")/dem}
 . examples/setup.sh
 cargo build --release
+failed=0
 cargo test --release -- agreement costs cover depth_draw gpu_errors kernels mixed pieces reflection same_bytes \
-    silhouettes times
+    silhouettes times || failed=1
 compare() {
     name=$1
     shift
@@ -20,9 +21,10 @@ compare() {
 if [ ! -f "$views" ] || [ ! -d "$dems" ]; then
     echo "no views $views or no DEMs in $dems: set HACHURE_VIEWS and HACHURE_DEMS; here the sample instead"
     compare sample dem/golden-gate.tif --size "$size" --levels auto
-    exit
+    exit "$failed"
 fi
 # DEMs that no view names are not read.
 compare views "$dems"/* --views "$views" --size "$size" --levels auto --truth-level 8
 # 304 000 patches on 1920 x 1080 pixels: the target on a GPU is at most 1 ms a frame.
 compare target "$dems/SainteHelens.dem" --views "$views" --size 1920x1080 --levels 1,auto --truth-level 8
+exit "$failed"
