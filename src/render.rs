@@ -1,5 +1,7 @@
 //! The whole algorithm on one screen: plan, passes, readback.
 
+mod floor;
+
 use std::cell::{Ref, RefCell};
 use std::time::Instant;
 
@@ -19,6 +21,7 @@ use crate::surface::{Lattice, Surface};
 use crate::view::Camera;
 
 pub use crate::gpu::clock::{FrameTime, PassTime};
+pub use floor::Floor;
 
 /// What a frame leaves to read, and what was counted on the way.
 #[derive(Debug, Clone)]

@@ -1,13 +1,11 @@
 //! Benchmark of frames against one hardware draw of the same facets: `cargo bench --bench frame [-- FILTER…]`.
 //!
 //! A frame is [`Renderer::frame`]: camera upload to mask, waited for. The baseline frame is the least that any
-//! hidden-surface method on the device must do: our own pass `tessellate`, then one indexed draw of every facet with
-//! depth test, which leaves depth and facet ID; no silhouettes, no readback (see [`baseline`]). Both by the wall clock
+//! hidden-surface method on the device must do: our own pass `project`, then one indexed draw of every facet with
+//! depth test, which leaves depth and facet ID; no silhouettes, no readback (see [`depth_draw`]). Both by the wall clock
 //! around submit and wait, alternately, so that what else the machine does hits both alike; each repetition moves the
 //! camera 1 m along its view direction. The ratio is the median of the ratios of neighbours: below 1 a finished mask
 //! takes less time than the bare draw. Rows run whose name contains every FILTER, for example `level4 walk`.
-
-mod baseline;
 
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -16,14 +14,12 @@ use std::time::Instant;
 
 use glam::DVec3;
 use hachure::dem::read;
-use hachure::error::Result;
-use hachure::gpu::{AdapterChoice, Gpu, Int64};
+use hachure::error::{Error, Result};
+use hachure::gpu::{AdapterChoice, DepthDraw, Gpu, Int64, depth_draw};
 use hachure::plan::{Border, Method, Plan, Share};
 use hachure::render::Renderer;
 use hachure::surface::{Level, Surface};
 use hachure::view::Camera;
-
-use baseline::Baseline;
 
 /// Frames timed of each kind.
 const REPETITIONS: usize = 9;
@@ -79,12 +75,13 @@ fn main() -> ExitCode {
 fn run(filters: &[String]) -> Result<usize> {
     let (path, camera) = scene();
     let surface = Surface::new(read(&path, &Default::default())?);
-    let gpu = Gpu::open_with(&AdapterChoice::Best, Int64::IfPresent, baseline::FEATURE)?;
+    let gpu = Gpu::open_with(&AdapterChoice::Best, Int64::IfPresent, depth_draw::FEATURE)?;
     let without_int64 = Gpu::open(&AdapterChoice::Best, Int64::Never)?;
     println!("{} on {}", path.display(), gpu.info.name);
     println!("{camera:?}");
     println!("pass by pass: {}", gpu.clock.describe());
-    println!("baseline: tessellate and one indexed draw, facet ID from {}", baseline::id_source(&gpu));
+    let id = if depth_draw::shows_facets(&gpu) { "primitive_index" } else { "a vertex (no primitive_index here)" };
+    println!("baseline: project and one indexed draw, facet ID from {id}");
     let mut rows = 0;
     for (n, column) in [(4, 0), (8, 1)] {
         let level = Level::new(n).expect("a level");
@@ -94,7 +91,9 @@ fn run(filters: &[String]) -> Result<usize> {
             continue;
         }
         let vertices = Renderer::new(&gpu, &surface, Plan::new(level, Method::Walk, Border::Off), PAGE)?;
-        let baseline = Baseline::new(&gpu, &vertices, PAGE)?;
+        let mut draw = DepthDraw::new(&gpu, PAGE)?;
+        draw.load(&gpu, &vertices.lattice(), 0..vertices.lattice().seen())?;
+        let baseline = Baseline { gpu: &gpu, vertices: &vertices, draw };
         vertices.frame(&camera)?;
         let pixels = gpu.read(vertices.buffers().get("pixels")?, u64::from(PAGE[0]) * u64::from(PAGE[1]) * 8)?;
         baseline.frame(&camera)?;
@@ -109,6 +108,38 @@ fn run(filters: &[String]) -> Result<usize> {
         }
     }
     Ok(rows)
+}
+
+/// Vertices and the hardware draw of their facets.
+struct Baseline<'a> {
+    gpu: &'a Gpu,
+    vertices: &'a Renderer<'a>,
+    draw: DepthDraw,
+}
+
+impl Baseline<'_> {
+    /// Draws a frame and waits for it.
+    fn frame(&self, camera: &Camera) -> Result<()> {
+        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+        self.vertices.record_vertices(camera, &mut encoder)?;
+        self.draw.record(self.gpu, &self.vertices.buffers(), &mut encoder)?;
+        self.gpu.queue.submit([encoder.finish()]);
+        self.gpu.wait()
+    }
+
+    /// Share of the covered pixels that show another facet than `pixels` (ID + 1, depth bits) of the same camera; where
+    /// it is 1 % or more, the baseline would not draw what we draw.
+    fn compare(&self, pixels: &[[u32; 2]]) -> Result<f64> {
+        let covered = pixels.iter().filter(|pixel| pixel[1] != 0).count();
+        let differ = self.draw.ids(self.gpu)?.iter().zip(pixels).filter(|(id, pixel)| **id != pixel[0]).count();
+        let share = differ as f64 / covered as f64;
+        if depth_draw::shows_facets(self.gpu) && (covered == 0 || share >= 0.01) {
+            return Err(Error::Gpu {
+                what: format!("{differ} of {covered} pixels of the baseline show another facet"),
+            });
+        }
+        Ok(share)
+    }
 }
 
 /// West-temple where the shared terrain is, the sample of every checkout elsewhere.

@@ -42,11 +42,12 @@ fn files(folder: &Path) -> Vec<String> {
     names
 }
 
-/// Takes out what two runs may differ in: times, memory, and nothing else.
+/// Takes out what two runs may differ in: times, memory, what is set beside times, and nothing else.
 fn without_times(value: &mut Value) {
     match value {
         Value::Object(fields) => {
-            fields.retain(|key, _| !(key.ends_with("_ms") || key.ends_with("_mib") || key == "passes"));
+            fields
+                .retain(|key, _| !(key.ends_with("_ms") || key.ends_with("_mib") || key == "passes" || key == "floor"));
             fields.values_mut().for_each(without_times);
         }
         Value::Array(values) => values.iter_mut().for_each(without_times),
@@ -83,7 +84,48 @@ fn a_report_is_whole() {
         let ink = mask.to_luma8().pixels().filter(|pixel| pixel.0[0] == 0).count();
         assert_eq!(run["inked"], ink, "the mask and the figures agree");
         assert_eq!(run["place"].is_null(), run["method"] != "walk");
+        assert!(run.get("floor").is_none(), "nobody asked for limits: {run}");
+        for pass in run["passes"].as_array().expect("passes") {
+            let [bytes, operations] = ["bytes", "operations"].map(|key| pass[key].as_u64().expect("a number"));
+            // A hill this far away has no large facets, and little that walks must leave.
+            let idle = ["rasterize_large", "walk_rest"].contains(&pass["name"].as_str().expect("a name"));
+            assert!(idle || bytes > 0, "{pass}");
+            assert!(idle || operations > 0 || pass["name"] == "clear", "{pass}");
+        }
     }
+}
+
+#[test]
+fn limits_stand_beside_every_time_where_they_are_asked_for() {
+    let place = Place::new();
+    let levels = ["--levels", "2,auto"];
+    let arguments = ["compare", "hill.asc", "--size", "96x64", "--methods", "walk,toward-away,adjacency", "--floor"];
+    let output = succeeds(&place, &[&arguments[..], &levels, &EYE, &OUT].concat());
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    let found = results(&place);
+    let runs = found["runs"].as_array().expect("runs");
+    assert_eq!(runs.len(), 6);
+    for run in runs {
+        let floor = run["floor"].as_object().expect("limits");
+        let keys = ["bytes", "copy_ms", "draw_ms", "lacking", "frame_per_copy", "frame_per_draw"];
+        assert_eq!(floor.keys().map(String::as_str).collect::<Vec<_>>(), keys);
+        assert!(floor["lacking"].is_null(), "{floor:?}");
+        let number = |key: &str| floor[key].as_f64().unwrap_or_else(|| panic!("no {key}: {floor:?}"));
+        for key in keys.into_iter().filter(|key| *key != "lacking") {
+            assert!(number(key).is_finite() && number(key) > 0.0, "{key}: {floor:?}");
+        }
+        let of_passes = |key: &str| {
+            let passes = run["passes"].as_array().expect("passes");
+            passes.iter().map(|pass| pass[key].as_f64().expect("a number")).sum::<f64>()
+        };
+        assert_eq!(number("bytes"), of_passes("bytes"), "the copy moves what the passes move");
+        let frame_ms = run["frame_ms"].as_f64().expect("a time");
+        for [per, ms] in [["frame_per_copy", "copy_ms"], ["frame_per_draw", "draw_ms"]] {
+            assert!((number(per) * number(ms) / frame_ms - 1.0).abs() < 1e-9, "{per}: {floor:?}");
+        }
+    }
+    assert_eq!(said.matches(" GB/s, a bare copy ").count(), 6, "{said}");
+    assert_eq!(said.matches(", depth draw ").count(), 6, "{said}");
 }
 
 #[test]

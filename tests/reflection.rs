@@ -8,7 +8,7 @@ use hachure::gpu::buffers::Room;
 use hachure::gpu::pass::reflect;
 use hachure::gpu::sizes::{BLOCK, LARGEST_BINDING, fits, written};
 use hachure::gpu::uniforms::{BatchUniform, ChunkUniform, Counts, SceneUniform};
-use hachure::gpu::{CameraUniform, adjacency, border, candidates, compose, facing, pairs};
+use hachure::gpu::{CameraUniform, adjacency, border, candidates, compose, depth_draw, facing, pairs};
 use hachure::gpu::{project, rasterize, rasterize_large, seam, tessellate, toward_away, walk, walk_rest};
 use hachure::plan::Visibility;
 use hachure::plan::batches::{BATCH_CHUNKS, PART_CHUNKS};
@@ -178,6 +178,15 @@ fn every_composed_shader_is_valid_and_agrees_with_rust() {
     let all = shared_structs().into_iter().map(|(name, _)| name).chain(shared_constants().into_iter().map(|c| c.0));
     let missed: Vec<_> = all.filter(|name| !seen.iter().any(|s| s == name)).collect();
     assert!(missed.is_empty(), "no shader has {missed:?}");
+}
+
+#[test]
+fn the_depth_draw_binds_what_our_passes_leave() {
+    for source in [depth_draw::BY_PRIMITIVE, depth_draw::BY_VERTEX] {
+        let reflection = reflect("depth_draw", source).expect("valid WGSL with this entry point");
+        assert_eq!(reflection.bindings, [(1, "camera".to_owned()), (15, "screens".to_owned())]);
+        assert_eq!(differences(&reflection.module).1, Vec::<String>::new());
+    }
 }
 
 #[test]

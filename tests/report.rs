@@ -15,6 +15,10 @@ fn sample() -> Results {
     sample::results(SIZE[0], SIZE[1])
 }
 
+fn sample_with_floors() -> Results {
+    sample::with_floors(SIZE[0], SIZE[1])
+}
+
 #[test]
 fn the_plot_is_the_same_file_every_time_and_shows_every_run() {
     let results = sample();
@@ -90,6 +94,20 @@ fn the_csv_holds_what_the_json_holds() {
         assert_eq!(cell("silhouette_ms").is_empty(), walk);
     }
     assert!(rows.iter().any(|row| row[0] == AWKWARD));
+}
+
+#[test]
+fn limits_have_columns_where_they_were_asked_for() {
+    let of_floor =
+        |names: &[String]| names.iter().filter(|name| name.starts_with("floor")).cloned().collect::<Vec<_>>();
+    assert_eq!(of_floor(&table(&sample()).0), Vec::<String>::new());
+    let (names, rows) = table(&sample_with_floors());
+    let keys = ["bytes", "copy_ms", "draw_ms", "lacking", "frame_per_copy", "frame_per_draw"];
+    assert_eq!(of_floor(&names), keys.map(|key| format!("floor_{key}")));
+    let cell = |row: usize, name: &str| rows[row][names.iter().position(|n| n == name).expect(name)].as_str();
+    assert_eq!([cell(0, "floor_draw_ms"), cell(0, "floor_lacking")], ["", "several vertex batches"]);
+    assert_eq!([cell(1, "floor_frame_per_draw"), cell(1, "floor_lacking")], ["1.6", ""]);
+    assert_eq!([cell(0, "tessellate_bytes"), cell(0, "tessellate_operations")], ["16000000", "48000000"]);
 }
 
 #[test]

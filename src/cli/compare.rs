@@ -12,8 +12,8 @@ use super::values::{self, LevelChoice, Size};
 use super::viewpoint::{View, ViewArguments};
 use super::views::{self, NamedView};
 use crate::error::{Error, Result};
-use crate::gpu::Gpu;
 use crate::gpu::sizes::page_fits;
+use crate::gpu::{Gpu, depth_draw};
 use crate::plan::detail::ERROR_PX;
 use crate::plan::{Border, Method};
 use crate::report::cache::Cache;
@@ -88,6 +88,9 @@ pub struct CompareArguments {
     /// Warm frames behind each time, 9 to 100
     #[arg(long, value_name = "N", value_parser = values::repeat, default_value = "9", help_heading = "Measure")]
     repeat: u32,
+    /// Beside each frame, time a bare copy of the bytes its passes move and a hardware depth draw of its facets
+    #[arg(long, help_heading = "Measure")]
+    floor: bool,
     /// Find truth anew and keep it nowhere
     #[arg(long, help_heading = "Measure")]
     no_cache: bool,
@@ -119,7 +122,8 @@ pub fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
     let names = views().flat_map(|view| sizes.iter().map(|size| scene_name(&view.name, *size, &sizes)));
     let folder = Folder::open(&arguments.output, names.flat_map(|name| comparison.picture_names(&name)))?;
     let scenes_asked = (views().count() * sizes.len()) as f64;
-    let (done, gpu) = (Cell::new(0.0), arguments.device.open(talk)?);
+    let extra = if arguments.floor { depth_draw::FEATURE } else { wgpu::Features::empty() };
+    let (done, gpu) = (Cell::new(0.0), arguments.device.open_with(extra, talk)?);
     let hearing = Hearing {
         stage: &|stage, share| talk.progress(stage, (done.get() + share) / scenes_asked),
         warn: &|words| talk.warn(words),
@@ -172,6 +176,7 @@ impl CompareArguments {
             methods: if self.methods.is_empty() { METHODS.to_vec() } else { self.methods.clone() },
             levels: self.levels.iter().map(|level| level.detail(self.error_px)).collect(),
             repeat: self.repeat,
+            floor: self.floor,
             border: self.border,
             truth_level: self.truth_level,
             cache: if self.no_cache { Cache::none() } else { Cache::of_user() },

@@ -23,8 +23,16 @@ impl DeviceArguments {
     /// # Errors
     /// As [`Gpu::open`].
     pub fn open(&self, talk: &Talk) -> Result<Gpu> {
+        self.open_with(wgpu::Features::empty(), talk)
+    }
+
+    /// The same with those of the `extra` features that the device has.
+    ///
+    /// # Errors
+    /// As [`Gpu::open_with`].
+    pub fn open_with(&self, extra: wgpu::Features, talk: &Talk) -> Result<Gpu> {
         let int64 = if self.no_int64 { Int64::Never } else { Int64::IfPresent };
-        let gpu = Gpu::open(&self.adapter.clone().unwrap_or_default(), int64)?;
+        let gpu = Gpu::open_with(&self.adapter.clone().unwrap_or_default(), int64, extra)?;
         talk.say(&format!("adapter: {}", gpu.info.name))?;
         talk.detail(&format!("driver: {} {}", gpu.info.driver, gpu.info.driver_info))?;
         Ok(gpu)

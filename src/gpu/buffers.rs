@@ -37,7 +37,12 @@ pub struct Buffers {
     room: Room,
     tiles: Pool<Tile>,
     blocks: Pool<Chunk>,
-    fresh: Cell<u32>,
+    /// Slots of the chunks whose vertices were not there when the lattice came.
+    fresh: Vec<u32>,
+    /// Whether they still are not.
+    pending: Cell<bool>,
+    /// Whether the last frame made them.
+    made: Cell<bool>,
 }
 
 /// For what there is room.
@@ -95,7 +100,9 @@ impl Buffers {
             room,
             tiles: Pool::new(room.tiles),
             blocks: Pool::new(room.chunks as usize),
-            fresh: Cell::new(0),
+            fresh: Vec::new(),
+            pending: Cell::new(false),
+            made: Cell::new(false),
         };
         let dem = surface.dem();
         buffers.uniform(gpu, "scene", bytemuck::bytes_of(&SceneUniform::new(dem, lattice)));
@@ -144,7 +151,8 @@ impl Buffers {
             chunks.map(|((chunk, tile), block)| ChunkUniform::new(*chunk, pyramid, tile, block)).collect();
         gpu.queue.write_buffer(self.get("chunks")?, 0, bytemuck::cast_slice(&chunks));
         gpu.queue.write_buffer(self.get("fresh")?, 0, bytemuck::cast_slice(&fresh));
-        self.fresh.set(fresh.len() as u32);
+        self.pending.set(!fresh.is_empty());
+        self.fresh = fresh;
         gpu.queue.write_buffer(self.get("nodes")?, 0, bytemuck::cast_slice(lattice.tree().nodes()));
         gpu.check()?;
         Ok(None)
@@ -156,7 +164,7 @@ impl Buffers {
         if !self.room.keeps_vertices() {
             return (slots.clone().map(|slot| slot % BATCH_CHUNKS).collect(), slots.collect());
         }
-        if self.fresh.get() > 0 {
+        if self.pending.get() {
             // The last ones were never made.
             self.blocks = Pool::new(self.room.chunks as usize);
         }
@@ -168,14 +176,18 @@ impl Buffers {
 
     /// How many chunks have no vertices yet.
     pub fn fresh(&self) -> u32 {
-        self.fresh.get()
+        if self.pending.get() { self.fresh.len() as u32 } else { 0 }
     }
 
-    /// Notes that all chunks have their vertices, for as long as these stay.
+    /// Notes that a frame has made the vertices that were not there.
     pub fn made_vertices(&self) {
-        if self.room.keeps_vertices() {
-            self.fresh.set(0);
-        }
+        self.made.set(self.pending.get());
+        self.pending.set(self.pending.get() && !self.room.keeps_vertices());
+    }
+
+    /// Slots of the chunks whose vertices the last frame made.
+    pub fn made(&self) -> &[u32] {
+        if self.made.get() { &self.fresh } else { &[] }
     }
 
     /// A buffer by the name the shaders give it.

@@ -150,6 +150,29 @@ impl Timer {
     }
 }
 
+/// How long commands take that are no frame, ms, by the device's clock: the wall clock from recording to done, or
+/// timestamps of marks before and behind them. `None` where the driver stamps no marks.
+///
+/// # Errors
+/// Whatever `record` or the driver reports.
+pub fn time_of(gpu: &Gpu, record: impl FnOnce(&mut wgpu::CommandEncoder) -> Result<()>) -> Result<Option<f64>> {
+    let start = Instant::now();
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    let mut stamps = Stamps::default();
+    let stamped = gpu.clock == Clock::Timestamps;
+    let mut mark = |encoder: &mut wgpu::CommandEncoder| {
+        let timestamp_writes = stamped.then(|| stamps.writes(gpu, CLEAR));
+        encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("mark"), timestamp_writes });
+    };
+    mark(&mut encoder);
+    record(&mut encoder)?;
+    mark(&mut encoder);
+    gpu.queue.submit([encoder.finish()]);
+    gpu.wait()?;
+    let ms = if stamped { stamps.read(gpu)?.ms } else { start.elapsed().as_secs_f64() * 1e3 };
+    Ok((ms > 0.0).then_some(ms))
+}
+
 /// The stamps of one frame, which may be submitted in pieces: begin and end of each pass, in the order of recording.
 #[derive(Default)]
 pub struct Stamps {

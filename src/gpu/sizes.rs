@@ -4,6 +4,7 @@ use super::buffers::Room;
 use super::uniforms::{ChunkUniform, Counts};
 use crate::error::{Error, Result};
 use crate::plan::batches::{BATCH_CHUNKS, PART_CHUNKS};
+use crate::plan::cost::{PIXEL_BYTES, VERTEX_BYTES, WORD_BYTES};
 use crate::plan::pieces::{LARGEST_PIECE, LONGEST_PIECE};
 use crate::surface::lattice::{CHUNK_FACETS, CHUNK_VERTICES, CHUNK_WORDS};
 use crate::surface::tile::TILE_SAMPLES;
@@ -55,13 +56,13 @@ pub fn written(room: Room, [width, height]: [u32; 2]) -> Result<Vec<(&'static st
         ("gradients_east", tiles),
         ("gradients_north", tiles),
         ("summaries", chunks * 4),
-        ("fresh", chunks * 4),
-        ("places", batch * u64::from(CHUNK_VERTICES) * 16),
-        ("screens", batch * u64::from(CHUNK_VERTICES) * 16),
+        ("fresh", chunks * WORD_BYTES),
+        ("places", batch * u64::from(CHUNK_VERTICES) * VERTEX_BYTES),
+        ("screens", batch * u64::from(CHUNK_VERTICES) * VERTEX_BYTES),
         ("queue", LIST_HEADER + batch * u64::from(CHUNK_FACETS) * 4),
-        ("pixels", pixels * 8),
-        ("touched", pixels * 4),
-        ("ink", pixels * 4),
+        ("pixels", pixels * PIXEL_BYTES),
+        ("touched", pixels * WORD_BYTES),
+        ("ink", pixels * WORD_BYTES),
         ("candidates", LIST_HEADER + pixels * 4),
         ("pairs", LIST_HEADER + pixels * 4),
         ("rest", LIST_HEADER + pixels * 4),

@@ -75,9 +75,17 @@ pub fn adaptive(surface: &Surface, camera: &Camera, error_px: f64, thrift: Thrif
 /// # Errors
 /// As [`Surface::pyramid`].
 pub fn beside(surface: &Surface, lattice: &Lattice, camera: &Camera) -> Result<usize> {
+    Ok(across(surface, lattice, camera)?.filter(|across| !across).count())
+}
+
+/// Of each chunk of a lattice whether it does not.
+///
+/// # Errors
+/// As [`Surface::pyramid`].
+pub fn across(surface: &Surface, lattice: &Lattice, camera: &Camera) -> Result<impl Iterator<Item = bool>> {
     let (pyramid, wedge) = (surface.pyramid()?, View::wedge(surface, camera));
     let bounds = lattice.chunks().iter().map(|chunk| pyramid.bounds(chunk.origin, chunk.step));
-    Ok(bounds.filter(|bounds| bounds.is_none_or(|bounds| !wedge.meets(bounds))).count())
+    Ok(bounds.map(move |bounds| bounds.is_some_and(|bounds| wedge.meets(bounds))))
 }
 
 /// What lies on the inner side of planes through the eye. Metres from sample (0, 0).

@@ -1,6 +1,7 @@
-//! What a frame needs: which method over which facets, in which batches, and in how many pieces of the page.
+//! What a frame needs: which method over which facets, in which batches, in how many pieces of the page, and what it costs.
 
 pub mod batches;
+pub mod cost;
 pub mod detail;
 mod horizon;
 pub mod left_out;

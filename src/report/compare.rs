@@ -45,6 +45,9 @@ pub struct Comparison {
     pub levels: Vec<Detail>,
     /// Warm frames behind a median, at least one.
     pub repeat: u32,
+    /// Whether a bare copy and a hardware depth draw are timed in turn with the warm frames; pixels of the draw show facets
+    /// where the device has [`FEATURE`](crate::gpu::depth_draw::FEATURE).
+    pub floor: bool,
     /// Whether border lines are drawn and judged.
     pub border: Border,
     /// Level of truth; `None` for the one at which no visible cell's edge is longer than a pixel.
@@ -130,6 +133,7 @@ impl Comparison {
                     scene: name,
                     method: method_name,
                     repeat: self.repeat,
+                    floor: self.floor,
                     judge: &judge,
                     truth_pop: pop,
                 };

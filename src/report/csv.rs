@@ -1,7 +1,7 @@
 //! All runs as CSV: a row a run, columns named as the keys of `results.json`.
 //!
 //! What lies deeper there is flat here: `place` becomes `place_mean_px`, the figures at 0.5 px `precision_0.5px` and so
-//! on, a band's `near_precision`, a pass's time `rasterize_ms`, a range `min_frame_range_ms` and `max_…`, hashes one
+//! on, a band's `near_precision`, a pass's `rasterize_ms` and `rasterize_bytes`, `floor` becomes `floor_copy_ms` and so on, a range `min_frame_range_ms` and `max_…`, hashes one
 //! cell.
 //! What a run has no value for is an empty cell.
 //!

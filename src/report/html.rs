@@ -16,7 +16,7 @@ use minijinja::{AutoEscape, Environment, HtmlEscape, UndefinedBehavior, Value};
 use serde::Serialize;
 
 use super::pictures::Picture;
-use super::results::Run;
+use super::results::{PassFigures, Run};
 use super::words::{Words, milliseconds, words};
 use super::{Results, merge};
 use crate::error::{Error, Result};
@@ -46,8 +46,8 @@ struct Row<'a> {
     best: bool,
     /// Fragments of the scene's truth.
     truth_fragments: Option<f64>,
-    /// Times in the order of [`Page::pass_names`].
-    pass_ms: Vec<Option<f64>>,
+    /// In the order of [`Page::pass_names`].
+    of_passes: Vec<Option<&'a PassFigures>>,
 }
 
 /// The page. `plot_svg` is the plot as [`error_time_svg`](super::error_time_svg) made it and goes in as it is.
@@ -103,13 +103,13 @@ fn row<'a>(run: &'a Run, results: &'a Results, pass_names: &[&str]) -> Row<'a> {
     let of_scene = || results.runs.iter().filter(|other| other.scene == run.scene);
     let best = of_scene().reduce(|a, b| if b.f > a.f { b } else { a });
     let scene = results.scenes.iter().find(|scene| scene.name == run.scene);
-    let ms = |name: &&str| run.passes.iter().find(|pass| pass.name == *name).map(|pass| pass.ms);
+    let figures = |name: &&str| run.passes.iter().find(|pass| pass.name == *name);
     Row {
         run,
         front: run.pareto,
         best: best.is_some_and(|best| std::ptr::eq(best, run)),
         truth_fragments: scene.map(|scene| scene.truth.fragments),
-        pass_ms: pass_names.iter().map(ms).collect(),
+        of_passes: pass_names.iter().map(figures).collect(),
     }
 }
 

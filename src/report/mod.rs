@@ -5,6 +5,7 @@
 pub mod cache;
 pub mod compare;
 pub mod csv;
+mod floors;
 pub mod folder;
 pub mod html;
 mod labels;

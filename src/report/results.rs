@@ -2,7 +2,7 @@
 //!
 //! Lengths on the page are pixels (`_px`), on the ground metres (`_m`), times milliseconds (`_ms`), memory mebibytes
 //! (`_mib`). Shares run from 0 to 1. What is measured anew in every run and so differs between two runs of the same
-//! comparison has one of the last two endings or is called `passes`; all else is the same to the last digit.
+//! comparison has one of the last two endings or is called `passes` or `floor`; all else is the same to the last digit.
 
 use std::fmt::Display;
 
@@ -238,8 +238,11 @@ pub struct Run {
     pub first_frame_ms: f64,
     /// Uploading the scene and compiling the passes.
     pub setup_ms: f64,
-    /// Times of the passes of one more frame.
-    pub passes: Vec<PassTime>,
+    /// Times of the passes of one more frame, and what each moved and computed.
+    pub passes: Vec<PassFigures>,
+    /// The limits beside which the frame's time stands; not there unless they were asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub floor: Option<Floor>,
     /// Most memory the process held while this run was made; `None` where the system does not tell.
     pub peak_mib: Option<f64>,
     /// Bytes of the run's buffers on the device, as they were asked for.
@@ -255,8 +258,36 @@ pub struct Run {
     pub difference: String,
 }
 
-/// Milliseconds of a pass.
-pub type PassTime = crate::render::PassTime;
+/// What a pass took; how bytes and operations are counted says [`cost`](crate::plan::cost).
+#[derive(Debug, Clone, Serialize)]
+pub struct PassFigures {
+    /// The pass; `clear` stands for clears and copies.
+    pub name: &'static str,
+    /// Milliseconds.
+    pub ms: f64,
+    /// Read and written, each value once.
+    pub bytes: u64,
+    /// Additions, multiplications, divisions and comparisons of one number.
+    pub operations: u64,
+}
+
+/// What else the device did in turn with the warm frames, by the same clock: medians of as many.
+#[derive(Debug, Clone, Serialize)]
+pub struct Floor {
+    /// Sum of those of the passes.
+    pub bytes: u64,
+    /// A bare copy from buffer to buffer that moves as many: half is read, half is written.
+    pub copy_ms: Option<f64>,
+    /// One indexed hardware draw of the facets that the frame rasterizes, with depth and facet ID, from the vertices the
+    /// frame left: finding those, passes `tessellate`, `seam` and `project`, is not in it.
+    pub draw_ms: Option<f64>,
+    /// Why one of the two is `None`.
+    pub lacking: Option<&'static str>,
+    /// The median frame over the copy: 1 is the limit.
+    pub frame_per_copy: Option<f64>,
+    /// The median frame over the draw.
+    pub frame_per_draw: Option<f64>,
+}
 
 /// Precision and recall at a distance.
 #[derive(Debug, Clone, Serialize)]

@@ -8,14 +8,16 @@ use std::time::Instant;
 use glam::DVec2;
 use xxhash_rust::xxh3::xxh3_64;
 
+use super::floors::{self, Floors};
 use super::memory;
 use super::pictures::{Picture, difference_picture, mask_picture};
-use super::results::{AtDistance, Band, DrawnLevel, Place, Run};
+use super::results::{AtDistance, Band, DrawnLevel, PassFigures, Place, Run};
 use crate::error::Result;
 use crate::gpu::Gpu;
 use crate::ink::{InkRaster, Kind, Marks, Pixel, trace};
+use crate::plan::cost::PassCost;
 use crate::plan::{Method, Plan};
-use crate::render::{Frame, PassTime, Renderer};
+use crate::render::{Floor, Frame, PassTime, Renderer};
 use crate::surface::Surface;
 use crate::truth::metrics::{BandScore, DISTANCES, FRAGMENT, Judge, Scores};
 use crate::truth::{Inked, Mask};
@@ -36,6 +38,8 @@ pub(super) struct Trial<'a> {
     pub method: &'static str,
     /// Warm frames.
     pub repeat: u32,
+    /// Whether a bare copy and a depth draw are timed in turn with them.
+    pub floor: bool,
     pub judge: &'a Judge<'a>,
     /// Share of truth, drawn one pixel wide, that pops when the eye moves on.
     pub truth_pop: f64,
@@ -52,7 +56,8 @@ struct Timed {
     /// Of the warm frames, sorted.
     times: Vec<f64>,
     mask_hashes: Vec<String>,
-    passes: Vec<PassTime>,
+    passes: Vec<PassFigures>,
+    floors: Option<Floors>,
     peak_mib: Option<f64>,
     facets: u64,
     buffers_bytes: u64,
@@ -80,15 +85,24 @@ impl Trial<'_> {
         let setup_ms = start.elapsed().as_secs_f64() * 1e3;
         let first_frame_ms = renderer.time_of_frame(self.camera)?;
         let first = renderer.read()?;
+        let one_more = moved(self.camera, self.repeat + 1);
+        let passes = renderer.timed_frame(&one_more)?.passes;
+        let costs = renderer.costs(&one_more, &renderer.read()?)?;
+        let bytes = costs.iter().map(|pass| pass.bytes).sum();
+        let mut floor = self.floor.then(|| Floor::new(&renderer, bytes)).transpose()?;
+        let mut floors = self.floor.then(|| Floors::new(bytes));
         let (mut times, mut mask_hashes, mut next) = (Vec::new(), Vec::new(), None);
         for step in 1..=self.repeat {
-            times.push(renderer.time_of_frame(&moved(self.camera, step))?);
+            let camera = moved(self.camera, step);
+            times.push(renderer.time_of_frame(&camera)?);
             let raster = renderer.read()?.raster;
             mask_hashes.push(hash(&raster));
             next.get_or_insert_with(|| mask_of(&raster, renderer.near()));
+            if let (Some(floors), Some(floor)) = (&mut floors, &mut floor) {
+                floors.add(floor, &camera)?;
+            }
         }
         times.sort_by(f64::total_cmp);
-        let passes = renderer.timed_frame(&moved(self.camera, self.repeat + 1))?.passes;
         Ok(Timed {
             next: next.unwrap_or_else(|| mask_of(&first.raster, renderer.near())),
             first,
@@ -96,7 +110,8 @@ impl Trial<'_> {
             first_frame_ms,
             times,
             mask_hashes,
-            passes,
+            passes: passes.into_iter().map(|pass| figures(pass, &costs)).collect(),
+            floors,
             peak_mib: memory::peak().map(|bytes| bytes as f64 / f64::from(1 << 20)),
             facets: renderer.facets(),
             buffers_bytes: renderer.buffers().bytes(),
@@ -109,6 +124,7 @@ impl Trial<'_> {
         let chains = trace(&Marks::from(&timed.first.raster));
         let short = chains.iter().filter(|chain| chain.points.len() < FRAGMENT).count();
         let walks = self.plan.method == Method::Walk;
+        let frame_ms = median(&timed.times);
         Run {
             scene: self.scene.to_owned(),
             method: self.method,
@@ -131,11 +147,12 @@ impl Trial<'_> {
             place: if walks { place(self.judge, &timed.first.raster) } else { None },
             facets: timed.facets,
             inked: mask.inked.len(),
-            frame_ms: median(&timed.times),
+            frame_ms,
             frame_range_ms: [timed.times[0], timed.times[timed.times.len() - 1]],
             first_frame_ms: timed.first_frame_ms,
             setup_ms: timed.setup_ms,
             passes: timed.passes,
+            floor: timed.floors.map(|floors| floors.beside(frame_ms)),
             peak_mib: timed.peak_mib,
             buffers_bytes: timed.buffers_bytes,
             pareto: false,
@@ -149,10 +166,11 @@ impl Trial<'_> {
 /// A run in a line: every figure beside its time and what was computed.
 pub(super) fn line(run: &Run) -> String {
     let Run { scene, method, level, precision, recall, f, gaps, spurious, .. } = run;
-    let Run { frame_ms, first_frame_ms, facets, inked, .. } = run;
+    let Run { frame_ms, first_frame_ms, facets, inked, floor, .. } = run;
+    let floor = floor.as_ref().map_or(String::new(), |floor| format!("; {}", floors::words(floor, *frame_ms)));
     format!(
         "{scene} {method} level {level}: P {precision:.4} R {recall:.4} F {f:.4}, {gaps} gaps, {spurious} spurious; \
-         {frame_ms:.1} ms (first frame {first_frame_ms:.1}), {facets} facets, {inked} px of ink"
+         {frame_ms:.1} ms (first frame {first_frame_ms:.1}), {facets} facets, {inked} px of ink{floor}"
     )
 }
 
@@ -165,6 +183,13 @@ pub(super) fn picture_names(scene: &str, method: &str, level: DrawnLevel) -> [St
 pub(super) fn moved(camera: &Camera, metres: u32) -> Camera {
     let [_, _, forward] = camera.axes();
     Camera { eye: camera.eye + forward * f64::from(metres), ..*camera }
+}
+
+/// A pass's time beside what it cost.
+fn figures(PassTime { name, ms }: PassTime, costs: &[PassCost]) -> PassFigures {
+    let cost = costs.iter().find(|cost| cost.name == name);
+    let (bytes, operations) = cost.map_or((0, 0), |cost| (cost.bytes, cost.operations));
+    PassFigures { name, ms, bytes, operations }
 }
 
 fn at_distances(scores: &Scores) -> Vec<AtDistance> {
@@ -214,6 +239,6 @@ fn hash(raster: &InkRaster) -> String {
 }
 
 /// Of sorted times.
-fn median(times: &[f64]) -> f64 {
+pub(super) fn median(times: &[f64]) -> f64 {
     (times[(times.len() - 1) / 2] + times[times.len() / 2]) / 2.0
 }

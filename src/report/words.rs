@@ -7,7 +7,7 @@
 
 use serde::Serialize;
 
-use super::results::{DrawnLevel, Run};
+use super::results::{DrawnLevel, Floor, Run};
 use super::{Results, merge};
 
 /// F from which on a drawing is good enough to be chosen by its speed.
@@ -121,6 +121,7 @@ fn advice(results: &Results, candidates: &[Candidate], best: Option<&Candidate>)
     if let Some(least) = fastest(0.0).filter(|least| least.f() < GOOD_F && least.ms() < best.ms()) {
         advice.push(("Speed above all", named(least)));
     }
+    advice.extend(limits(best).map(|why| ("How far from the limit", why)));
     let methods = by_method(candidates);
     let floods = methods.iter().filter_map(|levels| Some(format!("{} {}", levels[0].method, flooded(levels)?)));
     let floods: Vec<String> = floods.collect();
@@ -133,6 +134,19 @@ fn advice(results: &Results, candidates: &[Candidate], best: Option<&Candidate>)
         advice.push(("Leaves gaps", format!("{}, at every level.", listed(&gappy))));
     }
     advice
+}
+
+/// How the best line's frames stand beside a bare copy and a depth draw, where those were timed.
+fn limits(best: &Candidate) -> Option<String> {
+    let floors = best.runs.iter().map(|run| run.floor.as_ref()).collect::<Option<Vec<_>>>()?;
+    let most =
+        |per: fn(&Floor) -> Option<f64>| floors.iter().try_fold(0.0, |most: f64, floor| Some(most.max(per(floor)?)));
+    let beside = |what: &str, per: Option<f64>| per.map(|per| format!("{per:.1} times as long as {what}"));
+    let copy = beside("a bare copy of as many bytes", most(|floor| floor.frame_per_copy));
+    let draw = beside("a hardware depth draw of its facets", most(|floor| floor.frame_per_draw));
+    let limits: Vec<String> = copy.into_iter().chain(draw).collect();
+    let at_most = if best.runs.len() > 1 { "at most " } else { "" };
+    (!limits.is_empty()).then(|| format!("A frame of {} takes {at_most}{}.", best.name(), listed(&limits)))
 }
 
 /// What was found of each method.

@@ -9,7 +9,7 @@ use image::{GrayImage, ImageFormat, Luma};
 use serde_json::Value;
 
 use super::browser::{Browser, Visit};
-use super::{SIZE, sample};
+use super::{SIZE, sample, sample_with_floors};
 
 /// What is looked for in the browser.
 const PROBE: &str = include_str!("probe.js");
@@ -92,6 +92,25 @@ fn the_page_has_all_that_was_measured() {
     // Nothing was drawn: still a page.
     unfitted.runs.clear();
     assert!(page_of(&unfitted).contains("No method was drawn in every scene."));
+}
+
+#[test]
+fn the_page_shows_what_passes_cost_and_limits_where_they_were_asked_for() {
+    let (plain, page) = (page_of(&sample()), page_of(&sample_with_floors()));
+    let cost = "<td data-v=\"16\">16.00</td><td data-v=\"48\">48.00</td>";
+    assert!(plain.contains(cost) && page.contains(cost));
+    assert!(!plain.contains("How far from the limit"));
+    let limits = between(&page, "<h3 id=\"limits\">", "</section>");
+    let rows = between(limits, "<tbody>", "</tbody>");
+    let first = between(rows, "<tr>", "</tr>");
+    for words in ["<td data-v=\"40\">40.00</td>", "<td data-v=\"3.2\">3.20</td>", "<td>several vertex batches</td>"] {
+        assert!(first.contains(words), "{words}: {first}");
+    }
+    assert_eq!(rows.matches("several vertex batches").count(), 1);
+    let words =
+        "A frame of walk at level 2 takes at most 3.2 times as long as a bare copy of as many bytes and 1.6 times as";
+    assert!(page.contains(words) && !plain.contains("A frame of walk"));
+    assert_eq!(rows.matches("<td data-v=\"1.6\">1.60</td>").count(), sample().runs.len() - 1);
 }
 
 #[test]

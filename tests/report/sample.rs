@@ -1,8 +1,8 @@
 //! Results of a comparison that never was: two scenes, every method, and all that is awkward to write down.
 
 use hachure::report::results::{
-    AtDistance, Band, Convergence, DrawnLevel, LevelOffset, Machine, PassTime, Place, Results, Run, SCHEMA, Scene,
-    TruthReport, TruthSummary,
+    AtDistance, Band, Convergence, DrawnLevel, Floor, LevelOffset, Machine, PassFigures, Place, Results, Run, SCHEMA,
+    Scene, TruthReport, TruthSummary,
 };
 
 /// A name that HTML, CSV, SVG and the shell each have to quote.
@@ -52,6 +52,23 @@ pub fn results(width: u32, height: u32) -> Results {
         scenes,
         runs,
     }
+}
+
+/// The same with what `--floor` adds; the first run lacks a depth draw.
+pub fn with_floors(width: u32, height: u32) -> Results {
+    let mut results = results(width, height);
+    for (i, run) in results.runs.iter_mut().enumerate() {
+        let draw_ms = (i > 0).then_some(run.frame_ms / 1.6);
+        run.floor = Some(Floor {
+            bytes: 40_000_000,
+            copy_ms: Some(run.frame_ms / 3.2),
+            draw_ms,
+            lacking: draw_ms.is_none().then_some("several vertex batches"),
+            frame_per_copy: Some(3.2),
+            frame_per_draw: draw_ms.map(|_| 1.6),
+        });
+    }
+    results
 }
 
 fn scene(name: &str, width: u32, height: u32) -> Scene {
@@ -113,7 +130,10 @@ fn run(scene: &Scene, method: &'static str, level: u32, [precision, recall]: [f6
         f: f.powf(1.0 / px),
     };
     let band = |name, to_m| Band { name, to_m, truth_px: 1261.75, inked: inked / 3, precision, recall, f };
-    let pass = |name, share: f64| PassTime { name, ms: frame_ms * share };
+    let pass = |name, share: f64| {
+        let moved = 4.0e7 * share;
+        PassFigures { name, ms: frame_ms * share, bytes: moved as u64, operations: 3 * moved as u64 }
+    };
     // Each method has passes of its own.
     let passes = match method {
         "walk" => vec![pass("tessellate", 0.4), pass("rasterize", 0.35), pass("walk", 0.2), pass("border", 0.05)],
@@ -146,6 +166,7 @@ fn run(scene: &Scene, method: &'static str, level: u32, [precision, recall]: [f6
         first_frame_ms: frame_ms * 1.6,
         setup_ms: 320.5,
         passes,
+        floor: None,
         peak_mib: Some(412.25),
         buffers_bytes: 92_798_976,
         pareto: false,
