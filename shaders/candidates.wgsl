@@ -13,16 +13,15 @@ fn shown(at: vec2<i32>) -> u32 {
     return pixels[pixel_index(clamp(at, vec2<i32>(0), vec2<i32>(camera.size) - 1))].x;
 }
 
-// Blocks of a chunk between two of its facets, as bits of its summary.
-fn blocks_between(local_p: u32, local_q: u32) -> u32 {
-    let p = local_p >> 7u;
-    let q = local_q >> 7u;
-    let low = min(p % CHUNK_BLOCKS, q % CHUNK_BLOCKS);
-    let high = max(p % CHUNK_BLOCKS, q % CHUNK_BLOCKS);
-    let row = (2u << high) - (1u << low);
-    let first = min(p, q) / CHUNK_BLOCKS * CHUNK_BLOCKS;
-    let last = max(p, q) / CHUNK_BLOCKS * CHUNK_BLOCKS;
-    return (row << first) | (row << last);
+// Squares of 4 x 4 quads of a chunk between two of its facets, as bits of its summary.
+fn squares_between(local_p: u32, local_q: u32) -> u32 {
+    let p = local_quad(local_p) >> vec2<u32>(2u);
+    let q = local_quad(local_q) >> vec2<u32>(2u);
+    let low = min(p, q);
+    let high = max(p, q);
+    let row = (2u << high.x) - (1u << low.x);
+    let rows = (16u << (4u * high.y)) - (1u << (4u * low.y));
+    return (row * 0x1111u) & rows;
 }
 
 // Whether a walk between two pixels must be looked at; `slot` and `summary` belong to `p`.
@@ -33,7 +32,7 @@ fn is_open(p: u32, q: u32, slot: u32, summary: u32) -> bool {
     if !thrifty || p == 0u || q == 0u || (q - 1u) / CHUNK_FACETS != slot {
         return true;
     }
-    return (summary & blocks_between((p - 1u) % CHUNK_FACETS, (q - 1u) % CHUNK_FACETS)) != 0u;
+    return (summary & squares_between((p - 1u) % CHUNK_FACETS, (q - 1u) % CHUNK_FACETS)) != 0u;
 }
 
 // Lists a pixel if one of its pairs is open; the four neighbours are those of `neighbour` from 4 on.

@@ -1,4 +1,4 @@
-// One invocation 32 facets: decides toward or away once for every method, and notes which 8 x 8 blocks hold an away
+// One invocation 32 facets: decides toward or away once for every method, and notes which squares of 4 x 4 quads hold an away
 // facet (low half of a chunk's summary) or lack a facet (high half).
 
 @group(0) @binding(20) var<storage, read_write> out_facing: array<u32>;
@@ -50,7 +50,7 @@ fn facing(@builtin(global_invocation_id) invocation: vec3<u32>) {
     var quad = local_quad(invocation.x * 32u);
     var v = vertex_index(chunk, quad);
     var bits = 0u;
-    var missing = 0u;
+    var missing = vec2<bool>(false);
     // Two columns of eight quads, row by row: each vertex is read once.
     let one = vec2<u32>(1u, 0u);
     var north_west = vertex_of(chunk, quad, v);
@@ -64,7 +64,8 @@ fn facing(@builtin(global_invocation_id) invocation: vec3<u32>) {
         let south_east = vertex_of(chunk, quad + one + one, v + 2u);
         let lacks_west = lacking(north_west, north, south_west, south);
         let lacks_east = lacking(north, north_east, south, south_east);
-        missing |= lacks_west | lacks_east;
+        let southern = k >= 8u;
+        missing |= select(vec2<bool>(false), vec2<bool>(!southern, southern), (lacks_west | lacks_east) != 0u);
         bits |= (away_halves(north_west, north, south_west, south) & ~lacks_west) << k;
         bits |= (away_halves(north, north_east, south, south_east) & ~lacks_east) << (k + 16u);
         north_west = south_west;
@@ -72,8 +73,11 @@ fn facing(@builtin(global_invocation_id) invocation: vec3<u32>) {
         north_east = south_east;
     }
     out_facing[(batch.part_slot + invocation.y) * CHUNK_WORDS + invocation.x] = bits;
-    let block = invocation.x >> 2u;
-    let summary = select(0u, 1u << block, bits != 0u) | (select(0u, 1u, missing != 0u) << (block + 16u));
+    // The northern four rows of quads, and the southern four.
+    let away = vec2<bool>((bits & 0x00ff00ffu) != 0u, (bits & 0xff00ff00u) != 0u);
+    let squares = vec2<u32>(1u, 16u) << vec2<u32>(square_of(local_quad(invocation.x * 32u)));
+    let noted = select(vec2<u32>(0u), squares, away) | select(vec2<u32>(0u), squares << vec2<u32>(16u), missing);
+    let summary = noted.x | noted.y;
     if summary != 0u {
         atomicOr(&out_summaries[slot], summary);
     }

@@ -31,6 +31,11 @@ fn shared_vertex(coarser: u32, at: vec2<u32>) -> vec2<u32> {
     return at & ~select(vec2<u32>(0u), vec2<u32>(1u), vec2<bool>(on_row, on_column));
 }
 
+// Number of the square of 4 x 4 quads of a chunk that holds a quad, row by row: its bit in the chunk's summary.
+fn square_of(quad: vec2<u32>) -> u32 {
+    return (quad.y >> 2u) * 4u + (quad.x >> 2u);
+}
+
 // Steps from the quad's north-west vertex to vertex k of a half, counter-clockwise from above.
 fn corner(half: u32, k: u32) -> vec2<u32> {
     // Two bits a corner, east below south: NW 00, SW 10, SE 11, NE 01; the first corner lowest.

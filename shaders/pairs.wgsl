@@ -35,7 +35,8 @@ fn chunk_has_away(slot: u32, first: vec2<u32>, last: vec2<u32>) -> bool {
     let summary = summaries[slot];
     let eight = vec2<u32>(3u);
     for (var block = first >> eight; block.y <= (last.y >> 3u); ) {
-        if ((summary >> (block.y * CHUNK_BLOCKS + block.x)) & 1u) != 0u {
+        // Four squares of the summary.
+        if (summary & (0x33u << (block.y * 8u + block.x * 2u))) != 0u {
             let corner_quad = block << eight;
             let block_low = max(first, corner_quad) - corner_quad;
             let block_high = min(last - corner_quad, vec2<u32>(7u));

@@ -1,6 +1,6 @@
 // One invocation a pixel with open pairs: of each pair with a neighbour, walks the lattice from the nearer pixel's point on
 // the surface to the farther one's, facet by facet, in integers. An away facet on the way makes the nearer one ink; a
-// void or the outside ends the walk. Pairs with a pixel without surface, and walks past blocks that lack facets or past
+// void or the outside ends the walk. Pairs with a pixel without surface, and walks past squares that lack facets or past
 // facets beside a coarser chunk, are rare and left to `walk_rest`: drivers that run both sides of every branch pay for
 // them here.
 
@@ -135,13 +135,13 @@ fn walk_between(origin: vec2<i32>, end: vec2<i32>) -> Meeting {
         let per_column = wide_mul_u32(u32(side), u32(abs(d.y)));
         let per_row = wide_mul_u32(u32(side), u32(abs(d.x)));
         let chunk_at = quad >> vec2<u32>(firstTrailingBit(CHUNK_QUADS));
-        // Node by node: leaps over a chunk or a block where nothing can happen.
+        // Node by node: leaps over a chunk or a square where nothing can happen.
         loop {
             steps += 1u;
             let inner = vec2<u32>(quad) & vec2<u32>(CHUNK_QUADS - 1u);
-            let block = (inner.y >> 3u) * CHUNK_BLOCKS + (inner.x >> 3u);
-            let eventful = ((summary >> block) & 0x10001u) != 0u;
-            let node = select(select(8u, 1u, eventful || !thrifty), CHUNK_QUADS, summary == 0u && thrifty);
+            let square = square_of(inner);
+            let eventful = ((summary >> square) & 0x10001u) != 0u;
+            let node = select(select(4u, 1u, eventful || !thrifty), CHUNK_QUADS, summary == 0u && thrifty);
             let in_node = inner & vec2<u32>(node - 1u);
             let to_side = select(in_node + 1u, node - in_node, d > vec2<i32>(0));
             let column_end = wide_add(lead, wide_scale(per_column, to_side.x - 1u));
@@ -149,7 +149,7 @@ fn walk_between(origin: vec2<i32>, end: vec2<i32>) -> Meeting {
             let leaves = vec2<bool>(order <= 0, order >= 0);
             let ends = any(leaves & (to_side > left));
             let seam = beside_coarser(chunk.coarser, inner);
-            if defers && ((eventful && seam) || ((summary >> block) & 0x10000u) != 0u) {
+            if defers && ((eventful && seam) || ((summary >> square) & 0x10000u) != 0u) {
                 meeting.deferred = true;
                 meeting.done = true;
                 break;

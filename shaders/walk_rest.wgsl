@@ -1,5 +1,5 @@
 // One invocation a pixel with pairs that `walk` has left: with neighbours that show no surface, or with a walk past
-// blocks that lack facets or past facets beside a coarser chunk.
+// squares that lack facets or past facets beside a coarser chunk.
 
 @group(0) @binding(25) var<storage, read> rest: ListRead;
 

@@ -10,7 +10,7 @@ use hachure::surface::lattice::{CHUNK_FACETS, CHUNK_QUADS};
 use hachure::surface::quadtree::NO_SLOT;
 use hachure::surface::{Lattice, LatticePoint};
 
-use crate::kernels::{Share, UNITS, WALK, chunk_uniforms, entry, run};
+use crate::kernels::{Share, UNITS, WALK, chunk_uniforms, entry, run, square_of};
 use crate::mixed::{Kind, exists, flat, lattice, leaves, variety};
 use crate::scenes::Random;
 use crate::tolerances::ENTERED_STEPS;
@@ -52,16 +52,16 @@ impl Field {
         let mut field = Self { facing, summaries, squares, dem, lattice, events: 0 };
         for id in 0..facets {
             let [a, b, c] = field.lattice.facet(id);
-            let (slot, block) = ((id / CHUNK_FACETS) as usize, id % CHUNK_FACETS / 128);
+            let slot = (id / CHUNK_FACETS) as usize;
             if a == b || b == c || c == a {
                 continue;
             }
             if !exists(&field.dem, [a, b, c]) {
-                field.summaries[slot] |= 1 << (block + 16);
+                field.summaries[slot] |= 1 << (square_of(id) + 16);
                 field.events += 1;
             } else if random.below(rarity) == 0 {
                 field.facing[(id / 32) as usize] |= 1 << (id % 32);
-                field.summaries[slot] |= 1 << block;
+                field.summaries[slot] |= 1 << square_of(id);
                 field.events += 1;
             }
         }

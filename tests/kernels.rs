@@ -25,6 +25,13 @@ pub const WALK: &str = concat!(
 );
 const WIDE: &str = concat!(hachure::shader!("wide"), include_str!("kernels/wide_probe.wgsl"));
 
+/// Bit of a facet's square of 4 x 4 quads in the summary of its chunk.
+pub fn square_of(id: u32) -> u32 {
+    let (block, quad) = (id % CHUNK_FACETS / 128, id % 128 / 2);
+    let [x, y] = [block % 2 * 8 + quad / 8, block / 2 * 8 + quad % 8];
+    y / 4 * 4 + x / 4
+}
+
 /// Runs a kernel over `count` invocations with these buffers and returns `results`.
 pub fn run(
     name: &'static str,
@@ -88,16 +95,15 @@ impl Field {
         };
         for id in 0..facets {
             let vertices = field.lattice.facet(id);
-            let block = id % CHUNK_FACETS / 128;
             let slot = (id / CHUNK_FACETS) as usize;
             if !field.exists(vertices) {
-                field.summaries[slot] |= 1 << (block + 16);
+                field.summaries[slot] |= 1 << (square_of(id) + 16);
                 continue;
             }
             field.ids.insert(vertices, id);
             if random.below(rarity) == 0 {
                 field.facing[(id / 32) as usize] |= 1 << (id % 32);
-                field.summaries[slot] |= 1 << block;
+                field.summaries[slot] |= 1 << square_of(id);
             }
         }
         field

@@ -121,7 +121,12 @@ impl Quantities {
         made: &[u32],
         camera: &Camera,
     ) -> Result<Self> {
-        let mut of = Self { chunks: lattice.chunks().len() as u64, made: made.len() as u64, seams: lattice.has_seams(), ..Self::default() };
+        let mut of = Self {
+            chunks: lattice.chunks().len() as u64,
+            made: made.len() as u64,
+            seams: lattice.has_seams(),
+            ..Self::default()
+        };
         let across = across(surface, lattice, camera)?.map(|across| across || plan.thrift == Thrift::Nothing);
         for (slot, _) in (0..).zip(across).filter(|(_, across)| *across) {
             of.across += 1;

@@ -180,8 +180,7 @@ impl Lattice {
     /// As [`Self::uniform`].
     pub fn adaptive(dem: &Dem, mut tree: Quadtree, role: impl Fn([u32; 2], u32) -> Option<Role>) -> Result<Self> {
         let step = |size: u32| size / CHUNK_QUADS;
-        let sides =
-            tree.larger_neighbours([dem.columns(), dem.rows()].map(|samples| (samples as u32 - 1) * CELL_STEPS));
+        let end = [dem.columns(), dem.rows()].map(|samples| (samples as u32 - 1) * CELL_STEPS);
         let kept = tree.number(|origin, size| role(origin, step(size)));
         if kept.len() as u64 > MOST_CHUNKS {
             return Err(Error::Limit {
@@ -190,7 +189,10 @@ impl Lattice {
             });
         }
         let seen = kept.iter().filter(|(role, _)| *role == Role::Seen).count() as u32;
-        let chunk = |(_, (origin, size))| Chunk { origin, step: step(size), coarser: sides[&origin] };
+        let chunk = |(_, (origin, size))| {
+            let coarser = tree.larger_neighbours(origin, size, end);
+            Chunk { origin, step: step(size), coarser }
+        };
         Ok(Self { chunks: kept.into_iter().map(chunk).collect(), seen, tree })
     }
 

@@ -3,8 +3,6 @@
 //! A node is one number, as the shaders read it: a leaf's slot, [`NO_SLOT`] for nothing, or [`INNER`] plus the index of
 //! the first of its four children (north-west, north-east, south-west, south-east). The roots come first, row by row.
 
-use std::collections::HashMap;
-
 /// No leaf has this slot.
 pub const NO_SLOT: u32 = u32::MAX;
 /// Bit of a node that has children.
@@ -100,17 +98,12 @@ impl Quadtree {
         }
     }
 
-    /// Of each leaf, by its corner, the sides (bit 0 north, then clockwise) beyond which a larger leaf lies that begins
-    /// before `end`.
-    pub fn larger_neighbours(&self, end: [u32; 2]) -> HashMap<[u32; 2], u32> {
-        let is_larger =
-            |beside: Square, square: Square| beside.1 > square.1 && beside.0[0] < end[0] && beside.0[1] < end[1];
-        let of = |square: Square| {
-            let beside = |k: usize| self.neighbour(square, AROUND[k]);
-            let larger = |k: &usize| beside(*k).is_some_and(|(_, beside)| is_larger(beside, square));
-            (0..4).filter(larger).map(|k| 1 << k).sum()
-        };
-        self.leaves().into_iter().map(|(_, square)| (square.0, of(square))).collect()
+    /// The sides (bit 0 north, then clockwise) of a leaf beyond which a larger leaf lies that begins before `end`.
+    pub fn larger_neighbours(&self, corner: [u32; 2], size: u32, end: [u32; 2]) -> u32 {
+        let is_larger = |beside: Square| beside.1 > size && beside.0[0] < end[0] && beside.0[1] < end[1];
+        let larger =
+            |k: &usize| self.neighbour((corner, size), AROUND[*k]).is_some_and(|(_, beside)| is_larger(beside));
+        (0..4).filter(larger).map(|k| 1 << k).sum()
     }
 
     /// Gives slots to leaves, those of the first rank first, each rank depth first, and returns them in that order. Leaves
@@ -166,16 +159,15 @@ impl Quadtree {
 
     /// The leaf that holds a lattice place.
     fn leaf(&self, at: [u32; 2]) -> (usize, Square) {
-        let [x, y] = at.map(|at| at / self.root_size);
+        let mut size = self.root_size;
+        let [x, y] = at.map(|at| at >> size.trailing_zeros());
         let mut node = (y * self.roots[0] + x) as usize;
-        let mut square = ([x, y].map(|at| at * self.root_size), self.root_size);
         while let Some(first) = self.children(node) {
-            let half = square.1 / 2;
-            let [east, south] = [0, 1].map(|axis| usize::from(at[axis] >= square.0[axis] + half));
+            size /= 2;
+            let [east, south] = at.map(|at| usize::from(at & size != 0));
             node = first + 2 * south + east;
-            square = quarters(square)[2 * south + east];
         }
-        (node, square)
+        (node, (at.map(|at| at & !(size - 1)), size))
     }
 }
 
