@@ -7,6 +7,7 @@ use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 
 use bytemuck::Zeroable;
+use rayon::prelude::*;
 
 use super::candidates::NO_PIXELS;
 use super::device::Gpu;
@@ -22,7 +23,7 @@ use crate::surface::rim::RimEdge;
 use crate::surface::tile::{TILE_SAMPLES, TileSamples};
 use crate::surface::{Lattice, Surface, Tile};
 
-/// Tiles sent to the device together, 13 KB each.
+/// Tiles sent to the device together, 3 KB each.
 const TILES_AT_ONCE: usize = 1024;
 /// Bytes between entries of a uniform buffer that are bound one at a time.
 const UNIFORM_STRIDE: u64 = 256;
@@ -113,12 +114,13 @@ impl Buffers {
             return Ok(Some(self.room.grown(Room::of(lattice))));
         };
         for batch in missing.chunks(TILES_AT_ONCE) {
-            for (place, tile) in batch {
-                let TileSamples { heights, gradients: [east, north] } = tile.read(surface)?;
-                for (name, samples) in [("heights", heights), ("gradients_east", east), ("gradients_north", north)] {
-                    let offset = u64::from(*place) * u64::from(TILE_SAMPLES) * 4;
-                    gpu.queue.write_buffer(self.get(name)?, offset, bytemuck::cast_slice(&samples));
-                }
+            let read: Vec<TileSamples> = batch.par_iter().map(|(_, tile)| tile.read(surface)).collect::<Result<_>>()?;
+            let mut read = read.as_slice();
+            // A run of places is one write for each buffer.
+            for run in batch.chunk_by(|(place, _), (next, _)| place + 1 == *next) {
+                let (tiles, rest) = read.split_at(run.len());
+                self.write_tiles(gpu, run[0].0, tiles)?;
+                read = rest;
             }
             // Sent at once: until then the driver holds a second copy.
             gpu.queue.submit([]);
@@ -133,6 +135,21 @@ impl Buffers {
         gpu.queue.write_buffer(self.get("nodes")?, 0, bytemuck::cast_slice(lattice.tree().nodes()));
         gpu.check()?;
         Ok(None)
+    }
+
+    /// Writes tiles into places in a row, from `first` on.
+    fn write_tiles(&self, gpu: &Gpu, first: u32, tiles: &[TileSamples]) -> Result<()> {
+        let offset = u64::from(first) * u64::from(TILE_SAMPLES) * 4;
+        let of: [(_, fn(&TileSamples) -> &[f32]); 3] = [
+            ("heights", |tile| &tile.heights),
+            ("gradients_east", |tile| &tile.gradients[0]),
+            ("gradients_north", |tile| &tile.gradients[1]),
+        ];
+        for (name, samples) in of {
+            let samples = tiles.iter().map(samples).collect::<Vec<_>>().concat();
+            gpu.queue.write_buffer(self.get(name)?, offset, bytemuck::cast_slice(&samples));
+        }
+        Ok(())
     }
 
     /// A buffer by the name the shaders give it.

@@ -24,6 +24,9 @@ const NEIGHBOURS: [DVec2; 6] = [
     DVec2::new(1.0, -1.0),
 ];
 
+/// Samples whose gradients one core computes at least: fewer are not worth handing over.
+const LEAST: usize = 4096;
+
 /// Gradients of a window of samples.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Gradients {
@@ -78,7 +81,7 @@ pub(super) fn of_samples(samples: &Samples, first: [usize; 2], size: [usize; 2],
     let [mut east, mut north] = [(); 2].map(|()| vec![0.0; size[0] * size[1]]);
     let columns = size[0].max(1);
     let rows = east.par_chunks_exact_mut(columns).zip(north.par_chunks_exact_mut(columns)).enumerate();
-    rows.for_each(|(row, (east, north))| {
+    rows.with_min_len(LEAST.div_ceil(columns)).for_each(|(row, (east, north))| {
         let r = first[1] + row;
         let rows = [r.wrapping_sub(1), r, r + 1].map(|r| padded_row(samples, first[0], size[0], r));
         let [above, here, below] = rows.each_ref().map(|row| row.windows(3));

@@ -156,6 +156,11 @@ impl Surface {
     /// outside. Cost: the facets of nine cells, for patches also bend sideways.
     pub fn height_below(&self, place: DVec2, level: Level) -> Option<f64> {
         let at = self.dem.grid_place(place).floor();
+        if self.gradients.is_none() {
+            // The corners of the nine cells, read together.
+            let first = (at - 1.0).max(DVec2::ZERO).to_array().map(|at| at as usize);
+            return self.dem.kept(self.part(first, [4; 2]))?.height_below(place, level);
+        }
         let near = |x: f64, samples: usize| {
             let first = (x - 1.0).clamp(0.0, samples as f64) as u32;
             let end = (x + 2.0).clamp(0.0, (samples - 1) as f64) as u32;
