@@ -144,7 +144,8 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     // The renderer holds all samples on the device.
     talk.progress("computing normals", 0.1);
     let surface = Surface::new(dem);
-    Cache::of_user().prepare(&surface, &|words| talk.warn(words), &|done| {
+    let cache = Cache::of_user();
+    cache.prepare(&surface, &|words| talk.warn(words), &|done| {
         talk.progress("looking at every sample, once for this file", 0.1 + 0.1 * done);
     })?;
     let view = arguments.view.view(&surface, arguments.level.near())?;
@@ -156,6 +157,7 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     talk.progress("drawing", 0.3);
     let renderer = Renderer::new(&gpu, &surface, Plan::new(arguments.detail()?, method, arguments.border), size)?;
     let page = renderer.page(&view.camera, |share| talk.progress("drawing", 0.3 + 0.3 * share))?;
+    cache.discard_damaged(surface.dem(), &|words| talk.warn(words));
     let drawing = ink::draw(&page.marks, &Style::for_page(view.camera.width));
     let report = || {
         talk.progress("timing more frames", 0.6);

@@ -43,6 +43,13 @@ impl Gradients {
         self.of.each_ref().map(Vec::as_slice)
     }
 
+    /// All dz/d east, then all dz/d north, of the window's samples of row `r` of the DEM; nothing outside.
+    pub(super) fn row(&self, r: usize) -> [&[f32]; 2] {
+        let columns = self.size[0];
+        let first = r.wrapping_sub(self.first[1]).saturating_mul(columns);
+        self.of.each_ref().map(|of| of.get(first..first.saturating_add(columns)).unwrap_or_default())
+    }
+
     /// dz/d east and dz/d north of sample (c, r) of the DEM, `None` outside the window.
     pub fn get(&self, c: usize, r: usize) -> Option<DVec2> {
         let [c, r] = [c.wrapping_sub(self.first[0]), r.wrapping_sub(self.first[1])];

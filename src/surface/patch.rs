@@ -87,6 +87,11 @@ impl Surface {
         }
     }
 
+    /// Gradients of row `r`, see [`Gradients::components`]; nothing where they are not in memory.
+    pub(super) fn gradients_of_row(&self, r: usize) -> [&[f32]; 2] {
+        self.gradients.as_ref().map_or([&[]; 2], |gradients| gradients.row(r))
+    }
+
     /// The same surface with the samples of a window and their gradients in memory: bit by bit those of the whole, for
     /// work that looks at each of them. Samples farther out than one read as voids.
     ///

@@ -1,6 +1,6 @@
 //! Bounds of the surface over squares of every size, and how far facets leave it there.
 //!
-//! Method: PN facets of level n leave their patch by its [`Patch::bulge`]; facets coarser than the grid are
+//! Method: PN facets of level n leave their patch by its [`Patch::bulge`](super::patch::Patch::bulge); facets coarser than the grid are
 //! measured against every sample they pass, and the bulge of the patches below them is added. A square that holds voids,
 //! or is cut by an edge of the DEM between its vertices, has no coarse facets: its deviation is infinite. Cost: two
 //! patches a cell, then one look at each sample for every coarser level. Memory: 2 bytes a
@@ -12,8 +12,9 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
+use super::bounds::{self, Bounds, Corners};
 use super::lattice::{CELL_STEPS, CHUNK_QUADS};
-use super::patch::{Patch, Surface, SurfaceBand};
+use super::patch::{Surface, SurfaceBand};
 use crate::dem::{Dem, Samples};
 use crate::error::Result;
 
@@ -33,6 +34,9 @@ pub struct Pyramid {
     samples: [usize; 2],
     cell: DVec2,
 }
+
+/// A pyramid in the making, from bands of its surface.
+pub struct PyramidBuilder(Pyramid);
 
 #[derive(Debug, Clone)]
 struct Layer {
@@ -103,21 +107,11 @@ impl Pyramid {
     /// # Errors
     /// As [`Surface::bands`].
     pub fn new(surface: &Surface) -> Result<Self> {
-        let mut pyramid = Self::unknown(surface.dem());
-        let (cells, level_1) = (pyramid.samples.map(|samples| samples - 1), pyramid.level_1());
-        let layers = &mut pyramid.layers;
-        for band in surface.bands(1) {
-            let SurfaceBand { rows, surface } = band?;
-            let samples = surface.dem().held()?;
-            layers[0].bound(&surface, &rows);
-            layers[..=level_1].iter_mut().for_each(|layer| layer.fence(samples, &rows));
-            layers[level_1 + 1..].iter_mut().for_each(|layer| layer.measure(samples, &rows, cells));
+        let mut pyramid = PyramidBuilder::new(surface.dem());
+        for band in surface.bands(PyramidBuilder::HALO) {
+            pyramid.take(&band?)?;
         }
-        for number in 1..layers.len() {
-            let (below, above) = layers.split_at_mut(number);
-            above[0].gather(&below[number - 1], number > level_1);
-        }
-        Ok(pyramid)
+        Ok(pyramid.finish())
     }
 
     /// The squares over a DEM, nothing known of them.
@@ -133,21 +127,22 @@ impl Pyramid {
         Self { layers: sizes.map(|size| Layer::new(cells, size)).collect(), samples, cell: dem.cell() }
     }
 
-    /// All that is known, to be kept with the DEM.
-    pub fn to_bytes(&self) -> Vec<u8> {
-        self.layers.iter().flat_map(|layer| bytemuck::cast_slice(&layer.squares)).copied().collect()
+    /// All that is known, in parts, to be kept with the DEM.
+    pub fn bytes(&self) -> impl Iterator<Item = &[u8]> {
+        self.layers.iter().map(|layer| bytemuck::cast_slice(&layer.squares))
     }
 
-    /// A pyramid of `dem` from what was kept; `None` where it is not of this DEM's size.
-    pub fn from_bytes(dem: &Dem, mut bytes: &[u8]) -> Option<Self> {
+    /// A pyramid of `dem` from what was kept, which `fill` puts where it is told, part by part.
+    ///
+    /// # Errors
+    /// Those of `fill`.
+    pub fn from_bytes<E>(
+        dem: &Dem,
+        mut fill: impl FnMut(&mut [u8]) -> std::result::Result<(), E>,
+    ) -> std::result::Result<Self, E> {
         let mut pyramid = Self::unknown(dem);
-        for layer in &mut pyramid.layers {
-            let squares: &mut [u8] = bytemuck::cast_slice_mut(&mut layer.squares);
-            let (of_layer, rest) = bytes.split_at_checked(squares.len())?;
-            squares.copy_from_slice(of_layer);
-            bytes = rest;
-        }
-        bytes.is_empty().then_some(pyramid)
+        pyramid.layers.iter_mut().try_for_each(|layer| fill(bytemuck::cast_slice_mut(&mut layer.squares)))?;
+        Ok(pyramid)
     }
 
     /// Layer of the squares that a chunk of level 1 fills.
@@ -208,6 +203,40 @@ impl Pyramid {
     }
 }
 
+impl PyramidBuilder {
+    /// Rows around a band that must be there.
+    pub const HALO: usize = 1;
+
+    /// Of a DEM, nothing known yet.
+    pub fn new(dem: &Dem) -> Self {
+        Self(Pyramid::unknown(dem))
+    }
+
+    /// Takes in the next rows.
+    ///
+    /// # Errors
+    /// [`Error::Limit`](crate::error::Error::Limit) where the band is not in memory.
+    pub fn take(&mut self, SurfaceBand { rows, surface }: &SurfaceBand<'_>) -> Result<()> {
+        let (cells, level_1) = (self.0.samples.map(|samples| samples - 1), self.0.level_1());
+        let (layers, samples) = (&mut self.0.layers, surface.dem().held()?);
+        layers[0].bound(surface, samples, rows);
+        layers[..=level_1].iter_mut().for_each(|layer| layer.fence(samples, rows));
+        layers[level_1 + 1..].iter_mut().for_each(|layer| layer.measure(samples, rows, cells));
+        Ok(())
+    }
+
+    /// The pyramid, when all rows have been taken in.
+    pub fn finish(self) -> Pyramid {
+        let Self(mut pyramid) = self;
+        let level_1 = pyramid.level_1();
+        for number in 1..pyramid.layers.len() {
+            let (below, above) = pyramid.layers.split_at_mut(number);
+            above[0].gather(&below[number - 1], number > level_1);
+        }
+        pyramid
+    }
+}
+
 impl Layer {
     /// Squares of `size` cells over so many, nothing known of them.
     fn new(cells: [usize; 2], size: usize) -> Self {
@@ -224,20 +253,20 @@ impl Layer {
     }
 
     /// Takes in the patches of these rows of cells.
-    fn bound(&mut self, surface: &Surface, rows: &Range<usize>) {
-        let size = self.size;
+    fn bound(&mut self, surface: &Surface, samples: &Samples, rows: &Range<usize>) {
+        let (size, cell, whole) = (self.size, surface.dem().cell(), samples.voids() == 0);
         self.rows(rows).for_each(|(first, squares)| {
-            let mut north = surface.corners(first.max(rows.start));
-            for r in first.max(rows.start)..(first + size).min(rows.end) {
-                let south = surface.corners(r + 1);
-                for (c, exists) in surface.dem().held().into_iter().flat_map(|samples| samples.patches(r)).enumerate() {
-                    let square = &mut squares[c / size];
-                    let corners = [north[c], south[c], south[c + 1], north[c + 1]];
-                    for half in (0..2).filter(|half| exists[*half]) {
-                        *square = square.with(of_patch(&Patch::of_cell(corners, half)));
-                    }
-                }
+            let mut columns = vec![Bounds::NONE; surface.dem().columns() - 1];
+            let cells = first.max(rows.start)..(first + size).min(rows.end).min(surface.dem().rows() - 1);
+            let mut north = Corners::of(surface, samples, cells.start);
+            for r in cells {
+                let south = Corners::of(surface, samples, r + 1);
+                let exists = (!whole).then(|| samples.patches(r).collect::<Vec<_>>());
+                bounds::take_row(&mut columns, [&north, &south], cell, exists.as_deref());
                 north = south;
+            }
+            for (square, columns) in squares.iter_mut().zip(columns.chunks(size)) {
+                *square = square.with(columns.iter().copied().fold(Bounds::NONE, Bounds::with).into());
             }
         });
     }
@@ -279,15 +308,18 @@ impl Layer {
     }
 }
 
-fn of_patch(patch: &Patch) -> Square {
-    let heights = patch.control().map(|p| p.z as f32);
-    let bulge = patch.bulge();
-    Square {
-        low: heights.into_iter().fold(f32::INFINITY, f32::min).next_down(),
-        high: heights.into_iter().fold(f32::NEG_INFINITY, f32::max).next_up(),
-        bulge: (bulge.limit as f32).next_up(),
-        deviation: bulge.flat as f32,
-        fences: Fences::NONE,
+impl From<Bounds> for Square {
+    fn from(Bounds { low, high, limit, flat }: Bounds) -> Self {
+        if low > high {
+            return Self::EMPTY;
+        }
+        Self {
+            low: (low as f32).next_down(),
+            high: (high as f32).next_up(),
+            bulge: (limit as f32).next_up(),
+            deviation: flat as f32,
+            fences: Fences::NONE,
+        }
     }
 }
 
