@@ -114,14 +114,9 @@ impl Buffers {
             return Ok(Some(self.room.grown(Room::of(lattice))));
         };
         for batch in missing.chunks(TILES_AT_ONCE) {
-            let read: Vec<TileSamples> = batch.par_iter().map(|(_, tile)| tile.read(surface)).collect::<Result<_>>()?;
-            let mut read = read.as_slice();
-            // A run of places is one write for each buffer.
-            for run in batch.chunk_by(|(place, _), (next, _)| place + 1 == *next) {
-                let (tiles, rest) = read.split_at(run.len());
-                self.write_tiles(gpu, run[0].0, tiles)?;
-                read = rest;
-            }
+            let tiles: Vec<TileSamples> =
+                batch.par_iter().map(|(_, tile)| tile.read(surface)).collect::<Result<_>>()?;
+            self.write_tiles(gpu, batch, &tiles)?;
             // Sent at once: until then the driver holds a second copy.
             gpu.queue.submit([]);
             if missing.len() > TILES_AT_ONCE {
@@ -137,17 +132,21 @@ impl Buffers {
         Ok(None)
     }
 
-    /// Writes tiles into places in a row, from `first` on.
-    fn write_tiles(&self, gpu: &Gpu, first: u32, tiles: &[TileSamples]) -> Result<()> {
-        let offset = u64::from(first) * u64::from(TILE_SAMPLES) * 4;
+    /// Writes the samples of tiles into their places: those of a run of places at once.
+    fn write_tiles(&self, gpu: &Gpu, placed: &[(u32, Tile)], mut tiles: &[TileSamples]) -> Result<()> {
         let of: [(_, fn(&TileSamples) -> &[f32]); 3] = [
             ("heights", |tile| &tile.heights),
             ("gradients_east", |tile| &tile.gradients[0]),
             ("gradients_north", |tile| &tile.gradients[1]),
         ];
-        for (name, samples) in of {
-            let samples = tiles.iter().map(samples).collect::<Vec<_>>().concat();
-            gpu.queue.write_buffer(self.get(name)?, offset, bytemuck::cast_slice(&samples));
+        for run in placed.chunk_by(|(place, _), (next, _)| place + 1 == *next) {
+            let (of_run, rest) = tiles.split_at(run.len());
+            let offset = u64::from(run[0].0) * u64::from(TILE_SAMPLES) * 4;
+            for (name, samples) in of {
+                let samples = of_run.iter().map(samples).collect::<Vec<_>>().concat();
+                gpu.queue.write_buffer(self.get(name)?, offset, bytemuck::cast_slice(&samples));
+            }
+            tiles = rest;
         }
         Ok(())
     }
