@@ -32,7 +32,7 @@ fn write_hills(path: &Path, height: f64, voids: bool) {
             let (x, y) = (c as f64, r as f64);
             let z = height * (x / 37.0).sin() * (y / 29.0).cos() + 6.0 * (x * 1.7 + y).sin() + 300.0;
             let block = (690..740).contains(&c) && (480..520).contains(&r);
-            let void = voids && (block || (c * 7919 + r * 104_729) % 90_001 == 0);
+            let void = voids && (block || (c * 7919 + r * 104_729).is_multiple_of(90_001));
             if void { f32::NAN } else { z as f32 }
         };
         (0..SAMPLES[0]).map(sample).collect()

@@ -23,10 +23,26 @@ impl DeviceArguments {
     /// # Errors
     /// As [`Gpu::open`].
     pub fn open(&self, talk: &Talk) -> Result<Gpu> {
-        let int64 = if self.no_int64 { Int64::Never } else { Int64::IfPresent };
-        let gpu = Gpu::open(&self.adapter.clone().unwrap_or_default(), int64)?;
-        talk.say(&format!("adapter: {}", gpu.info.name))?;
-        talk.detail(&format!("driver: {} {}", gpu.info.driver, gpu.info.driver_info))?;
+        let gpu = self.open_silently()?;
+        Self::tell(&gpu, talk)?;
         Ok(gpu)
+    }
+
+    /// Opens the device, for those who say later which it is.
+    ///
+    /// # Errors
+    /// As [`Gpu::open`].
+    pub fn open_silently(&self) -> Result<Gpu> {
+        let int64 = if self.no_int64 { Int64::Never } else { Int64::IfPresent };
+        Gpu::open(&self.adapter.clone().unwrap_or_default(), int64)
+    }
+
+    /// Says which device it is.
+    ///
+    /// # Errors
+    /// As [`Talk::say`].
+    pub fn tell(gpu: &Gpu, talk: &Talk) -> Result<()> {
+        talk.say(&format!("adapter: {}", gpu.info.name))?;
+        talk.detail(&format!("driver: {} {}", gpu.info.driver, gpu.info.driver_info))
     }
 }

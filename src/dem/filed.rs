@@ -75,6 +75,11 @@ impl Filed {
         self.tiling.size[1]
     }
 
+    /// Whether several threads gain by reading at once.
+    pub fn is_parallel(&self) -> bool {
+        self.mosaic.is_parallel()
+    }
+
     /// Bytes of memory that all work with the samples may take.
     pub fn budget(&self) -> usize {
         self.budget

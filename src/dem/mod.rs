@@ -143,6 +143,14 @@ impl Dem {
         matches!(self.store, Store::Filed(_))
     }
 
+    /// Whether several threads gain by reading samples at once: not where they come from a file that one thread must read.
+    pub fn is_parallel(&self) -> bool {
+        match &self.store {
+            Store::Held(_) => true,
+            Store::Filed(filed) => filed.is_parallel(),
+        }
+    }
+
     /// The samples of a window of `size` columns and rows, cut to the DEM.
     ///
     /// # Errors

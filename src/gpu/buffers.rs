@@ -134,16 +134,14 @@ impl Buffers {
 
     /// Writes the samples of tiles into their places: those of a run of places at once.
     fn write_tiles(&self, gpu: &Gpu, placed: &[(u32, Tile)], mut tiles: &[TileSamples]) -> Result<()> {
-        let of: [(_, fn(&TileSamples) -> &[f32]); 3] = [
-            ("heights", |tile| &tile.heights),
-            ("gradients_east", |tile| &tile.gradients[0]),
-            ("gradients_north", |tile| &tile.gradients[1]),
-        ];
         for run in placed.chunk_by(|(place, _), (next, _)| place + 1 == *next) {
             let (of_run, rest) = tiles.split_at(run.len());
             let offset = u64::from(run[0].0) * u64::from(TILE_SAMPLES) * 4;
-            for (name, samples) in of {
-                let samples = of_run.iter().map(samples).collect::<Vec<_>>().concat();
+            for (k, name) in ["heights", "gradients_east", "gradients_north"].into_iter().enumerate() {
+                let mut samples = Vec::with_capacity(run.len() * TILE_SAMPLES as usize);
+                for TileSamples { heights, gradients: [east, north] } in of_run {
+                    samples.extend_from_slice([heights, east, north][k]);
+                }
                 gpu.queue.write_buffer(self.get(name)?, offset, bytemuck::cast_slice(&samples));
             }
             tiles = rest;
