@@ -114,8 +114,11 @@ impl Buffers {
             return Ok(Some(self.room.grown(Room::of(lattice))));
         };
         for batch in missing.chunks(TILES_AT_ONCE) {
-            let tiles: Vec<TileSamples> =
-                batch.par_iter().map(|(_, tile)| tile.read(surface)).collect::<Result<_>>()?;
+            let read = |(_, tile): &(u32, Tile)| tile.read(surface);
+            let tiles: Vec<TileSamples> = match surface.dem().is_parallel() {
+                true => batch.par_iter().map(read).collect::<Result<_>>()?,
+                false => batch.iter().map(read).collect::<Result<_>>()?,
+            };
             self.write_tiles(gpu, batch, &tiles)?;
             // Sent at once: until then the driver holds a second copy.
             gpu.queue.submit([]);
