@@ -24,7 +24,7 @@ use crate::surface::tile::{TILE_SAMPLES, TileSamples};
 use crate::surface::{Lattice, Surface, Tile};
 
 /// Tiles sent to the device together, 3 KB each.
-const TILES_AT_ONCE: usize = 1024;
+const TILES_AT_ONCE: usize = 4096;
 /// Bytes between entries of a uniform buffer that are bound one at a time.
 const UNIFORM_STRIDE: u64 = 256;
 
