@@ -30,6 +30,7 @@ mod mesh;
 mod mixed;
 mod pieces;
 mod pool;
+mod prepared;
 mod pyramids;
 mod quadtrees;
 mod reflection;

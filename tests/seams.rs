@@ -4,10 +4,10 @@
 use std::collections::HashMap;
 
 use glam::DVec3;
-use hachure::plan::{Border, Detail, Plan, Thrift};
+use hachure::plan::{Border, Detail, Plan, Thrift, batches};
 use hachure::render::Renderer;
 use hachure::surface::lattice::{CHUNK_QUADS, CHUNK_SIDE, CHUNK_VERTICES};
-use hachure::surface::{LatticePoint, Surface};
+use hachure::surface::{Chunk, LatticePoint, Surface};
 use hachure::view::Camera;
 
 use crate::common::gpu;
@@ -61,11 +61,10 @@ fn eyes(surface: &Surface, random: &mut Random, size: [u32; 2]) -> Vec<Camera> {
 }
 
 /// How many vertices that chunks share were compared; how many of them differ between two chunks.
-fn unlike(renderer: &Renderer<'_>, shot: &Shot) -> [usize; 2] {
-    let lattice = renderer.lattice();
+fn unlike(chunks: &[Chunk], screens: &[[i32; 4]]) -> [usize; 2] {
     let mut first: HashMap<LatticePoint, [i32; 4]> = HashMap::new();
     let (mut compared, mut unlike) = (0, 0);
-    for (chunk, screens) in lattice.chunks().iter().zip(shot.screens.chunks_exact(CHUNK_VERTICES as usize)) {
+    for (chunk, screens) in chunks.iter().zip(screens.chunks_exact(CHUNK_VERTICES as usize)) {
         // Left out: nothing was written.
         if screens.iter().all(|screen| *screen == [0; 4]) {
             continue;
@@ -90,14 +89,14 @@ fn a_vertex_unlike_its_neighbours_is_noticed() {
     let renderer = renderer(surface, 1.0, Thrift::Nothing, PAGE);
     let camera = eyes(surface, &mut Random(5), PAGE)[0];
     let mut shot = shoot(&renderer, &camera);
-    assert_eq!(unlike(&renderer, &shot)[1], 0);
+    assert_eq!(unlike(renderer.lattice().chunks(), &shot.screens)[1], 0);
     let slot = renderer.lattice().chunks().iter().position(|chunk| chunk.coarser != 0).expect("a seam");
     let bits = renderer.lattice().chunks()[slot].coarser;
     let (half, end) = (CHUNK_QUADS / 2, CHUNK_QUADS);
     let at =
         [half, half * CHUNK_SIDE + end, end * CHUNK_SIDE + half, half * CHUNK_SIDE][bits.trailing_zeros() as usize];
     shot.screens[slot * CHUNK_VERTICES as usize + at as usize][0] ^= 1;
-    assert!(unlike(&renderer, &shot)[1] > 0);
+    assert!(unlike(renderer.lattice().chunks(), &shot.screens)[1] > 0);
 }
 
 #[test]
@@ -110,7 +109,7 @@ fn frames_of_several_levels_have_one_vertex_a_place_and_no_pinhole() {
             for camera in eyes(&surface, &mut random, PAGE) {
                 let shot = shoot(&renderer, &camera);
                 let what = format!("scene {seed}, {error_px} px, {camera:?}");
-                let [shared, wrong] = unlike(&renderer, &shot);
+                let [shared, wrong] = unlike(renderer.lattice().chunks(), &shot.screens);
                 assert_eq!(wrong, 0, "{what}: of {shared} shared vertices");
                 let mesh = facets(&surface, &renderer.lattice());
                 let depths: Vec<u32> = shot.pixels.iter().map(|p| p[1]).collect();
@@ -126,6 +125,30 @@ fn frames_of_several_levels_have_one_vertex_a_place_and_no_pinhole() {
     }
     println!("{covered} px covered, {uncovered} not; {seams} seams; {compared} vertices compared, {clipped} clipped");
     assert!(covered > 500_000 && uncovered > 50_000 && seams > 400 && clipped > 1000 && compared > 50_000);
+}
+
+#[test]
+fn the_last_of_several_batches_has_one_vertex_a_place() {
+    let surface = Surface::new(rough(90, 75, 1.0, 0.5, false));
+    // Of chunks that are left out the buffer would keep what earlier batches have written.
+    let renderer = renderer(&surface, 0.0005, Thrift::Nothing, PAGE);
+    let (mut compared, mut seams) = (0, 0);
+    for camera in eyes(&surface, &mut Random(7), PAGE) {
+        renderer.frame(&camera).expect("a frame");
+        let lattice = renderer.lattice();
+        let all = batches(lattice.chunks().len() as u32);
+        let Some(last) = all.last().filter(|_| all.len() > 1) else { continue };
+        let chunks = &lattice.chunks()[last.first_slot as usize..];
+        // Its vertices have taken the place of those of the batches before it.
+        let size = chunks.len() as u64 * u64::from(CHUNK_VERTICES) * 16;
+        let screens = gpu().read(renderer.buffers().get("screens").expect("a buffer"), size).expect("vertices");
+        let [shared, wrong] = unlike(chunks, &bytemuck::pod_collect_to_vec::<u8, [i32; 4]>(&screens));
+        assert_eq!(wrong, 0, "{camera:?}: of {shared} shared vertices of {} chunks", chunks.len());
+        compared += shared;
+        seams += chunks.iter().filter(|chunk| chunk.coarser != 0).count();
+    }
+    println!("{compared} vertices of last batches compared, {seams} chunks with seams");
+    assert!(compared > 10_000 && seams > 100, "{compared} vertices, {seams} seams");
 }
 
 #[test]

@@ -31,10 +31,26 @@ impl DeviceArguments {
     /// # Errors
     /// As [`Gpu::open_with`].
     pub fn open_with(&self, extra: wgpu::Features, talk: &Talk) -> Result<Gpu> {
-        let int64 = if self.no_int64 { Int64::Never } else { Int64::IfPresent };
-        let gpu = Gpu::open_with(&self.adapter.clone().unwrap_or_default(), int64, extra)?;
-        talk.say(&format!("adapter: {}", gpu.info.name))?;
-        talk.detail(&format!("driver: {} {}", gpu.info.driver, gpu.info.driver_info))?;
+        let gpu = self.open_silently(extra)?;
+        Self::tell(&gpu, talk)?;
         Ok(gpu)
+    }
+
+    /// Opens the device with those of the `extra` features that it has, for those who say later which it is.
+    ///
+    /// # Errors
+    /// As [`Gpu::open_with`].
+    pub fn open_silently(&self, extra: wgpu::Features) -> Result<Gpu> {
+        let int64 = if self.no_int64 { Int64::Never } else { Int64::IfPresent };
+        Gpu::open_with(&self.adapter.clone().unwrap_or_default(), int64, extra)
+    }
+
+    /// Says which device it is.
+    ///
+    /// # Errors
+    /// As [`Talk::say`].
+    pub fn tell(gpu: &Gpu, talk: &Talk) -> Result<()> {
+        talk.say(&format!("adapter: {}", gpu.info.name))?;
+        talk.detail(&format!("driver: {} {}", gpu.info.driver, gpu.info.driver_info))
     }
 }

@@ -1,6 +1,8 @@
 //! `hachure draw`: a DEM as ink on a page.
 
+use std::panic::resume_unwind;
 use std::path::PathBuf;
+use std::thread;
 use std::time::Instant;
 
 use clap::ValueEnum;
@@ -144,18 +146,28 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     // The renderer holds all samples on the device.
     talk.progress("computing normals", 0.1);
     let surface = Surface::new(dem);
-    Cache::of_user().prepare(&surface, &|words| talk.warn(words), &|done| {
-        talk.progress("looking at every sample, once for this file", 0.1 + 0.1 * done);
-    })?;
+    let cache = Cache::of_user();
+    let prepare = || {
+        cache.prepare(&surface, &|words| talk.warn(words), &|done| {
+            talk.progress("looking at every sample, once for this file", 0.1 + 0.1 * done);
+        })
+    };
+    // Drivers take their time to start. Samples stay on this thread, where HDF5 keeps silent.
+    let (prepared, gpu) = thread::scope(|scope| {
+        let gpu = scope.spawn(|| arguments.device.open_silently(wgpu::Features::empty()));
+        (prepare(), gpu.join().unwrap_or_else(|panic| resume_unwind(panic)))
+    });
+    prepared?;
     let view = arguments.view.view(&surface, arguments.level.near())?;
     view.warn_below_ground(&surface, arguments.level.near(), talk);
     talk.say(&format!("view: {}", view.flags()))?;
     view.lonlat_flag().map_or(Ok(()), |flag| talk.say(&format!("or with: {flag}")))?;
-    talk.progress("opening the adapter", 0.2);
-    let gpu = arguments.device.open(talk)?;
+    let gpu = gpu?;
+    DeviceArguments::tell(&gpu, talk)?;
     talk.progress("drawing", 0.3);
     let renderer = Renderer::new(&gpu, &surface, Plan::new(arguments.detail()?, method, arguments.border), size)?;
     let page = renderer.page(&view.camera, |share| talk.progress("drawing", 0.3 + 0.3 * share))?;
+    cache.discard_damaged(surface.dem(), &|words| talk.warn(words));
     let drawing = ink::draw(&page.marks, &Style::for_page(view.camera.width));
     let report = || {
         talk.progress("timing more frames", 0.6);

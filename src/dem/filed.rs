@@ -13,6 +13,7 @@ use xxhash_rust::xxh3::xxh3_128;
 
 use super::grid::Window;
 use super::mosaic::Mosaic;
+use super::overviews::Overviews;
 use super::raster::Raster;
 use super::tiling::{Tiling, gather};
 use crate::error::{Error, Result};
@@ -28,16 +29,17 @@ pub(super) struct Filed {
     stamp: Option<u128>,
     kept: Mutex<Kept>,
     marks: Mutex<Marks>,
+    overviews: OnceLock<Overviews>,
     failure: OnceLock<Error>,
 }
 
 /// Exaggerated metres of a tile, NaN at voids, once they are read.
 type Tile = Arc<Mutex<Option<Arc<[f32]>>>>;
 
-/// Tiles by their first samples, each with the number of the request that came last, and the bytes of all.
+/// Tiles by their spacing and first samples, each with the number of the request that came last, and the bytes of all.
 #[derive(Default)]
 struct Kept {
-    tiles: HashMap<[usize; 2], (Tile, u64, usize)>,
+    tiles: HashMap<(usize, [usize; 2]), (Tile, u64, usize)>,
     requests: u64,
     bytes: usize,
 }
@@ -63,6 +65,7 @@ impl Filed {
             stamp,
             kept: Mutex::default(),
             marks: Mutex::default(),
+            overviews: OnceLock::new(),
             failure: OnceLock::new(),
         }
     }
@@ -70,6 +73,11 @@ impl Filed {
     /// Rows of a tile.
     pub fn tile_rows(&self) -> usize {
         self.tiling.size[1]
+    }
+
+    /// Whether several threads gain by reading at once.
+    pub fn is_parallel(&self) -> bool {
+        self.mosaic.is_parallel()
     }
 
     /// Bytes of memory that all work with the samples may take.
@@ -104,6 +112,25 @@ impl Filed {
         Ok(self.tile(window)?[r * window.size[0] + c])
     }
 
+    /// Exaggerated metres of `window` of every `spacing`-th sample and row, NaN at voids; `None` where no overviews have
+    /// them, or damaged ones.
+    pub fn overview(&self, spacing: usize, window: Window) -> Option<Vec<f32>> {
+        let overviews = self.overviews()?;
+        let tiles = overviews.tiling(spacing)?.tiles(window);
+        let load = |tile: Window| self.kept(spacing, tile, || overviews.read(spacing, tile));
+        gather(window, &tiles, false, load, &|_| ()).ok()
+    }
+
+    /// Takes overviews, unless there are some.
+    pub fn remember(&self, overviews: Overviews) {
+        let _ = self.overviews.set(overviews);
+    }
+
+    /// What was taken.
+    pub fn overviews(&self) -> Option<&Overviews> {
+        self.overviews.get()
+    }
+
     /// How many samples are void by their impossible value alone, among those read so far.
     pub fn marks(&self) -> usize {
         lock(&self.marks).count
@@ -130,38 +157,46 @@ impl Filed {
     }
 
     fn tile(&self, window: Window) -> Result<Arc<[f32]>> {
-        let tile = lock(&self.kept).tile(window, self.budget / 2);
+        self.kept(1, window, || {
+            let first = [0, 1].map(|i| self.window.first[i] + window.first[i]);
+            let (raster, marks) = self.mosaic.read(Window { first, ..window }, &|_| ())?;
+            if marks > 0 {
+                lock(&self.marks).add(window.first, marks);
+            }
+            let mut metres = raster.metres;
+            exaggerate(&mut metres, self.exaggeration);
+            Ok(metres.into())
+        })
+    }
+
+    /// The tile over `window` of every `spacing`-th sample, read unless it is kept.
+    fn kept(&self, spacing: usize, window: Window, read: impl FnOnce() -> Result<Arc<[f32]>>) -> Result<Arc<[f32]>> {
+        let tile = lock(&self.kept).tile(spacing, window, self.budget / 2);
         let mut samples = lock(&tile);
-        if let Some(samples) = &*samples {
-            return Ok(samples.clone());
+        match &*samples {
+            Some(samples) => Ok(samples.clone()),
+            None => Ok(samples.insert(read()?).clone()),
         }
-        let first = [0, 1].map(|i| self.window.first[i] + window.first[i]);
-        let (raster, marks) = self.mosaic.read(Window { first, ..window }, &|_| ())?;
-        if marks > 0 {
-            lock(&self.marks).add(window.first, marks);
-        }
-        let mut metres = raster.metres;
-        exaggerate(&mut metres, self.exaggeration);
-        Ok(samples.insert(metres.into()).clone())
     }
 }
 
 impl Kept {
     /// The tile of a window, new ones in the place of old ones beyond `budget` bytes.
-    fn tile(&mut self, window: Window, budget: usize) -> Tile {
+    fn tile(&mut self, spacing: usize, window: Window, budget: usize) -> Tile {
         self.requests += 1;
-        if let Some((tile, request, _)) = self.tiles.get_mut(&window.first) {
+        let place = (spacing, window.first);
+        if let Some((tile, request, _)) = self.tiles.get_mut(&place) {
             *request = self.requests;
             return tile.clone();
         }
         let (tile, bytes) = (Tile::default(), window.samples() as usize * size_of::<f32>());
         while self.bytes + bytes > budget {
-            let oldest = self.tiles.iter().min_by_key(|(_, (_, request, _))| *request).map(|(first, _)| *first);
-            let Some((_, _, freed)) = oldest.and_then(|first| self.tiles.remove(&first)) else { return tile };
+            let oldest = self.tiles.iter().min_by_key(|(_, (_, request, _))| *request).map(|(place, _)| *place);
+            let Some((_, _, freed)) = oldest.and_then(|place| self.tiles.remove(&place)) else { return tile };
             self.bytes -= freed;
         }
         self.bytes += bytes;
-        self.tiles.insert(window.first, (tile.clone(), self.requests, bytes));
+        self.tiles.insert(place, (tile.clone(), self.requests, bytes));
         tile
     }
 }
@@ -196,13 +231,13 @@ mod tests {
     fn the_tile_asked_for_longest_ago_makes_room() {
         let tile = |c: usize| Window { first: [c, 0], size: [100, 10] };
         let mut kept = Kept::default();
-        let tiles: Vec<_> = (0..3).map(|c| kept.tile(tile(c), 12_000)).collect();
-        assert!(Arc::ptr_eq(&tiles[0], &kept.tile(tile(0), 12_000)), "all three fit");
-        let _ = kept.tile(tile(3), 12_000);
+        let tiles: Vec<_> = (0..3).map(|c| kept.tile(1, tile(c), 12_000)).collect();
+        assert!(Arc::ptr_eq(&tiles[0], &kept.tile(1, tile(0), 12_000)), "all three fit");
+        let _ = kept.tile(1, tile(3), 12_000);
         assert_eq!(kept.bytes, 12_000);
-        assert!(Arc::ptr_eq(&tiles[0], &kept.tile(tile(0), 12_000)), "asked for since");
-        assert!(!Arc::ptr_eq(&tiles[1], &kept.tile(tile(1), 12_000)), "gone");
+        assert!(Arc::ptr_eq(&tiles[0], &kept.tile(1, tile(0), 12_000)), "asked for since");
+        assert!(!Arc::ptr_eq(&tiles[1], &kept.tile(1, tile(1), 12_000)), "gone");
         let mut none = Kept::default();
-        assert!(!Arc::ptr_eq(&none.tile(tile(0), 3_999), &none.tile(tile(0), 3_999)), "more than the budget");
+        assert!(!Arc::ptr_eq(&none.tile(1, tile(0), 3_999), &none.tile(1, tile(0), 3_999)), "more than the budget");
     }
 }

@@ -15,6 +15,7 @@ mod inscribed;
 mod limits;
 mod mosaic;
 mod name;
+mod overviews;
 mod raster;
 pub mod read;
 mod samples;
@@ -41,9 +42,10 @@ pub use georeference::Georeference;
 pub use history::History;
 pub use info::{Info, info};
 pub use limits::{LARGEST_SIDE, MAX_SAMPLES};
+pub use overviews::{Entry, OverviewBuilder, Overviews};
 pub use read::{ReadOptions, Stage, read, read_all};
 pub use samples::Samples;
-pub use survey::Survey;
+pub use survey::{Survey, SurveyBuilder};
 
 /// A north-up grid of elevations in metres.
 ///
@@ -139,6 +141,14 @@ impl Dem {
     /// Whether the samples stay in their files.
     pub fn is_filed(&self) -> bool {
         matches!(self.store, Store::Filed(_))
+    }
+
+    /// Whether several threads gain by reading samples at once: not where they come from a file that one thread must read.
+    pub fn is_parallel(&self) -> bool {
+        match &self.store {
+            Store::Held(_) => true,
+            Store::Filed(filed) => filed.is_parallel(),
+        }
     }
 
     /// The samples of a window of `size` columns and rows, cut to the DEM.

@@ -56,6 +56,12 @@ impl Samples {
         self.is_valid(i).then(|| self.heights[i])
     }
 
+    /// Exaggerated metres of the rectangle's samples of row `r`, 0 at voids; nothing outside.
+    pub fn row(&self, r: usize) -> &[f32] {
+        let first = self.index(self.window.first[0], r);
+        first.map_or(&[], |first| &self.heights[first..first + self.window.size[0]])
+    }
+
     /// Exaggerated metres of the samples of row `r` from column `c` on, `None` at voids; nothing outside.
     pub fn row_from(&self, c: usize, r: usize) -> impl Iterator<Item = Option<f32>> {
         let (first, end) = match self.index(c, r) {

@@ -1,11 +1,12 @@
 //! What only a look at every sample tells of a DEM: made once, in bands.
 
 use std::borrow::Cow;
+use std::ops::Range;
 
 use rayon::prelude::*;
 
 use super::grid::Window;
-use super::{Dem, Samples, Store};
+use super::{Band, Dem, Samples, Store};
 use crate::error::Result;
 
 /// Most samples that are kept of a filed DEM to stand for all, about: 16 MiB.
@@ -25,6 +26,13 @@ pub struct Survey {
     /// Exaggerated metres of every k-th sample of every k-th row of a filed DEM, k as [`Dem::thinning`] says, row-major,
     /// NaN at voids. Empty for a held one.
     pub thinned: Vec<f32>,
+}
+
+/// A survey in the making, from bands of the DEM.
+pub struct SurveyBuilder<'a> {
+    dem: &'a Dem,
+    figures: Figures,
+    thinned: Vec<f32>,
 }
 
 /// Range, voids and patches of some rows.
@@ -54,6 +62,38 @@ impl Survey {
     }
 }
 
+impl<'a> SurveyBuilder<'a> {
+    /// Of a DEM, no row seen yet.
+    pub fn new(dem: &'a Dem) -> Self {
+        Self { dem, figures: Figures::NONE, thinned: Vec::new() }
+    }
+
+    /// Takes the next rows, which `samples` holds with the one below them.
+    pub fn take(&mut self, samples: &Samples, rows: Range<usize>) {
+        let of_rows = rows.clone().into_par_iter().map(|r| Figures::of_row(samples, r));
+        self.figures = self.figures.with(of_rows.reduce(|| Figures::NONE, Figures::with));
+        if self.dem.is_filed() {
+            let step = self.dem.thinning();
+            let row = |r| samples.row_from(0, r).step_by(step).map(|height| height.unwrap_or(f32::NAN));
+            self.thinned.extend(rows.filter(|r| r.is_multiple_of(step)).flat_map(row));
+        }
+    }
+
+    /// The survey, when all rows have been taken.
+    ///
+    /// # Errors
+    /// [`Error::Input`](crate::error::Error::Input) for a filed DEM that is all void.
+    pub fn finish(self) -> Result<Survey> {
+        let Self { figures: Figures(range, voids, patches), thinned, dem } = self;
+        let marks = if let Store::Filed(filed) = &dem.store { filed.marks() } else { 0 };
+        let range = Some(range).filter(|[low, high]| low <= high);
+        match (&dem.store, range) {
+            (Store::Filed(filed), None) => Err(filed.all_void(voids)),
+            _ => Ok(Survey { range, voids, marks, patches, thinned }),
+        }
+    }
+}
+
 impl Dem {
     /// The survey of this DEM, made by the first who asks: all samples of a filed DEM are read then. `progress` hears the
     /// share done.
@@ -64,25 +104,15 @@ impl Dem {
         if let Some(survey) = self.survey.get() {
             return Ok(survey);
         }
-        let mut figures = Figures::NONE;
-        let mut thinned = Vec::new();
+        let mut survey = SurveyBuilder::new(self);
         for band in self.bands(1) {
-            let band = band?;
-            let rows = band.rows.clone().into_par_iter();
-            figures =
-                figures.with(rows.map(|r| Figures::of_row(&band.samples, r)).reduce(|| Figures::NONE, Figures::with));
-            if self.is_filed() {
-                thinned.extend(self.thin(&band.samples, band.rows.clone()));
-            }
-            progress(band.rows.end as f64 / self.rows() as f64);
+            let Band { rows, samples } = band?;
+            let done = rows.end as f64 / self.rows() as f64;
+            survey.take(&samples, rows);
+            progress(done);
         }
-        let Figures(range, voids, patches) = figures;
-        let marks = if let Store::Filed(filed) = &self.store { filed.marks() } else { 0 };
-        let range = Some(range).filter(|[low, high]| low <= high);
-        if let (Store::Filed(filed), None) = (&self.store, range) {
-            return Err(filed.all_void(voids));
-        }
-        Ok(self.survey.get_or_init(|| Survey { range, voids, marks, patches, thinned }))
+        let survey = survey.finish()?;
+        Ok(self.survey.get_or_init(|| survey))
     }
 
     /// Takes a survey made before of the same samples, as [`Dem::stamp`] tells, in the place of one of its own.
@@ -133,13 +163,6 @@ impl Dem {
 
     fn surveyed(&self) -> Option<&Survey> {
         self.kept(self.survey(&|_| ()))
-    }
-
-    fn thin(&self, samples: &Samples, rows: std::ops::Range<usize>) -> Vec<f32> {
-        let step = self.thinning();
-        let rows = rows.filter(|r| r.is_multiple_of(step));
-        let columns = || (0..self.columns()).step_by(step);
-        rows.flat_map(|r| columns().map(move |c| samples.height(c, r).unwrap_or(f32::NAN))).collect()
     }
 }
 

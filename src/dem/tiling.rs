@@ -36,6 +36,11 @@ impl Tiling {
         Self { size, before: [0, 1].map(|i| first[i].rem_euclid(size[i] as i64) as usize), whole }
     }
 
+    /// Tiles of just this size over a window of `whole` samples, from its first one on.
+    pub fn whole(size: [usize; 2], whole: [usize; 2]) -> Self {
+        Self { size, before: [0; 2], whole }
+    }
+
     /// The tile that holds sample (c, r).
     pub fn tile(&self, at: [usize; 2]) -> Window {
         let borders = [0, 1].map(|i| {

@@ -9,6 +9,7 @@ use std::cell::Cell;
 use std::collections::{HashMap, HashSet};
 
 use bytemuck::Zeroable;
+use rayon::prelude::*;
 
 use super::candidates::NO_PIXELS;
 use super::device::Gpu;
@@ -24,8 +25,8 @@ use crate::surface::rim::RimEdge;
 use crate::surface::tile::{TILE_SAMPLES, TileSamples};
 use crate::surface::{Chunk, Lattice, Surface, Tile};
 
-/// Tiles sent to the device together, 13 KB each.
-const TILES_AT_ONCE: usize = 1024;
+/// Tiles sent to the device together, 3 KB each.
+const TILES_AT_ONCE: usize = 4096;
 /// Bytes between entries of a uniform buffer that are bound one at a time.
 const UNIFORM_STRIDE: u64 = 256;
 
@@ -131,13 +132,12 @@ impl Buffers {
             return Ok(Some(self.room.grown(Room::of(lattice))));
         };
         for batch in missing.chunks(TILES_AT_ONCE) {
-            for (place, tile) in batch {
-                let TileSamples { heights, gradients: [east, north] } = tile.read(surface)?;
-                for (name, samples) in [("heights", heights), ("gradients_east", east), ("gradients_north", north)] {
-                    let offset = u64::from(*place) * u64::from(TILE_SAMPLES) * 4;
-                    gpu.queue.write_buffer(self.get(name)?, offset, bytemuck::cast_slice(&samples));
-                }
-            }
+            let read = |(_, tile): &(u32, Tile)| tile.read(surface);
+            let tiles: Vec<TileSamples> = match surface.dem().is_parallel() {
+                true => batch.par_iter().map(read).collect::<Result<_>>()?,
+                false => batch.iter().map(read).collect::<Result<_>>()?,
+            };
+            self.write_tiles(gpu, batch, &tiles)?;
             // Sent at once: until then the driver holds a second copy.
             gpu.queue.submit([]);
             if missing.len() > TILES_AT_ONCE {
@@ -188,6 +188,23 @@ impl Buffers {
     /// Slots of the chunks whose vertices the last frame made.
     pub fn made(&self) -> &[u32] {
         if self.made.get() { &self.fresh } else { &[] }
+    }
+
+    /// Writes the samples of tiles into their places: those of a run of places at once.
+    fn write_tiles(&self, gpu: &Gpu, placed: &[(u32, Tile)], mut tiles: &[TileSamples]) -> Result<()> {
+        for run in placed.chunk_by(|(place, _), (next, _)| place + 1 == *next) {
+            let (of_run, rest) = tiles.split_at(run.len());
+            let offset = u64::from(run[0].0) * u64::from(TILE_SAMPLES) * 4;
+            for (k, name) in ["heights", "gradients_east", "gradients_north"].into_iter().enumerate() {
+                let mut samples = Vec::with_capacity(run.len() * TILE_SAMPLES as usize);
+                for TileSamples { heights, gradients: [east, north] } in of_run {
+                    samples.extend_from_slice([heights, east, north][k]);
+                }
+                gpu.queue.write_buffer(self.get(name)?, offset, bytemuck::cast_slice(&samples));
+            }
+            tiles = rest;
+        }
+        Ok(())
     }
 
     /// A buffer by the name the shaders give it.

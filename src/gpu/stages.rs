@@ -36,20 +36,25 @@ impl Stages {
         ];
         let visibility = plan.method.visibility(gpu.int64);
         let stage = |pass: Pass| Stage { pass, groups: Vec::new() };
-        let silhouettes = silhouette::passes(gpu, plan.method, room, size, &constants)?.into_iter();
-        Ok(Self {
-            per_batch: [
+        let of_batch = || {
+            Ok([
                 stage(tessellate::pass(gpu, &constants)?),
                 stage(seam::pass(gpu, &constants)?),
                 stage(facing::pass(gpu, &constants)?),
                 stage(project::pass(gpu, &constants)?),
                 stage(rasterize::pass(gpu, visibility, &constants)?),
                 stage(rasterize_large::pass(gpu, visibility, &constants)?),
-            ],
-            silhouettes: silhouettes.map(|(pass, extent)| (stage(pass), extent)).collect(),
-            border: has_rim.then(|| border::pass(gpu, &constants)).transpose()?.map(stage),
-            compose: stage(compose::pass(gpu, &constants)?),
-        })
+            ])
+        };
+        let of_page = || {
+            let silhouettes = silhouette::passes(gpu, plan.method, room, size, &constants)?.into_iter();
+            let silhouettes = silhouettes.map(|(pass, extent)| (stage(pass), extent)).collect();
+            let border = has_rim.then(|| border::pass(gpu, &constants)).transpose()?.map(stage);
+            Ok((silhouettes, border, stage(compose::pass(gpu, &constants)?)))
+        };
+        let (of_batch, of_page): (Result<_>, Result<_>) = rayon::join(of_batch, of_page);
+        let (per_batch, (silhouettes, border, compose)) = (of_batch?, of_page?);
+        Ok(Self { per_batch, silhouettes, border, compose })
     }
 
     /// Whether passes compiled for so much room serve another.

@@ -75,6 +75,11 @@ impl Cache {
         Self { folder: dirs::cache_dir().map(|folder| folder.join("hachure")) }
     }
 
+    /// In a folder, which is made when something is kept.
+    pub fn in_folder(folder: PathBuf) -> Self {
+        Self { folder: Some(folder) }
+    }
+
     /// Keeps nothing and finds nothing.
     pub fn none() -> Self {
         Self { folder: None }
@@ -106,11 +111,16 @@ impl Cache {
     }
 }
 
-/// Writes a file of the cache, whole or not at all.
-pub(super) fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
+/// Begins a file of the cache.
+pub(super) fn create(path: &Path) -> Result<Output> {
     // A folder that cannot be made shows when the file is opened in it.
     let _ = path.parent().map(fs::create_dir_all);
-    let mut output = Output::create(path)?;
+    Output::create(path)
+}
+
+/// Writes a file of the cache, whole or not at all.
+fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
+    let mut output = create(path)?;
     output.write(|file| file.write_all(bytes))?;
     output.publish()
 }

@@ -113,6 +113,21 @@ impl Chunk {
         let y = if shared(WEST, EAST, column) { row & !1 } else { row };
         LatticePoint { x: self.origin[0] + x * self.step, y: self.origin[1] + y * self.step }
     }
+
+    /// The three vertices of its facet `local`, counter-clockwise seen from above; two are the same where it has collapsed
+    /// beside a coarser chunk.
+    pub fn facet(&self, local: u32) -> [LatticePoint; 3] {
+        let (block, quad) = (local / 128, local % 128 / 2);
+        let column = block % CHUNK_BLOCKS * 8 + quad / 8;
+        let row = block / CHUNK_BLOCKS * 8 + quad % 8;
+        let at = |dx: u32, dy: u32| self.vertex([column + dx, row + dy]);
+        if local.is_multiple_of(2) { [at(0, 0), at(0, 1), at(1, 1)] } else { [at(0, 0), at(1, 1), at(1, 0)] }
+    }
+
+    /// Its facets by their vertices, those that have not collapsed.
+    fn facets(&self) -> impl Iterator<Item = [LatticePoint; 3]> {
+        (0..CHUNK_FACETS).map(|local| self.facet(local)).filter(|[a, b, c]| a != b && b != c && c != a)
+    }
 }
 
 /// The chunks of a frame, each in its slot, and a quadtree that finds them by their place.
@@ -227,35 +242,33 @@ impl Lattice {
         self.chunks.iter().any(|chunk| chunk.coarser != 0)
     }
 
-    /// How many facets exist, of the patches of `dem` and not collapsed. Cost: a look at each of chunks that may lack some.
+    /// How many facets exist, of the patches of `dem` and not collapsed. Cost: a look at each of chunks that may lack
+    /// some for voids or the DEM's edge.
     pub fn facets(&self, dem: &Dem) -> u64 {
         let last = [dem.columns(), dem.rows()].map(|samples| (samples as u32 - 1) * CELL_STEPS);
         let whole = dem.voids() == 0;
-        let complete = |chunk: &Chunk| {
-            let inside = (0..2).all(|axis| chunk.origin[axis] + chunk.size() <= last[axis]);
-            whole && inside && chunk.coarser == 0
+        let complete = |chunk: &Chunk| whole && (0..2).all(|axis| chunk.origin[axis] + chunk.size() <= last[axis]);
+        let exists = |facet: &[LatticePoint; 3]| {
+            let inside = facet.iter().all(|v| v.x <= last[0] && v.y <= last[1]);
+            inside && (whole || lies_on_patch(dem, *facet))
         };
-        let exists = |id: &u32| {
-            let [a, b, c] = self.facet(*id);
-            let inside = [a, b, c].iter().all(|v| v.x <= last[0] && v.y <= last[1]);
-            inside && a != b && b != c && c != a && (whole || lies_on_patch(dem, [a, b, c]))
+        let count = |chunk: &Chunk| chunk.facets().filter(exists).count() as u64;
+        // Of complete ones their sides decide: they are counted once for all with the same.
+        let mut complete_ones = [0_u64; 16];
+        let mut others = Vec::new();
+        for chunk in &self.chunks {
+            if complete(chunk) { complete_ones[chunk.coarser as usize] += 1 } else { others.push(chunk) }
+        }
+        let of_sides = |(coarser, chunks): (u32, u64)| match chunks {
+            0 => 0,
+            _ => chunks * Chunk { origin: [0; 2], step: 1, coarser }.facets().count() as u64,
         };
-        let of_chunk = |(slot, chunk): (usize, &Chunk)| {
-            let first = slot as u32 * CHUNK_FACETS;
-            if complete(chunk) { CHUNK_FACETS as usize } else { (first..first + CHUNK_FACETS).filter(exists).count() }
-        };
-        self.chunks.par_iter().enumerate().map(of_chunk).sum::<usize>() as u64
+        (0..).zip(complete_ones).map(of_sides).sum::<u64>() + others.into_par_iter().map(count).sum::<u64>()
     }
 
-    /// The three vertices of a facet, counter-clockwise seen from above; two are the same where it has collapsed beside
-    /// a coarser chunk.
+    /// The three vertices of a facet, see [`Chunk::facet`].
     pub fn facet(&self, id: u32) -> [LatticePoint; 3] {
-        let chunk = self.chunks[(id / CHUNK_FACETS) as usize];
-        let (block, quad) = (id % CHUNK_FACETS / 128, id % 128 / 2);
-        let column = block % CHUNK_BLOCKS * 8 + quad / 8;
-        let row = block / CHUNK_BLOCKS * 8 + quad % 8;
-        let at = |dx: u32, dy: u32| chunk.vertex([column + dx, row + dy]);
-        if id.is_multiple_of(2) { [at(0, 0), at(0, 1), at(1, 1)] } else { [at(0, 0), at(1, 1), at(1, 0)] }
+        self.chunks[(id / CHUNK_FACETS) as usize].facet(id % CHUNK_FACETS)
     }
 }
 

@@ -1,5 +1,6 @@
 //! The smooth surface: vertex normals on the CPU, PN-triangle patches, and the integer lattice that names facets.
 
+mod bounds;
 pub mod lattice;
 pub mod normals;
 pub mod patch;
@@ -10,5 +11,5 @@ pub mod tile;
 
 pub use lattice::{Chunk, Lattice, LatticePoint, Level};
 pub use patch::{Patch, Surface, SurfaceBand};
-pub use pyramid::Pyramid;
+pub use pyramid::{Pyramid, PyramidBuilder};
 pub use tile::Tile;

@@ -24,6 +24,9 @@ const NEIGHBOURS: [DVec2; 6] = [
     DVec2::new(1.0, -1.0),
 ];
 
+/// Samples whose gradients one core computes at least: fewer are not worth handing over.
+const LEAST: usize = 4096;
+
 /// Gradients of a window of samples.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Gradients {
@@ -38,6 +41,13 @@ impl Gradients {
     /// (0, 0) at voids and where every incident facet has a void corner.
     pub fn components(&self) -> [&[f32]; 2] {
         self.of.each_ref().map(Vec::as_slice)
+    }
+
+    /// All dz/d east, then all dz/d north, of the window's samples of row `r` of the DEM; nothing outside.
+    pub(super) fn row(&self, r: usize) -> [&[f32]; 2] {
+        let columns = self.size[0];
+        let first = r.wrapping_sub(self.first[1]).saturating_mul(columns);
+        self.of.each_ref().map(|of| of.get(first..first.saturating_add(columns)).unwrap_or_default())
     }
 
     /// dz/d east and dz/d north of sample (c, r) of the DEM, `None` outside the window.
@@ -78,7 +88,7 @@ pub(super) fn of_samples(samples: &Samples, first: [usize; 2], size: [usize; 2],
     let [mut east, mut north] = [(); 2].map(|()| vec![0.0; size[0] * size[1]]);
     let columns = size[0].max(1);
     let rows = east.par_chunks_exact_mut(columns).zip(north.par_chunks_exact_mut(columns)).enumerate();
-    rows.for_each(|(row, (east, north))| {
+    rows.with_min_len(LEAST.div_ceil(columns)).for_each(|(row, (east, north))| {
         let r = first[1] + row;
         let rows = [r.wrapping_sub(1), r, r + 1].map(|r| padded_row(samples, first[0], size[0], r));
         let [above, here, below] = rows.each_ref().map(|row| row.windows(3));

@@ -87,6 +87,11 @@ impl Surface {
         }
     }
 
+    /// Gradients of row `r`, see [`Gradients::components`]; nothing where they are not in memory.
+    pub(super) fn gradients_of_row(&self, r: usize) -> [&[f32]; 2] {
+        self.gradients.as_ref().map_or([&[]; 2], |gradients| gradients.row(r))
+    }
+
     /// The same surface with the samples of a window and their gradients in memory: bit by bit those of the whole, for
     /// work that looks at each of them. Samples farther out than one read as voids.
     ///
@@ -156,6 +161,11 @@ impl Surface {
     /// outside. Cost: the facets of nine cells, for patches also bend sideways.
     pub fn height_below(&self, place: DVec2, level: Level) -> Option<f64> {
         let at = self.dem.grid_place(place).floor();
+        if self.gradients.is_none() {
+            // The corners of the nine cells, read together.
+            let first = (at - 1.0).max(DVec2::ZERO).to_array().map(|at| at as usize);
+            return self.dem.kept(self.part(first, [4; 2]))?.height_below(place, level);
+        }
         let near = |x: f64, samples: usize| {
             let first = (x - 1.0).clamp(0.0, samples as f64) as u32;
             let end = (x + 2.0).clamp(0.0, (samples - 1) as f64) as u32;

@@ -1,6 +1,6 @@
 //! Bounds of the surface over squares of every size, and how far facets leave it there.
 //!
-//! Method: PN facets of level n leave their patch by its [`Patch::bulge`]; facets coarser than the grid are
+//! Method: PN facets of level n leave their patch by its [`Patch::bulge`](super::patch::Patch::bulge); facets coarser than the grid are
 //! measured against every sample they pass, and the bulge of the patches below them is added. A square that holds voids,
 //! or is cut by an edge of the DEM between its vertices, has no coarse facets: its deviation is infinite. Cost: two
 //! patches a cell, then one look at each sample for every coarser level. Memory: 2 bytes a
@@ -12,8 +12,9 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
+use super::bounds::{self, Bounds, Corners};
 use super::lattice::{CELL_STEPS, CHUNK_QUADS};
-use super::patch::{Patch, Surface, SurfaceBand};
+use super::patch::{Surface, SurfaceBand};
 use crate::dem::{Dem, Samples};
 use crate::error::Result;
 
@@ -33,6 +34,9 @@ pub struct Pyramid {
     samples: [usize; 2],
     cell: DVec2,
 }
+
+/// A pyramid in the making, from bands of its surface.
+pub struct PyramidBuilder(Pyramid);
 
 #[derive(Debug, Clone)]
 struct Layer {
@@ -65,22 +69,9 @@ struct Slopes {
 impl Slopes {
     const NONE: Self = Self { low: [i8::MAX; 2], high: [i8::MIN; 2] };
 
-    /// Those of a patch. Facets have sides along east and north, chords of the patch or of several: their slopes lie
-    /// between the least and the largest of the control points' first differences.
-    fn of_patch(patch: &Patch, half: usize) -> Self {
-        let control = patch.control();
-        let mut range = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
-        for (j, k) in [(0, 0), (1, 0), (2, 0), (0, 1), (1, 1), (0, 2)] {
-            let [a, b, c] = [(j, k), (j + 1, k), (j, k + 1)].map(|(j, k)| control[Patch::index(j, k)]);
-            // Patch 0 has its corners at NW, SW, SE, patch 1 at NW, SE, NE.
-            let (east, north) = if half == 0 { (c - b, a - b) } else { (c - a, c - b) };
-            for (axis, slope) in [east.z / east.x, north.z / north.y].into_iter().enumerate() {
-                range[0][axis] = range[0][axis].min(slope);
-                range[1][axis] = range[1][axis].max(slope);
-            }
-        }
+    /// Between these.
+    fn between(low: [f64; 2], high: [f64; 2]) -> Self {
         let coded = |slope: f64| 127.0 * slope / (1.0 + slope.abs());
-        let [low, high] = range;
         Self { low: low.map(|slope| coded(slope).floor() as i8), high: high.map(|slope| coded(slope).ceil() as i8) }
     }
 
@@ -156,21 +147,11 @@ impl Pyramid {
     /// # Errors
     /// As [`Surface::bands`].
     pub fn new(surface: &Surface) -> Result<Self> {
-        let mut pyramid = Self::unknown(surface.dem());
-        let (cells, level_1) = (pyramid.samples.map(|samples| samples - 1), pyramid.level_1());
-        let layers = &mut pyramid.layers;
-        for band in surface.bands(1) {
-            let SurfaceBand { rows, surface } = band?;
-            let samples = surface.dem().held()?;
-            layers[0].bound(&surface, &rows);
-            layers[..=level_1].iter_mut().for_each(|layer| layer.fence(samples, &rows));
-            layers[level_1 + 1..].iter_mut().for_each(|layer| layer.measure(samples, &rows, cells));
+        let mut pyramid = PyramidBuilder::new(surface.dem());
+        for band in surface.bands(PyramidBuilder::HALO) {
+            pyramid.take(&band?)?;
         }
-        for number in 1..layers.len() {
-            let (below, above) = layers.split_at_mut(number);
-            above[0].gather(&below[number - 1], number > level_1);
-        }
-        Ok(pyramid)
+        Ok(pyramid.finish())
     }
 
     /// The squares over a DEM, nothing known of them.
@@ -186,21 +167,22 @@ impl Pyramid {
         Self { layers: sizes.map(|size| Layer::new(cells, size)).collect(), samples, cell: dem.cell() }
     }
 
-    /// All that is known, to be kept with the DEM.
-    pub fn to_bytes(&self) -> Vec<u8> {
-        self.layers.iter().flat_map(|layer| bytemuck::cast_slice(&layer.squares)).copied().collect()
+    /// All that is known, in parts, to be kept with the DEM.
+    pub fn bytes(&self) -> impl Iterator<Item = &[u8]> {
+        self.layers.iter().map(|layer| bytemuck::cast_slice(&layer.squares))
     }
 
-    /// A pyramid of `dem` from what was kept; `None` where it is not of this DEM's size.
-    pub fn from_bytes(dem: &Dem, mut bytes: &[u8]) -> Option<Self> {
+    /// A pyramid of `dem` from what was kept, which `fill` puts where it is told, part by part.
+    ///
+    /// # Errors
+    /// Those of `fill`.
+    pub fn from_bytes<E>(
+        dem: &Dem,
+        mut fill: impl FnMut(&mut [u8]) -> std::result::Result<(), E>,
+    ) -> std::result::Result<Self, E> {
         let mut pyramid = Self::unknown(dem);
-        for layer in &mut pyramid.layers {
-            let squares: &mut [u8] = bytemuck::cast_slice_mut(&mut layer.squares);
-            let (of_layer, rest) = bytes.split_at_checked(squares.len())?;
-            squares.copy_from_slice(of_layer);
-            bytes = rest;
-        }
-        bytes.is_empty().then_some(pyramid)
+        pyramid.layers.iter_mut().try_for_each(|layer| fill(bytemuck::cast_slice_mut(&mut layer.squares)))?;
+        Ok(pyramid)
     }
 
     /// Layer of the squares that a chunk of level 1 fills.
@@ -266,6 +248,40 @@ impl Pyramid {
     }
 }
 
+impl PyramidBuilder {
+    /// Rows around a band that must be there.
+    pub const HALO: usize = 1;
+
+    /// Of a DEM, nothing known yet.
+    pub fn new(dem: &Dem) -> Self {
+        Self(Pyramid::unknown(dem))
+    }
+
+    /// Takes in the next rows.
+    ///
+    /// # Errors
+    /// [`Error::Limit`](crate::error::Error::Limit) where the band is not in memory.
+    pub fn take(&mut self, SurfaceBand { rows, surface }: &SurfaceBand<'_>) -> Result<()> {
+        let (cells, level_1) = (self.0.samples.map(|samples| samples - 1), self.0.level_1());
+        let (layers, samples) = (&mut self.0.layers, surface.dem().held()?);
+        layers[0].bound(surface, samples, rows);
+        layers[..=level_1].iter_mut().for_each(|layer| layer.fence(samples, rows));
+        layers[level_1 + 1..].iter_mut().for_each(|layer| layer.measure(samples, rows, cells));
+        Ok(())
+    }
+
+    /// The pyramid, when all rows have been taken in.
+    pub fn finish(self) -> Pyramid {
+        let Self(mut pyramid) = self;
+        let level_1 = pyramid.level_1();
+        for number in 1..pyramid.layers.len() {
+            let (below, above) = pyramid.layers.split_at_mut(number);
+            above[0].gather(&below[number - 1], number > level_1);
+        }
+        pyramid
+    }
+}
+
 impl Layer {
     /// Squares of `size` cells over so many, nothing known of them.
     fn new(cells: [usize; 2], size: usize) -> Self {
@@ -282,20 +298,20 @@ impl Layer {
     }
 
     /// Takes in the patches of these rows of cells.
-    fn bound(&mut self, surface: &Surface, rows: &Range<usize>) {
-        let size = self.size;
+    fn bound(&mut self, surface: &Surface, samples: &Samples, rows: &Range<usize>) {
+        let (size, cell, whole) = (self.size, surface.dem().cell(), samples.voids() == 0);
         self.rows(rows).for_each(|(first, squares)| {
-            let mut north = surface.corners(first.max(rows.start));
-            for r in first.max(rows.start)..(first + size).min(rows.end) {
-                let south = surface.corners(r + 1);
-                for (c, exists) in surface.dem().held().into_iter().flat_map(|samples| samples.patches(r)).enumerate() {
-                    let square = &mut squares[c / size];
-                    let corners = [north[c], south[c], south[c + 1], north[c + 1]];
-                    for half in (0..2).filter(|half| exists[*half]) {
-                        *square = square.with(of_patch(&Patch::of_cell(corners, half), half));
-                    }
-                }
+            let mut columns = vec![Bounds::NONE; surface.dem().columns() - 1];
+            let cells = first.max(rows.start)..(first + size).min(rows.end).min(surface.dem().rows() - 1);
+            let mut north = Corners::of(surface, samples, cells.start);
+            for r in cells {
+                let south = Corners::of(surface, samples, r + 1);
+                let exists = (!whole).then(|| samples.patches(r).collect::<Vec<_>>());
+                bounds::take_row(&mut columns, [&north, &south], cell, exists.as_deref());
                 north = south;
+            }
+            for (square, columns) in squares.iter_mut().zip(columns.chunks(size)) {
+                *square = square.with(columns.iter().copied().fold(Bounds::NONE, Bounds::with).into());
             }
         });
     }
@@ -337,16 +353,19 @@ impl Layer {
     }
 }
 
-fn of_patch(patch: &Patch, half: usize) -> Square {
-    let heights = patch.control().map(|p| p.z as f32);
-    let bulge = patch.bulge();
-    Square {
-        low: heights.into_iter().fold(f32::INFINITY, f32::min).next_down(),
-        high: heights.into_iter().fold(f32::NEG_INFINITY, f32::max).next_up(),
-        bulge: (bulge.limit as f32).next_up(),
-        deviation: bulge.flat as f32,
-        fences: Fences::NONE,
-        slopes: Slopes::of_patch(patch, half),
+impl From<Bounds> for Square {
+    fn from(Bounds { low, high, limit, flat, least_slopes, most_slopes }: Bounds) -> Self {
+        if low > high {
+            return Self::EMPTY;
+        }
+        Self {
+            low: (low as f32).next_down(),
+            high: (high as f32).next_up(),
+            bulge: (limit as f32).next_up(),
+            deviation: flat as f32,
+            fences: Fences::NONE,
+            slopes: Slopes::between(least_slopes, most_slopes),
+        }
     }
 }
 

@@ -1,4 +1,4 @@
-//! Tiles: the samples below a chunk, 33 x 33, as the device holds them.
+//! Tiles: the samples below a chunk, 17 x 17, as the device holds them.
 //!
 //! A chunk coarser than the grid has a tile of its own vertices. Finer chunks share the tile of the chunk of level 1 that
 //! they lie in, for their patches need its samples with their gradients.
@@ -7,7 +7,6 @@ use std::borrow::Cow;
 
 use super::Surface;
 use super::lattice::{CELL_STEPS, CHUNK_QUADS, CHUNK_SIDE, Chunk};
-use crate::dem::Dem;
 use crate::error::Result;
 
 /// Samples along a tile's edge.
@@ -44,45 +43,31 @@ impl Tile {
     /// Reads its samples.
     ///
     /// # Errors
-    /// As [`Surface::part`].
+    /// As [`Surface::part`] and [`Dem::spaced`](crate::dem::Dem::spaced).
     pub fn read(&self, surface: &Surface) -> Result<TileSamples> {
-        let thinning = surface.dem().thinning() as u32;
-        if thinning > 1 && self.spacing.is_multiple_of(thinning) {
-            return self.read_thinned(&surface.dem().survey(&|_| ())?.thinned, surface.dem());
+        let (first, spacing) = (self.first.map(|at| at as usize), self.spacing as usize);
+        let none = || vec![0.0; TILE_SAMPLES as usize];
+        if spacing > 1 {
+            // Coarser facets are planes between samples.
+            let mut heights = surface.dem().spaced(first, spacing, [TILE_SIDE as usize; 2])?;
+            heights.iter_mut().filter(|height| height.is_nan()).for_each(|height| *height = 0.0);
+            return Ok(TileSamples { heights, gradients: [none(), none()] });
         }
-        let spacing = self.spacing as usize;
-        let first = self.first.map(|at| at as usize);
-        let side = (TILE_SIDE as usize - 1) * spacing + 1;
-        let part =
-            if surface.dem().is_filed() { Cow::Owned(surface.part(first, [side; 2])?) } else { Cow::Borrowed(surface) };
+        let part = if surface.dem().is_filed() {
+            Cow::Owned(surface.part(first, [TILE_SIDE as usize; 2])?)
+        } else {
+            Cow::Borrowed(surface)
+        };
         let dem = part.dem();
-        let [mut heights, mut east, mut north] = [(); 3].map(|()| vec![0.0; TILE_SAMPLES as usize]);
+        let [mut heights, mut east, mut north] = [none(), none(), none()];
         let places = (0..TILE_SAMPLES as usize).map(|i| [i % TILE_SIDE as usize, i / TILE_SIDE as usize]);
-        for (i, [c, r]) in places.map(|at| [first[0] + at[0] * spacing, first[1] + at[1] * spacing]).enumerate() {
+        for (i, [c, r]) in places.map(|at| [first[0] + at[0], first[1] + at[1]]).enumerate() {
             if c < dem.columns() && r < dem.rows() {
                 heights[i] = dem.height(c, r).unwrap_or(0.0);
-                // Coarser facets are planes between samples.
-                if spacing == 1 {
-                    let gradient = part.gradient(c, r);
-                    (east[i], north[i]) = (gradient.x as f32, gradient.y as f32);
-                }
+                let gradient = part.gradient(c, r);
+                (east[i], north[i]) = (gradient.x as f32, gradient.y as f32);
             }
         }
         Ok(TileSamples { heights, gradients: [east, north] })
-    }
-
-    /// The samples of a tile that are among the thinned ones of a DEM in its file.
-    fn read_thinned(&self, thinned: &[f32], dem: &Dem) -> Result<TileSamples> {
-        let thinning = dem.thinning();
-        let columns = dem.columns().div_ceil(thinning);
-        let height = |i: u32| {
-            let [c, r] = [i % TILE_SIDE, i / TILE_SIDE].map(|at| at * self.spacing);
-            let [c, r] = [self.first[0] + c, self.first[1] + r].map(|at| at as usize);
-            let inside = c < dem.columns() && r < dem.rows();
-            let height = if inside { thinned[r / thinning * columns + c / thinning] } else { 0.0 };
-            if height.is_nan() { 0.0 } else { height }
-        };
-        let none = vec![0.0; TILE_SAMPLES as usize];
-        Ok(TileSamples { heights: (0..TILE_SAMPLES).map(height).collect(), gradients: [none.clone(), none] })
     }
 }
