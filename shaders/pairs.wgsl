@@ -4,9 +4,6 @@
 @group(0) @binding(21) var<storage, read> candidates: ListRead;
 @group(0) @binding(22) var<storage, read_write> out_pairs: List;
 
-// Rectangles with more quads along a side are not looked into: the walk leaps better.
-const LARGEST_RECTANGLE: u32 = 16u;
-
 // Beside a coarser chunk a facet may reach into the quad before it: 1 where quads must be taken by twos.
 fn by_twos(chunk: Chunk) -> vec2<u32> {
     return select(vec2<u32>(0u), vec2<u32>(1u), chunk.coarser != 0u);
@@ -91,7 +88,7 @@ fn is_open(p: u32, q: u32, chunk_p: Chunk) -> bool {
         between = quads_between(chunk_p, low, high);
         other = quads_between(chunk_q, low, high);
     }
-    if !thrifty || !covered || any(between.zw - between.xy >= vec2<u32>(LARGEST_RECTANGLE)) {
+    if !thrifty || !covered {
         return true;
     }
     var slot = slot_p;

@@ -69,9 +69,9 @@ impl Room {
         self.chunks <= BATCH_CHUNKS
     }
 
-    /// Room for another as well, by doubling what is too small, so that it seldom grows.
+    /// Room for another as well, and for a quarter more than what is too small, so that it seldom grows.
     fn grown(self, least: Self) -> Self {
-        let grow = |has: usize, needs: usize| if has >= needs { has } else { needs.max(2 * has) };
+        let grow = |has: usize, needs: usize| if has >= needs { has } else { (needs + needs / 4).max(2 * has) };
         Self {
             chunks: grow(self.chunks as usize, least.chunks as usize) as u32,
             nodes: grow(self.nodes, least.nodes),
