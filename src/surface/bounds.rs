@@ -293,7 +293,10 @@ mod tests {
                     let found = [found.low, found.high, found.limit, found.flat, a, b, c, d];
                     for (found, expected) in found.into_iter().zip(expected) {
                         // Control points are rounded at millions of metres, 1e-9 m.
-                        assert!((found - expected).abs() < 1e-8 * expected.abs().max(1.0), "{c}, {r}, {half}: {found}, not {expected}");
+                        assert!(
+                            (found - expected).abs() < 1e-8 * expected.abs().max(1.0),
+                            "{c}, {r}, {half}: {found}, not {expected}"
+                        );
                     }
                     patches[half] += 1;
                 }

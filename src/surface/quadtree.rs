@@ -91,7 +91,7 @@ impl Quadtree {
             let largest = square.1 * if growth.stands_among_equals(square.0, square.1) { 1 } else { 2 };
             for around in AROUND {
                 // Its ancestors are split one after the other: each new leaf looks around itself in turn.
-                while let Some((node, beside)) = self.neighbour(square, around).filter(|(_, b)| b.1 > largest) {
+                while let Some((node, beside)) = self.larger_beside(square, around).filter(|(_, b)| b.1 > largest) {
                     open.extend(self.split_leaf(node, beside));
                 }
             }
@@ -100,9 +100,9 @@ impl Quadtree {
 
     /// The sides (bit 0 north, then clockwise) of a leaf beyond which a larger leaf lies that begins before `end`.
     pub fn larger_neighbours(&self, corner: [u32; 2], size: u32, end: [u32; 2]) -> u32 {
-        let is_larger = |beside: Square| beside.1 > size && beside.0[0] < end[0] && beside.0[1] < end[1];
+        let begins = |(at, _): Square| at[0] < end[0] && at[1] < end[1];
         let larger =
-            |k: &usize| self.neighbour((corner, size), AROUND[*k]).is_some_and(|(_, beside)| is_larger(beside));
+            |k: &usize| self.larger_beside((corner, size), AROUND[*k]).is_some_and(|(_, beside)| begins(beside));
         (0..4).filter(larger).map(|k| 1 << k).sum()
     }
 
@@ -150,11 +150,17 @@ impl Quadtree {
         [(first, a), (first + 1, b), (first + 2, c), (first + 3, d)]
     }
 
-    /// The leaf beside a square that is as large as it or larger, or one of those within such a square; `None` outside.
-    fn neighbour(&self, (corner, size): Square, around: [i64; 2]) -> Option<(usize, Square)> {
+    /// The leaf beside a square if it is larger.
+    fn larger_beside(&self, (corner, size): Square, around: [i64; 2]) -> Option<(usize, Square)> {
         let at = [0, 1].map(|axis| i64::from(corner[axis]) + around[axis] * i64::from(size));
         let inside = |axis: usize| (0..i64::from(self.roots[axis]) * i64::from(self.root_size)).contains(&at[axis]);
-        (inside(0) && inside(1)).then(|| self.leaf(at.map(|at| at as u32)))
+        let in_same_parent =
+            |axis: usize| at[axis] & -2 * i64::from(size) == i64::from(corner[axis]) & -2 * i64::from(size);
+        // In the same parent squares are no larger, nor is anything larger than a root.
+        if size == self.root_size || !(inside(0) && inside(1)) || in_same_parent(0) && in_same_parent(1) {
+            return None;
+        }
+        Some(self.leaf(at.map(|at| at as u32))).filter(|(_, beside)| beside.1 > size)
     }
 
     /// The leaf that holds a lattice place.
