@@ -7,6 +7,8 @@
 //! camera 1 m along its view direction. The ratio is the median of the ratios of neighbours: below 1 a finished mask
 //! takes less time than the bare draw. Rows run whose name contains every FILTER, for example `level4 walk`.
 
+mod repeat;
+
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -20,6 +22,7 @@ use hachure::plan::{Border, Method, Plan, Share};
 use hachure::render::Renderer;
 use hachure::surface::{Level, Surface};
 use hachure::view::Camera;
+use repeat::{median, moved};
 
 /// Frames timed of each kind.
 const REPETITIONS: usize = 9;
@@ -166,8 +169,7 @@ fn measure(
     baseline: &Baseline<'_>,
     camera: &Camera,
 ) -> Result<()> {
-    let forward = camera.axes()[2];
-    let at = |k: usize| Camera { eye: camera.eye + forward * k as f64, ..*camera };
+    let at = |k| moved(camera, k);
     let (mut times, mut baselines, mut ratios) = (Vec::new(), Vec::new(), Vec::new());
     let (mut masks, mut inked) = (Vec::new(), 0);
     for k in 0..WARM_UP + REPETITIONS {
@@ -208,11 +210,6 @@ fn measure(
     let passes: Vec<_> = names.enumerate().map(|(i, name)| format!("{name} {:.2}", of(i))).collect();
     println!("  pass by pass, ms: {}", passes.join(", "));
     Ok(())
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values[values.len() / 2]
 }
 
 fn lowest(values: &[f64]) -> f64 {

@@ -1,12 +1,15 @@
 //! Reports of comparisons: JSON, CSV, a plot, and a page to read with every picture in it.
 //!
 //! [`Comparison`] compares, [`Results`] is what it found; the writers turn that into text and know nothing else.
+//! [`Growth`] is time against size, judged by what was promised, with its plot.
 
 pub mod cache;
+mod chart;
 pub mod compare;
 pub mod csv;
 mod floors;
 pub mod folder;
+pub mod growth;
 pub mod html;
 mod labels;
 pub mod memory;
@@ -19,6 +22,7 @@ mod words;
 
 pub use compare::Comparison;
 pub use csv::write_csv;
+pub use growth::{Growth, Promise};
 pub use html::report_html;
 pub use pictures::Picture;
 pub use plot::error_time_svg;
