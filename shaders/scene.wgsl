@@ -57,15 +57,13 @@ override thrifty: bool = true;
 @group(0) @binding(2) var<uniform> batch: Batch;
 @group(0) @binding(3) var<storage, read> chunks: array<Chunk>;
 @group(0) @binding(4) var<storage, read> nodes: array<u32>;
-// Tiles of 33 x 33 samples, row by row.
+// Tiles of 17 x 17 samples, row by row.
 @group(0) @binding(5) var<storage, read> heights: array<f32>;
 @group(0) @binding(6) var<storage, read> gradients_east: array<f32>;
 @group(0) @binding(7) var<storage, read> gradients_north: array<f32>;
 @group(0) @binding(8) var<storage, read> valid: array<u32>;
 @group(0) @binding(9) var<storage, read> facing_0: array<u32>;
 @group(0) @binding(10) var<storage, read> facing_1: array<u32>;
-@group(0) @binding(11) var<storage, read> facing_2: array<u32>;
-@group(0) @binding(12) var<storage, read> facing_3: array<u32>;
 @group(0) @binding(13) var<storage, read> summaries: array<u32>;
 @group(0) @binding(14) var<storage, read> places: array<vec4<f32>>;
 @group(0) @binding(15) var<storage, read> screens: array<vec4<i32>>;
@@ -128,16 +126,10 @@ fn is_valid(c: u32, r: u32) -> bool {
 fn away_bits(id: u32) -> u32 {
     let word = id >> 5u;
     var bits = 0u;
-    if facing_parts == 1u {
+    if facing_parts == 1u || (word >> PART_WORDS_LOG2) == 0u {
         bits = facing_0[word];
     } else {
-        let i = word & ((1u << PART_WORDS_LOG2) - 1u);
-        switch word >> PART_WORDS_LOG2 {
-            case 0u: { bits = facing_0[i]; }
-            case 1u: { bits = facing_1[i]; }
-            case 2u: { bits = facing_2[i]; }
-            default: { bits = facing_3[i]; }
-        }
+        bits = facing_1[word - (1u << PART_WORDS_LOG2)];
     }
     return bits >> (id & 31u);
 }

@@ -67,6 +67,8 @@ struct Loaded {
     room: Room,
     buffers: Buffers,
     stages: Stages,
+    /// Whether the passes are bound to these buffers; not after an error on the way to larger ones.
+    is_bound: bool,
 }
 
 /// Chunks, nodes and tiles for which there is room before the first frame of an adaptive lattice.
@@ -95,7 +97,8 @@ impl<'a> Renderer<'a> {
         let visibility = plan.method.visibility(gpu.int64);
         let buffers = Buffers::new(gpu, surface, &lattice, room, &rim, visibility, size)?;
         let stages = Stages::new(gpu, dem, &plan, !rim.is_empty(), room, size)?;
-        let mut loaded = Loaded { batches: Vec::new(), has_seams: false, room, lattice, buffers, stages };
+        let mut loaded =
+            Loaded { batches: Vec::new(), has_seams: false, room, lattice, buffers, stages, is_bound: false };
         loaded.bind(gpu, visibility)?;
         let renderer = Self { gpu, surface, plan, visibility, pieces, rim, loaded: RefCell::new(loaded) };
         renderer.load(&mut renderer.loaded.borrow_mut())?;
@@ -235,7 +238,6 @@ impl<'a> Renderer<'a> {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
             stage.pass.record(&mut pass, &stage.groups[0], extent);
         }
-        loaded.buffers.made_vertices();
         Ok(())
     }
 
@@ -365,7 +367,13 @@ impl<'a> Renderer<'a> {
         let Self { gpu, surface, visibility, .. } = self;
         loaded.batches = batches(loaded.lattice.chunks().len() as u32);
         loaded.has_seams = loaded.lattice.has_seams();
-        let Some(room) = loaded.buffers.load(gpu, surface, &loaded.lattice)? else { return Ok(()) };
+        let room = if loaded.is_bound {
+            let Some(room) = loaded.buffers.load(gpu, surface, &loaded.lattice)? else { return Ok(()) };
+            room
+        } else {
+            Room::of(&loaded.lattice)
+        };
+        loaded.is_bound = false;
         loaded.buffers =
             Buffers::new(gpu, surface, &loaded.lattice, room, &self.rim, *visibility, self.pieces.largest())?;
         if !Stages::serve(loaded.room, room) {
@@ -381,6 +389,8 @@ impl<'a> Renderer<'a> {
 impl Loaded {
     /// Binds the passes to the buffers, for as many batches as these have room for.
     fn bind(&mut self, gpu: &Gpu, visibility: Visibility) -> Result<()> {
-        self.stages.bind(gpu, &self.buffers, &batches(self.room.chunks), visibility.rounds())
+        self.stages.bind(gpu, &self.buffers, &batches(self.room.chunks), visibility.rounds())?;
+        self.is_bound = true;
+        Ok(())
     }
 }

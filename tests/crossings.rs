@@ -129,14 +129,12 @@ impl Field {
     fn open(&self, pairs: &[[u32; 2]]) -> Vec<bool> {
         let scene = SceneUniform::new(&self.dem, &self.lattice);
         let chunks = chunk_uniforms(&self.lattice);
-        let data: [(&str, &[u8]); 8] = [
+        let data: [(&str, &[u8]); 6] = [
             ("scene", bytemuck::bytes_of(&scene)),
             ("chunks", bytemuck::cast_slice(&chunks)),
             ("summaries", bytemuck::cast_slice(&self.summaries)),
             ("facing_0", bytemuck::cast_slice(&self.facing)),
             ("facing_1", &[]),
-            ("facing_2", &[]),
-            ("facing_3", &[]),
             ("facet_pairs", bytemuck::cast_slice(pairs)),
         ];
         run("pairs_probe", PAIRS, &[], &data, pairs.len() as u32).chunks_exact(4).map(|f| f[0] == 1).collect()
@@ -180,7 +178,7 @@ impl Field {
     fn walk(&self, segments: &[[i32; 4]]) -> Vec<Met> {
         let scene = SceneUniform::new(&self.dem, &self.lattice);
         let chunks = chunk_uniforms(&self.lattice);
-        let data: [(&str, &[u8]); 10] = [
+        let data: [(&str, &[u8]); 8] = [
             ("scene", bytemuck::bytes_of(&scene)),
             ("chunks", bytemuck::cast_slice(&chunks)),
             ("nodes", bytemuck::cast_slice(self.lattice.tree().nodes())),
@@ -188,8 +186,6 @@ impl Field {
             ("valid", bytemuck::cast_slice(self.dem.held().expect("in memory").valid())),
             ("facing_0", bytemuck::cast_slice(&self.facing)),
             ("facing_1", &[]),
-            ("facing_2", &[]),
-            ("facing_3", &[]),
             ("segments", bytemuck::cast_slice(segments)),
         ];
         let constants = [("has_voids", f64::from(u8::from(self.dem.voids() > 0))), ("defers", 0.0)];

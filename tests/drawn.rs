@@ -3,6 +3,7 @@
 use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
 use hachure::gpu::Gpu;
+use hachure::plan::batches::BATCH_CHUNKS;
 use hachure::plan::{Border, Method, Plan, Share};
 use hachure::render::Renderer;
 use hachure::surface::lattice::CHUNK_VERTICES;
@@ -75,7 +76,7 @@ pub struct Shot {
 /// Draws a frame from a clean slate, and reads it.
 pub fn shoot(gpu: &Gpu, renderer: &Renderer<'_>, camera: &Camera) -> Shot {
     let chunks = renderer.lattice().chunks().len();
-    assert!(chunks <= 4096, "{chunks} chunks share the vertex buffer, the first are overwritten");
+    assert!(chunks <= BATCH_CHUNKS as usize, "{chunks} chunks share the vertex buffer, the first are overwritten");
     let buffer = |name| renderer.buffers().get(name).expect("a buffer of this name").clone();
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     encoder.clear_buffer(&buffer("screens"), 0, None);

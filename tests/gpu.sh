@@ -10,8 +10,8 @@ dems=${HACHURE_DEMS:-$(dirname "$views")/dem}
 . examples/setup.sh
 cargo build --release
 failed=0
-cargo test --release -- agreement costs cover depth_draw gpu_errors kernels mixed pieces reflection same_bytes \
-    silhouettes times || failed=1
+cargo test --release -- agreement borders costs cover crossings depth_draw gpu_errors kernels left_out mixed pieces pool \
+    reflection same_bytes seams seen silhouettes times vertices watertight || failed=1
 compare() {
     name=$1
     shift

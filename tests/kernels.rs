@@ -223,7 +223,7 @@ fn walk(field: &Field, segments: &[[i32; 4]]) -> Vec<Option<[u32; 3]>> {
     let scene = SceneUniform::new(&field.dem, &field.lattice);
     let chunks = chunk_uniforms(&field.lattice);
     let valid = field.dem.held().expect("in memory").valid();
-    let data: [(&str, &[u8]); 10] = [
+    let data: [(&str, &[u8]); 8] = [
         ("scene", bytemuck::bytes_of(&scene)),
         ("chunks", bytemuck::cast_slice(&chunks)),
         ("nodes", bytemuck::cast_slice(field.lattice.tree().nodes())),
@@ -231,8 +231,6 @@ fn walk(field: &Field, segments: &[[i32; 4]]) -> Vec<Option<[u32; 3]>> {
         ("valid", bytemuck::cast_slice(valid)),
         ("facing_0", bytemuck::cast_slice(&field.facing)),
         ("facing_1", &[]),
-        ("facing_2", &[]),
-        ("facing_3", &[]),
         ("segments", bytemuck::cast_slice(segments)),
     ];
     let constants = [("has_voids", f64::from(u8::from(field.dem.voids() > 0))), ("defers", 0.0)];

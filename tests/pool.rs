@@ -1,4 +1,5 @@
-//! Tiles of samples in their places: they stay while asked for, the oldest go first, and what stays is what was brought.
+//! Tiles of samples and vertices of chunks in their places: they stay while asked for, the oldest go first, and what stays
+//! is what was brought.
 
 use std::collections::{HashMap, HashSet};
 
@@ -6,11 +7,13 @@ use glam::DVec3;
 use hachure::gpu::pool::Pool;
 use hachure::plan::{Border, Detail, Method, Plan};
 use hachure::render::Renderer;
+use hachure::surface::lattice::CHUNK_VERTICES;
+use hachure::surface::tile::TILE_SAMPLES;
 use hachure::surface::{Chunk, Surface, Tile};
 use hachure::view::Camera;
 
 use crate::common::gpu;
-use crate::scenes::{Random, rough};
+use crate::scenes::{METHODS, Random, gpu_without_int64, look, rough};
 
 const PAGE: [u32; 2] = [200, 150];
 
@@ -81,7 +84,7 @@ fn a_camera_that_jumps_draws_what_a_new_renderer_draws() {
     let jumping = make();
     let [west, south, east, north] = surface.dem().extent();
     let mut random = Random::new(21);
-    let (mut tiles, mut pages) = (HashSet::new(), HashSet::new());
+    let (mut tiles, mut chunks, mut pages) = (HashSet::new(), HashSet::new(), HashSet::new());
     for frame in 0..10 {
         let eye = DVec3::new(random.between(west, east), random.between(south, north), random.between(100.0, 900.0));
         let azimuth = random.between(0.0, 360.0);
@@ -89,10 +92,40 @@ fn a_camera_that_jumps_draws_what_a_new_renderer_draws() {
         let drawn = page(&jumping, &camera);
         assert!(drawn == page(&make(), &camera), "frame {frame} differs");
         tiles.extend(jumping.lattice().chunks().iter().map(Tile::of));
+        chunks.extend(jumping.lattice().chunks().iter().copied());
         pages.insert(drawn);
     }
-    let places = jumping.buffers().get("heights").expect("heights").size() / (33 * 33 * 4);
-    println!("{} tiles in {places} places", tiles.len());
-    assert!(tiles.len() as u64 > places, "{} tiles in {places} places: none was replaced", tiles.len());
+    let room = |name, bytes| jumping.buffers().get(name).expect(name).size() / bytes;
+    let held = [room("heights", 4 * u64::from(TILE_SAMPLES)), room("places", 16 * u64::from(CHUNK_VERTICES))];
+    let asked = [tiles.len() as u64, chunks.len() as u64];
+    println!("{asked:?} tiles and chunks in {held:?} places");
+    assert!(asked[0] > held[0] && asked[1] > held[1], "{asked:?} in {held:?} places: none was replaced");
     assert_eq!(pages.len(), 10, "frames are alike");
+}
+
+#[test]
+fn vertices_stay_while_the_camera_flies_on() {
+    let surface = Surface::new(rough(400, 300, 1.0, 0.5, true));
+    let [west, south, east, north] = surface.dem().extent();
+    let middle = DVec3::new(west + east, south + north, 0.0) / 2.0;
+    for (gpu, (_, method)) in METHODS.into_iter().flat_map(|method| [(gpu(), method), (gpu_without_int64(), method)]) {
+        let plan = Plan::new(Detail::Adaptive { error_px: 0.3 }, method, Border::On);
+        let make = || Renderer::new(gpu, &surface, plan, PAGE).expect("a renderer");
+        let flying = make();
+        let (mut made, mut chunks, mut pages) = (Vec::new(), Vec::new(), HashSet::new());
+        for frame in 0..8 {
+            let eye = middle + DVec3::new(-900.0 + 40.0 * f64::from(frame), -1100.0, 300.0);
+            let camera = look(eye, middle, 60.0, PAGE);
+            let drawn = page(&flying, &camera);
+            assert!(drawn == page(&make(), &camera), "{method:?}, frame {frame} differs");
+            made.push(flying.buffers().made().len());
+            chunks.push(flying.lattice().chunks().len());
+            pages.insert(drawn);
+        }
+        println!("{method:?}: vertices of {made:?} of {chunks:?} chunks are made");
+        assert_eq!(made[0], chunks[0], "the first frame makes all");
+        let [few, all] = [made, chunks].map(|counts| counts[2..].iter().sum::<usize>());
+        assert!(few > 0 && few < all / 2, "{few} of {all} are made anew");
+        assert_eq!(pages.len(), 8, "frames are alike");
+    }
 }

@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 use hachure::gpu::Gpu;
-use hachure::plan::{Border, Method};
+use hachure::plan::batches::BATCH_CHUNKS;
+use hachure::plan::{Border, Detail, Method, Plan, Thrift};
 use hachure::render::Renderer;
 use hachure::surface::Surface;
 use hachure::view::Camera;
@@ -54,12 +55,12 @@ fn frames_are_the_same_on_every_run_and_without_int64() {
 
 #[test]
 fn several_batches_draw_the_same_with_and_without_int64() {
-    // 65 x 65 cells at level 32: 65 x 65 chunks, two batches of at most 4096.
+    // 65 x 65 cells at level 32: 130 x 130 chunks, two batches.
     let surface = Surface::new(rough(66, 66, 1.0, 0.0, false));
     let camera = views(&surface)[0];
     let make = |gpu, n| renderer(gpu, &surface, &camera, level(n), Method::Walk, Border::On);
     let (wide, narrow) = (make(gpu(), 32), make(gpu_without_int64(), 32));
-    assert!(wide.lattice().chunks().len() > 4096, "one batch is enough here");
+    assert!(wide.lattice().chunks().len() > BATCH_CHUNKS as usize, "one batch is enough here");
     let expected = bytes(gpu(), &wide, &camera);
     assert!(bytes(gpu_without_int64(), &narrow, &camera) == expected, "differs without 64-bit atomics");
     assert!(bytes(gpu(), &wide, &camera) == expected, "differs the second time");
@@ -70,6 +71,31 @@ fn several_batches_draw_the_same_with_and_without_int64() {
     let differ = fine.iter().zip(&coarse).filter(|(a, b)| a != b).count();
     println!("batches: {} and {} px of ink at levels 32 and 16, {differ} differ", count(&fine), count(&coarse));
     assert!(count(&fine) > 500 && differ * 20 < count(&fine), "levels 32 and 16 differ");
+}
+
+#[test]
+fn walks_meet_the_same_where_vertices_stay_and_where_they_are_found_again() {
+    let surface = Surface::new(rough(120, 110, 1.0, 1.0, true));
+    let [west, south, east, north] = surface.dem().extent();
+    let middle = DVec3::new(west + east, south + north, 0.0) / 2.0;
+    let camera = look(middle + DVec3::new(-300.0, -700.0, 160.0), middle, 15.0, PAGE);
+    let make = |thrift| {
+        let plan = Plan { thrift, ..Plan::new(Detail::Adaptive { error_px: 0.002 }, Method::Walk, Border::Off) };
+        Renderer::new(gpu(), &surface, plan, PAGE).expect("a renderer")
+    };
+    let [few, all] = [Thrift::LeaveOut, Thrift::Nothing].map(make);
+    let frames = [&few, &all].map(|renderer| renderer.draw(&camera).expect("a frame"));
+    let chunks = [&few, &all].map(|renderer| renderer.lattice().chunks().len());
+    let inked = frames[0].inked();
+    println!("{chunks:?} chunks, {inked} px of ink");
+    let made = [&few, &all].map(|renderer| {
+        renderer.frame(&camera).expect("a frame");
+        renderer.buffers().made().len()
+    });
+    assert_eq!(made, [0, chunks[1]], "the vertices of one batch stay, those of several do not");
+    let batch = BATCH_CHUNKS as usize;
+    assert!(chunks[0] <= batch && chunks[1] > batch && inked > 100, "{chunks:?} chunks, {inked} px of ink");
+    assert!(frames[0].raster == frames[1].raster, "ink, places or depths differ");
 }
 
 #[test]

@@ -20,7 +20,7 @@ const PAGE: [u32; 2] = [240, 160];
 /// So small that what is seen is much finer than what is not.
 const ERROR_PX: f64 = 0.004;
 /// How many times as far facets may deviate away from lines.
-const AWAY_FROM_LINES: f64 = 8.0;
+const AWAY_FROM_LINES: f64 = 4.0;
 
 /// Deviation that `error_px` allows for each metre of distance.
 fn tolerance(camera: &Camera, error_px: f64) -> f64 {

@@ -2,7 +2,7 @@
 //!
 //! A frame uploads the camera, its lattice, and those tiles of samples that are not there yet. Vertices stay from frame to
 //! frame where one batch has room for all. No binding exceeds 128 MiB, whatever the level: vertices and the queue are sized
-//! by a batch, facing bits lie in up to four parts.
+//! by a batch, facing bits lie in up to two parts.
 
 use std::borrow::Cow;
 use std::cell::Cell;
@@ -15,7 +15,7 @@ use super::candidates::NO_PIXELS;
 use super::device::Gpu;
 use super::pool::{Placed, Pool};
 use super::rasterize_large::EMPTY_QUEUE;
-use super::sizes::{self, fits};
+use super::sizes::{self, LARGEST_BINDING, fits};
 use super::uniforms::{BatchUniform, CameraUniform, ChunkUniform, SceneUniform};
 use crate::dem::{Band, Dem};
 use crate::error::{Error, Result};
@@ -38,6 +38,8 @@ pub struct Buffers {
     room: Room,
     tiles: Pool<Tile>,
     blocks: Pool<Chunk>,
+    /// Whether a lattice is on its way: after an error nobody knows what lies in which place.
+    is_loading: bool,
     /// Slots of the chunks whose vertices were not there when the lattice came.
     fresh: Vec<u32>,
     /// Whether they still are not.
@@ -69,13 +71,18 @@ impl Room {
         self.chunks <= BATCH_CHUNKS
     }
 
-    /// Room for another as well, and for a quarter more than what is too small, so that it seldom grows.
+    /// Room for another as well, and for a quarter more than what is too small, so that it seldom grows; as far as
+    /// bindings go, and no farther than vertices stay.
     fn grown(self, least: Self) -> Self {
-        let grow = |has: usize, needs: usize| if has >= needs { has } else { (needs + needs / 4).max(2 * has) };
+        let grow = |has: usize, needs: usize, most: usize| {
+            if has >= needs { has } else { (needs + needs / 4).max(2 * has).min(most).max(needs) }
+        };
+        let binding = |bytes: usize| LARGEST_BINDING as usize / bytes;
+        let chunks = if least.keeps_vertices() { BATCH_CHUNKS as usize } else { binding(size_of::<ChunkUniform>()) };
         Self {
-            chunks: grow(self.chunks as usize, least.chunks as usize) as u32,
-            nodes: grow(self.nodes, least.nodes),
-            tiles: grow(self.tiles, least.tiles),
+            chunks: grow(self.chunks as usize, least.chunks as usize, chunks) as u32,
+            nodes: grow(self.nodes, least.nodes, binding(4)),
+            tiles: grow(self.tiles, least.tiles, binding(4 * TILE_SAMPLES as usize)),
         }
     }
 }
@@ -101,6 +108,7 @@ impl Buffers {
             room,
             tiles: Pool::new(room.tiles),
             blocks: Pool::new(room.chunks as usize),
+            is_loading: false,
             fresh: Vec::new(),
             pending: Cell::new(false),
             made: Cell::new(false),
@@ -128,6 +136,10 @@ impl Buffers {
     pub fn load(&mut self, gpu: &Gpu, surface: &Surface, lattice: &Lattice) -> Result<Option<Room>> {
         let tiles: Vec<Tile> = lattice.chunks().iter().map(Tile::of).collect();
         let fits = tiles.len() <= self.room.chunks as usize && lattice.tree().nodes().len() <= self.room.nodes;
+        if std::mem::replace(&mut self.is_loading, true) {
+            self.tiles = Pool::new(self.room.tiles);
+            self.blocks = Pool::new(self.room.chunks as usize);
+        }
         let Some(Placed { places, missing }) = self.tiles.place(&tiles).filter(|_| fits) else {
             return Ok(Some(self.room.grown(Room::of(lattice))));
         };
@@ -145,7 +157,7 @@ impl Buffers {
             }
         }
         let pyramid = surface.pyramid()?;
-        let (blocks, fresh) = self.place_vertices(lattice.chunks());
+        let (blocks, fresh) = self.place_vertices(lattice.chunks())?;
         let chunks = lattice.chunks().iter().zip(places).zip(blocks);
         let chunks: Vec<_> =
             chunks.map(|((chunk, tile), block)| ChunkUniform::new(*chunk, pyramid, tile, block)).collect();
@@ -155,23 +167,26 @@ impl Buffers {
         self.fresh = fresh;
         gpu.queue.write_buffer(self.get("nodes")?, 0, bytemuck::cast_slice(lattice.tree().nodes()));
         gpu.check()?;
+        self.is_loading = false;
         Ok(None)
     }
 
     /// Of each chunk the block of its vertices; and the slots of those whose vertices are not there yet.
-    fn place_vertices(&mut self, chunks: &[Chunk]) -> (Vec<u32>, Vec<u32>) {
+    fn place_vertices(&mut self, chunks: &[Chunk]) -> Result<(Vec<u32>, Vec<u32>)> {
         let slots = 0..chunks.len() as u32;
         if !self.room.keeps_vertices() {
-            return (slots.clone().map(|slot| slot % BATCH_CHUNKS).collect(), slots.collect());
+            return Ok((slots.clone().map(|slot| slot % BATCH_CHUNKS).collect(), slots.collect()));
         }
         if self.pending.get() {
             // The last ones were never made.
             self.blocks = Pool::new(self.room.chunks as usize);
         }
-        let Some(Placed { places, missing }) = self.blocks.place(chunks) else { return Default::default() };
+        let Some(Placed { places, missing }) = self.blocks.place(chunks) else {
+            return Err(Error::Gpu { what: format!("no room for the vertices of {} chunks", chunks.len()) });
+        };
         let missing: HashSet<u32> = missing.into_iter().map(|(block, _)| block).collect();
         let fresh = slots.filter(|slot| missing.contains(&places[*slot as usize])).collect();
-        (places, fresh)
+        Ok((places, fresh))
     }
 
     /// How many chunks have no vertices yet.
@@ -229,7 +244,7 @@ impl Buffers {
                 size: wgpu::BufferSize::new(size_of::<BatchUniform>() as u64),
             })),
             "facing" => {
-                let part = ["facing_0", "facing_1", "facing_2", "facing_3"][batch.part() as usize];
+                let part = ["facing_0", "facing_1"][batch.part() as usize];
                 Some(self.named.get(part)?.as_entire_binding())
             }
             _ => Some(self.named.get(name)?.as_entire_binding()),

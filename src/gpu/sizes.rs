@@ -16,7 +16,7 @@ pub const BLOCK: [u32; 2] = [4, 8];
 /// Bytes of a list before its items: workgroups along x, y and z, and the count.
 pub const LIST_HEADER: u64 = 16;
 /// The parts of the facing bits.
-const FACING: [&str; 4] = ["facing_0", "facing_1", "facing_2", "facing_3"];
+const FACING: [&str; 2] = ["facing_0", "facing_1"];
 
 /// Whether a page can be drawn in one piece.
 ///

@@ -21,7 +21,8 @@ pub const ERROR_PX: f64 = 0.15;
 /// How many times as long as their largest deviation sides of facets may be on the page: lines may end wrongly by as much,
 /// however little the facets deviate.
 const SIDES: f64 = 25.0;
-/// How many times as far facets may deviate where all face the eye, or all face away: no line runs there.
+/// How many times as far facets may deviate where all face the eye, or all face away, and no rim is near: no line runs
+/// inside, at most along the edge, whose other side is finer or faces the other way as surely.
 const CALM: f64 = 4.0;
 /// How many times as far as their deviation facets may leave a patch whose sides bend this way and that.
 const BENDS: f64 = 2.2;
@@ -31,7 +32,8 @@ const BENDS: f64 = 2.2;
 pub enum Detail {
     /// Of one level everywhere.
     Uniform(Level),
-    /// Each chunk of its own level, so that facets deviate from the surface by at most so many pixels on the page.
+    /// Each chunk of its own level, so that facets deviate from the surface by at most so many pixels on the page where a
+    /// line may run, and four times as many elsewhere.
     Adaptive {
         /// Pixels, above 0.
         error_px: f64,
@@ -113,6 +115,8 @@ struct Demand<'a> {
     pyramid: &'a Pyramid,
     view: View,
     has_voids: bool,
+    /// Lattice place of the last sample.
+    end: [u32; 2],
     /// `None` where all land counts as seen.
     horizon: Option<Horizon>,
     /// Largest deviation for each metre of distance, metres.
@@ -139,6 +143,7 @@ impl<'a> Demand<'a> {
                 inward: [&[forward][..], &sides, &ends].concat(),
             },
             has_voids: surface.dem().voids() > 0,
+            end: [surface.dem().columns(), surface.dem().rows()].map(|samples| (samples as u32 - 1) * CELL_STEPS),
             horizon: Horizon::new(surface, camera),
             tolerance: error_px / corner,
             widest: SIDES * error_px / corner / surface.dem().cell().max_element() * f64::from(CELL_STEPS),
@@ -166,8 +171,13 @@ impl<'a> Demand<'a> {
             && quarters.all(|[x, y]| self.below_horizon([origin[0] + x, origin[1] + y], step / 2, depth - 1))
     }
 
-    /// Whether all facets of a square, at every level, face the eye, or all face away.
-    fn faces_one_way(&self, origin: [u32; 2], step: u32, [low, high]: [DVec3; 2]) -> bool {
+    /// Whether all facets of a square, at every level, face the eye, or all face away, and none has a side on the rim.
+    fn is_calm(&self, origin: [u32; 2], step: u32, [low, high]: [DVec3; 2]) -> bool {
+        let end = origin.map(|at| at + CHUNK_QUADS * step);
+        let inside = (0..2).all(|axis| origin[axis] > 0 && end[axis] < self.end[axis]);
+        if !inside || self.has_voids && self.pyramid.fences(origin, step).is_none() {
+            return false;
+        }
         let to_eye = [self.view.eye - high, self.view.eye - low];
         // How far the eye may lie above the plane of a facet.
         let [[a, b], [c, d]] = self.pyramid.slopes(origin, step).map(|slope| to_eye.map(|way| slope * way.truncate()));
@@ -222,7 +232,7 @@ impl Growth for Demand<'_> {
             self.hidden.insert((origin, size));
             return false;
         }
-        let calm = self.faces_one_way(origin, step, bounds);
+        let calm = self.is_calm(origin, step, bounds);
         let distance = self.distance(bounds) * if calm { CALM } else { 1.0 };
         deviation > self.tolerance * distance || f64::from(step) > self.widest * distance
     }

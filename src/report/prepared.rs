@@ -26,10 +26,14 @@ use crate::surface::{Pyramid, PyramidBuilder, Surface, SurfaceBand};
 /// The code that the content depends on: when it changes, older files are no longer found.
 const CODE: &str = concat!(
     include_str!("prepared.rs"),
+    include_str!("../dem/filed.rs"),
     include_str!("../dem/overviews.rs"),
+    include_str!("../dem/samples.rs"),
     include_str!("../dem/survey.rs"),
     include_str!("../surface/bounds.rs"),
+    include_str!("../surface/lattice.rs"),
     include_str!("../surface/normals.rs"),
+    include_str!("../surface/patch.rs"),
     include_str!("../surface/pyramid.rs"),
 );
 

@@ -38,7 +38,7 @@ pub(super) struct Bounds {
     /// See [`Bulge`](super::patch::Bulge).
     pub limit: f64,
     pub flat: f64,
-    /// Least dz/d east and dz/d north of them and of all their facets.
+    /// Least dz/d east and dz/d north of the sides of facets.
     pub least_slopes: [f64; 2],
     pub most_slopes: [f64; 2],
 }
@@ -194,7 +194,7 @@ fn of_patch(heights: [Lanes; 3], sides: [[Vectors; 2]; 3], legs: [[usize; 2]; 2]
     BoundsOfCells { low, high, limit, flat, slopes }
 }
 
-/// Least and largest slope along a leg, from corner a to corner b, of patches and all their facets. Facets have sides along
+/// Least and largest slope along a leg, from corner a to corner b, of patches. Facets have sides along
 /// east and north, chords of the patch or of several: their slopes lie between those of the control points' first
 /// differences. `leaves`: by which vector the control point beside one corner on the way to another leaves the flat
 /// triangle, `centre`: the one in the middle.

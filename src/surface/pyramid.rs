@@ -57,8 +57,9 @@ pub struct Relief {
     pub beyond: f32,
 }
 
-/// Between which slopes the surface and all facets over a square lie, rounded outwards: s = q / (127 - |q|) dz/d east and
-/// dz/d north.
+/// Between which slopes the sides of facets along east and along north lie over a square, rounded outwards:
+/// s = q / (127 - |q|) dz/d east and dz/d north. On steep and rough land control points lie aside, and a facet may lean a
+/// little more.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 struct Slopes {
@@ -214,7 +215,7 @@ impl Pyramid {
         Relief { low, high, beyond: bulge }
     }
 
-    /// Lowest and highest dz/d east and dz/d north of the surface and all facets of the chunk at `origin`.
+    /// Lowest and highest slope dz/d east and dz/d north of the sides of facets of the chunk at `origin`.
     pub fn slopes(&self, origin: [u32; 2], step: u32) -> [DVec2; 2] {
         self.square(origin, step).slopes.range()
     }

@@ -154,8 +154,8 @@ impl Quadtree {
     fn larger_beside(&self, (corner, size): Square, around: [i64; 2]) -> Option<(usize, Square)> {
         let at = [0, 1].map(|axis| i64::from(corner[axis]) + around[axis] * i64::from(size));
         let inside = |axis: usize| (0..i64::from(self.roots[axis]) * i64::from(self.root_size)).contains(&at[axis]);
-        let in_same_parent =
-            |axis: usize| at[axis] & -2 * i64::from(size) == i64::from(corner[axis]) & -2 * i64::from(size);
+        let in_parent = |at: i64| at & !(2 * i64::from(size) - 1);
+        let in_same_parent = |axis: usize| in_parent(at[axis]) == in_parent(i64::from(corner[axis]));
         // In the same parent squares are no larger, nor is anything larger than a root.
         if size == self.root_size || !(inside(0) && inside(1)) || in_same_parent(0) && in_same_parent(1) {
             return None;
