@@ -7,6 +7,11 @@ cd "$(dirname "$0")/.."
 size=${1:-1280x720}
 views=${HACHURE_VIEWS:-../shared/views.json}
 dems=${HACHURE_DEMS:-$(dirname "$views")/dem}
+# Tests that need shared terrain say so where there is none.
+if [ -d "$dems" ]; then
+    HACHURE_DEMS=$(cd "$dems" && pwd)
+    export HACHURE_DEMS
+fi
 . examples/setup.sh
 cargo build --release
 failed=0
