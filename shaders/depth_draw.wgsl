@@ -1,5 +1,5 @@
-// The hardware's own way, beside which the time of a frame stands: one invocation a vertex that `tessellate` and `seam`
-// left, one a covered pixel of a facet. Fixed function does the rest: coverage and the nearest depth.
+// The hardware's own way, beside which the time of a frame stands: one invocation a vertex that `project` left,
+// one a covered pixel of a facet. Fixed function does the rest: coverage and the nearest depth.
 
 struct Corner {
     @builtin(position) place: vec4<f32>,

@@ -64,6 +64,7 @@ struct Loaded {
     lattice: Lattice,
     has_seams: bool,
     batches: Vec<Batch>,
+    /// For what the passes are compiled.
     room: Room,
     buffers: Buffers,
     stages: Stages,

@@ -1,6 +1,7 @@
 //! What Rust and WGSL both say, they say alike: structs, constants, bindings, the lattice. Read from the composed
 //! shaders by naga, and from the device by wrapper kernels that return what a WGSL function returns.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::mem::offset_of;
 
@@ -22,26 +23,26 @@ use crate::scenes::level;
 mod on_device;
 
 /// Entry point and source of every composed shader.
-fn shaders() -> Vec<(&'static str, &'static str)> {
+fn shaders() -> Vec<(&'static str, Cow<'static, str>)> {
     let mut all = vec![
-        ("tessellate", tessellate::SOURCE),
-        ("facing", facing::SOURCE),
-        ("border", border::SOURCE),
-        ("compose", compose::SOURCE),
-        ("adjacency", adjacency::SOURCE),
-        ("toward_away", toward_away::SOURCE),
-        ("candidates", candidates::SOURCE),
-        ("pairs", pairs::SOURCE),
-        ("walk", walk::source(true)),
-        ("walk", walk::source(false)),
-        ("walk_rest", walk_rest::source(true)),
-        ("walk_rest", walk_rest::source(false)),
-        ("seam", seam::SOURCE),
-        ("project", project::SOURCE),
+        ("tessellate", tessellate::SOURCE.into()),
+        ("facing", facing::SOURCE.into()),
+        ("border", border::SOURCE.into()),
+        ("compose", compose::SOURCE.into()),
+        ("adjacency", adjacency::SOURCE.into()),
+        ("toward_away", toward_away::SOURCE.into()),
+        ("candidates", candidates::SOURCE.into()),
+        ("pairs", pairs::SOURCE.into()),
+        ("walk", walk::source(true).into()),
+        ("walk", walk::source(false).into()),
+        ("walk_rest", walk_rest::source(true).into()),
+        ("walk_rest", walk_rest::source(false).into()),
+        ("seam", seam::SOURCE.into()),
+        ("project", project::SOURCE.into()),
     ];
     for visibility in [Visibility::Key64, Visibility::Key32, Visibility::TwoDepths] {
-        all.push(("rasterize", rasterize::source(visibility)));
-        all.push(("rasterize_large", rasterize_large::source(visibility)));
+        all.push(("rasterize", rasterize::source(visibility).into()));
+        all.push(("rasterize_large", rasterize_large::source(visibility).into()));
     }
     all
 }
@@ -167,7 +168,7 @@ fn globals_with_vec3(module: &naga::Module) -> Vec<String> {
 fn every_composed_shader_is_valid_and_agrees_with_rust() {
     let mut seen = Vec::new();
     for (name, source) in shaders() {
-        let reflection = reflect(name, source).expect("valid WGSL with this entry point");
+        let reflection = reflect(name, &source).expect("valid WGSL with this entry point");
         assert!(!reflection.bindings.is_empty(), "{name} binds nothing");
         assert!(reflection.workgroup.iter().product::<u32>() >= 32, "{name}: {:?}", reflection.workgroup);
         let (found, differ) = differences(&reflection.module);
@@ -193,7 +194,7 @@ fn the_depth_draw_binds_what_our_passes_leave() {
 fn one_name_has_one_value_in_all_shaders() {
     let mut values = BTreeMap::new();
     for (name, source) in shaders() {
-        for (constant, value) in constants(&reflect(name, source).expect("valid WGSL").module) {
+        for (constant, value) in constants(&reflect(name, &source).expect("valid WGSL").module) {
             let first = *values.entry(constant.clone()).or_insert(value);
             assert_eq!(first, value, "{constant} in {name}");
         }

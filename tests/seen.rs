@@ -7,6 +7,7 @@ use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
 use hachure::plan::{Border, Detail, Plan, Thrift, detail};
 use hachure::render::Renderer;
+use hachure::surface::lattice::CHUNK_FACETS;
 use hachure::surface::{Chunk, Lattice, LatticePoint, Surface};
 use hachure::view::Camera;
 
@@ -40,7 +41,19 @@ fn winners(renderer: &Renderer<'_>, camera: &Camera) -> Vec<[LatticePoint; 3]> {
     ids.into_iter().filter(|id| *id > 0).map(|id| renderer.lattice().facet(id - 1)).collect()
 }
 
-/// How many of these facets lie in chunks that deviate more than allowed; and of how many chunks of all that is so.
+/// Whether all facets of a chunk face an eye, or all face away.
+fn faces_one_way(surface: &Surface, chunk: &Chunk, eye: DVec3) -> bool {
+    let faces = |[a, b, c]: [LatticePoint; 3]| {
+        let [a, b, c] = [surface.position(a)?, surface.position(b)?, surface.position(c)?];
+        Some((b - a).cross(c - a).dot(eye - a) > 0.0)
+    };
+    let mut all = (0..CHUNK_FACETS).map(|local| chunk.facet(local)).filter(|[a, b, c]| a != b && b != c && c != a);
+    let first = faces(chunk.facet(CHUNK_FACETS / 2));
+    first.is_some() && all.all(|facet| faces(facet) == first)
+}
+
+/// How many of these facets lie in chunks that deviate more than allowed: more than away from lines, or than near them
+/// and yet facets face both ways. And of how many chunks of all the first is so.
 fn coarse(
     surface: &Surface,
     lattice: &Lattice,
@@ -49,10 +62,11 @@ fn coarse(
     seen: &[[LatticePoint; 3]],
 ) -> [usize; 2] {
     let pyramid = surface.pyramid().expect("in memory");
-    let allowed = AWAY_FROM_LINES * tolerance(camera, error_px) * 1.001;
+    let allowed = tolerance(camera, error_px) * 1.001;
     let deviates = |chunk: &Chunk, distance: f64| {
         chunk.step > 1 && pyramid.deviation(chunk.origin, chunk.step) > allowed * distance
     };
+    let mut one_way = HashMap::new();
     let squares: HashMap<[u32; 2], u32> =
         leaves(lattice).into_iter().map(|(corner, size, slot)| (corner, slot << 8 | size.ilog2())).collect();
     let chunk_of = |at: [u32; 2]| {
@@ -64,7 +78,9 @@ fn coarse(
         let chunk = chunk_of(
             [facet.map(|at| at.x).into_iter().min(), facet.map(|at| at.y).into_iter().min()].map(|v| v.expect("three")),
         );
-        deviates(&chunk, points.into_iter().fold(f64::INFINITY, f64::min))
+        let distance = points.into_iter().fold(f64::INFINITY, f64::min);
+        let mut is_calm = || *one_way.entry(chunk).or_insert_with(|| faces_one_way(surface, &chunk, camera.eye));
+        deviates(&chunk, AWAY_FROM_LINES * distance) || deviates(&chunk, distance) && !is_calm()
     };
     let zero = surface.dem().position(0, 0).with_z(0.0);
     let far = |chunk: &&Chunk| {
@@ -76,7 +92,7 @@ fn coarse(
             && place.y > 0.0
             && place.x < f64::from(PAGE[0])
             && place.y < f64::from(PAGE[1]);
-        on_page && deviates(chunk, (camera.eye - zero).clamp(low, high).distance(camera.eye - zero))
+        on_page && deviates(chunk, AWAY_FROM_LINES * (camera.eye - zero).clamp(low, high).distance(camera.eye - zero))
     };
     [seen.iter().filter(wrong).count(), lattice.chunks().iter().filter(far).count()]
 }

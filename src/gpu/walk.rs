@@ -4,12 +4,9 @@ use super::{Extent, Gpu, Pass};
 use crate::error::Result;
 
 /// The composed shader, for frames whose vertices are all at hand, or those of one batch at a time.
-pub fn source(keeps_vertices: bool) -> &'static str {
-    if keeps_vertices {
-        crate::shader!("scene", "lattice", "surface", "vertex_kept", "wide", "ink", "list", "levels", "walk")
-    } else {
-        crate::shader!("scene", "lattice", "surface", "vertex_anew", "wide", "ink", "list", "levels", "walk")
-    }
+pub fn source(keeps_vertices: bool) -> String {
+    let vertices = if keeps_vertices { crate::shader!("vertex_kept") } else { crate::shader!("vertex_anew") };
+    [crate::shader!("scene", "lattice", "surface", "wide", "ink", "list", "levels", "walk"), vertices].concat()
 }
 
 /// One invocation a pixel with open pairs.
@@ -20,5 +17,5 @@ pub const EXTENT: Extent = Extent::List("pairs");
 /// # Errors
 /// See [`Pass::new`].
 pub fn pass(gpu: &Gpu, keeps_vertices: bool, constants: &[(&str, f64)]) -> Result<Pass> {
-    Pass::new(gpu, "walk", source(keeps_vertices), constants)
+    Pass::new(gpu, "walk", &source(keeps_vertices), constants)
 }

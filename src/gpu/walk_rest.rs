@@ -1,37 +1,11 @@
 //! Pass `walk_rest`: the pairs that `walk` leaves, with pixels without surface and past facets beside coarser chunks.
 
-use super::{Extent, Gpu, Pass};
+use super::{Extent, Gpu, Pass, walk};
 use crate::error::Result;
 
-/// The composed shader, for frames whose vertices are all at hand, or those of one batch at a time.
-pub fn source(keeps_vertices: bool) -> &'static str {
-    if keeps_vertices {
-        crate::shader!(
-            "scene",
-            "lattice",
-            "surface",
-            "vertex_kept",
-            "wide",
-            "ink",
-            "list",
-            "levels",
-            "walk",
-            "walk_rest"
-        )
-    } else {
-        crate::shader!(
-            "scene",
-            "lattice",
-            "surface",
-            "vertex_anew",
-            "wide",
-            "ink",
-            "list",
-            "levels",
-            "walk",
-            "walk_rest"
-        )
-    }
+/// The composed shader: that of `walk`, and what is left.
+pub fn source(keeps_vertices: bool) -> String {
+    [walk::source(keeps_vertices).as_str(), crate::shader!("walk_rest")].concat()
 }
 
 /// One invocation a pixel with such pairs.
@@ -42,5 +16,5 @@ pub const EXTENT: Extent = Extent::List("rest");
 /// # Errors
 /// See [`Pass::new`].
 pub fn pass(gpu: &Gpu, keeps_vertices: bool, constants: &[(&str, f64)]) -> Result<Pass> {
-    Pass::new(gpu, "walk_rest", source(keeps_vertices), &[constants, &[("defers", 0.0)]].concat())
+    Pass::new(gpu, "walk_rest", &source(keeps_vertices), &[constants, &[("defers", 0.0)]].concat())
 }

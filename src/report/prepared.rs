@@ -35,6 +35,7 @@ const CODE: &str = concat!(
     include_str!("../surface/normals.rs"),
     include_str!("../surface/patch.rs"),
     include_str!("../surface/pyramid.rs"),
+    include_str!("../surface/slopes.rs"),
 );
 
 /// What stands before the thinned samples.

@@ -7,6 +7,7 @@ pub mod patch;
 pub mod pyramid;
 pub mod quadtree;
 pub mod rim;
+mod slopes;
 pub mod tile;
 
 pub use lattice::{Chunk, Lattice, LatticePoint, Level};
