@@ -9,7 +9,7 @@ pub type Result<T> = std::result::Result<T, Error>;
 #[derive(Debug, Clone, thiserror::Error)]
 pub enum Error {
     /// A file that cannot be used as a DEM.
-    #[error("{}: {what}; {remedy}", path.display())]
+    #[error("{}: {what}; {remedy}", shown(path))]
     Input {
         /// The file as the user named it.
         path: PathBuf,
@@ -29,7 +29,7 @@ pub enum Error {
         remedy: String,
     },
     /// A file that cannot be written.
-    #[error("{}: cannot be written ({what}); choose another output path", path.display())]
+    #[error("{}: cannot be written ({what}); choose another output path", shown(path))]
     Output {
         /// The file as the user named it.
         path: PathBuf,
@@ -101,7 +101,63 @@ impl Error {
     }
 }
 
-/// One line without control characters: files may hold names that would move the cursor of a terminal.
+/// A path as it is printed, everywhere: on one line, with what would move the cursor of a terminal or turn its text
+/// around escaped, as `\n`, `\x1b` or `\u{202e}`, and bytes that are no UTF-8 as `\xff`.
+pub fn shown(path: &Path) -> String {
+    let mut text = String::new();
+    for part in path.as_os_str().as_encoded_bytes().utf8_chunks() {
+        text += &plain(part.valid().to_owned());
+        part.invalid().iter().for_each(|byte| text += &format!("\\x{byte:02x}"));
+    }
+    text
+}
+
+/// One line that moves nothing on a terminal, with the escapes of [`shown`]: files may hold such names too.
 pub(crate) fn plain(text: String) -> String {
-    if text.contains(char::is_control) { text.replace(char::is_control, " ") } else { text }
+    if !text.contains(is_unprintable) {
+        return text;
+    }
+    let mut plain = String::with_capacity(text.len() + 8);
+    for c in text.chars() {
+        match c {
+            '\n' | '\r' | '\t' => plain.extend(c.escape_default()),
+            '\0'..='\x1f' | '\x7f' => plain += &format!("\\x{:02x}", u32::from(c)),
+            _ if is_unprintable(c) => plain.extend(c.escape_unicode()),
+            _ => plain.push(c),
+        }
+    }
+    plain
+}
+
+/// Control characters (C0, DEL, C1), separators of lines and paragraphs, and marks that turn the direction of writing.
+fn is_unprintable(c: char) -> bool {
+    let turns = matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    c.is_control() || turns || matches!(c, '\u{2028}' | '\u{2029}')
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_path_is_shown_on_one_line_that_moves_nothing() {
+        let cases = [
+            ("dem/näh é.tif", "dem/näh é.tif"),
+            ("a\nb\tc\rd", r"a\nb\tc\rd"),
+            ("\x1b[31mred\x07\x7f", r"\x1b[31mred\x07\x7f"),
+            ("\u{9b}2J", r"\u{9b}2J"),
+            ("a\u{202e}fit.b\u{2066}\u{200f}\u{2028}", r"a\u{202e}fit.b\u{2066}\u{200f}\u{2028}"),
+        ];
+        for (name, wanted) in cases {
+            assert_eq!(shown(Path::new(name)), wanted);
+        }
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn bytes_that_are_no_text_are_shown_as_numbers() {
+        use std::os::unix::ffi::OsStrExt;
+        let name = std::ffi::OsStr::from_bytes(b"gr\xfcn\x9b.tif");
+        assert_eq!(shown(Path::new(name)), r"gr\xfcn\x9b.tif");
+    }
 }

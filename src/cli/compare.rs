@@ -11,7 +11,7 @@ use super::terrain::TerrainArguments;
 use super::values::{self, LevelChoice, Size};
 use super::viewpoint::{View, ViewArguments};
 use super::views::{self, NamedView};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, shown};
 use crate::gpu::sizes::page_fits;
 use crate::gpu::{Gpu, depth_draw};
 use crate::plan::detail::ERROR_PX;
@@ -163,7 +163,7 @@ pub fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
     };
     let page = folder.page();
     folder.publish(&contents(&results, &pictures)?, &pictures)?;
-    talk.say(&format!("report: {}", page.display()))
+    talk.say(&format!("report: {}", shown(&page)))
 }
 
 impl CompareArguments {
@@ -208,7 +208,7 @@ impl CompareArguments {
             jobs.push(Job { files: vec![dem.clone()], views: of_dem });
         }
         views.iter().try_for_each(|view| {
-            talk.say(&format!("view {} passed over: {} is not among the DEMs given", view.name, view.dem.display()))
+            talk.say(&format!("view {} passed over: {} is not among the DEMs given", view.name, shown(&view.dem)))
         })?;
         jobs.retain(|job| !job.views.is_empty());
         if jobs.is_empty() {
@@ -228,7 +228,7 @@ impl CompareArguments {
         let (dem, camera) = (surface.dem(), &view.camera);
         let scene = Scene {
             name,
-            dem: files.iter().map(|file| file.display().to_string()).collect(),
+            dem: files.iter().map(|file| file.to_string_lossy().into_owned()).collect(),
             columns: dem.columns(),
             rows: dem.rows(),
             cell_m: dem.cell().to_array(),

@@ -15,7 +15,7 @@ use super::terrain::TerrainArguments;
 use super::values::{self, LevelChoice};
 use super::viewpoint::{View, ViewArguments, ViewReport};
 use crate::dem::Dem;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, shown};
 use crate::gpu::Gpu;
 use crate::ink::{self, Style};
 use crate::plan::detail::ERROR_PX;
@@ -63,8 +63,10 @@ pub struct DrawArguments {
     /// Subdivisions of a cell's edge: 1, 2, 4, 8, 16, 32 or 64; auto: each part of the DEM as fine as the page shows
     #[arg(long, value_name = "N|auto", value_parser = values::level_choice, default_value = "auto", help_heading = "Surface")]
     level: LevelChoice,
-    /// --level auto only: how far facets may deviate from the surface on the page, in pixels [default: 0.2]
-    #[arg(long, value_name = "PX", value_parser = values::error_px, help_heading = "Surface")]
+    #[arg(
+        long, value_name = "PX", value_parser = values::error_px, help_heading = "Surface",
+        help = format!("--level auto only: how far facets may deviate from the surface on the page, in pixels [default: {ERROR_PX}]")
+    )]
     error_px: Option<f64>,
 
     /// How silhouettes are found
@@ -73,8 +75,10 @@ pub struct DrawArguments {
     /// toward-away only: away surface counts wherever it touches the pixel or the neighbour it is compared with
     #[arg(long, help_heading = "Method")]
     wide: bool,
-    /// adjacency only: what neighbouring facets share [default: edge]
-    #[arg(long, help_heading = "Method")]
+    #[arg(
+        long, help_heading = "Method",
+        help = format!("adjacency only: what neighbouring facets share [default: {}]", name(Share::default()))
+    )]
     share: Option<Share>,
     /// Whether to draw the visible border of the DEM and of its voids
     #[arg(long, default_value = "on", help_heading = "Method")]
@@ -95,6 +99,11 @@ enum MethodName {
     TowardAway,
     /// Compare the facets of neighbouring pixels: floods small facets
     Adjacency,
+}
+
+/// What is typed for a choice.
+fn name(choice: impl ValueEnum) -> String {
+    choice.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
 }
 
 /// `--json`.
@@ -183,7 +192,7 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     outputs.publish()?;
     talk.say(&format!(
         "{}: {} facets, {} of {} pixels inked, {:.2} s",
-        arguments.outputs.drawing().display(),
+        shown(arguments.outputs.drawing()),
         renderer.facets(),
         page.marks.inked(),
         u64::from(view.camera.width) * u64::from(view.camera.height),
@@ -269,7 +278,7 @@ fn explain(talk: &Talk, renderer: &Renderer<'_>, left_out: &[LeftOut], report: O
 impl DemReport {
     fn of(files: &[PathBuf], dem: &Dem) -> Self {
         Self {
-            files: files.iter().map(|file| file.display().to_string()).collect(),
+            files: files.iter().map(|file| file.to_string_lossy().into_owned()).collect(),
             columns: dem.columns(),
             rows: dem.rows(),
             cell_m: dem.cell().to_array(),

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, shown};
 use crate::ink::{self, Output};
 use crate::render::Page;
 
@@ -57,7 +57,7 @@ impl OutputArguments {
             let target = output.target().map(|t| std::path::absolute(t).unwrap_or_else(|_| t.to_owned()));
             if taken.contains(&target) {
                 let what = match target {
-                    Some(_) => format!("{} is the DEM or another output", path.display()),
+                    Some(_) => format!("{} is the DEM or another output", shown(path)),
                     None => "standard output is another output already".into(),
                 };
                 return Err(Error::flag(flag, what, "give each file a name of its own"));
@@ -125,5 +125,5 @@ fn wants_png(flag: &'static str, path: &Path) -> Result<()> {
     if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("png")) {
         return Ok(());
     }
-    Err(Error::flag(flag, format!("{} does not end in .png", path.display()), "name it .png"))
+    Err(Error::flag(flag, format!("{} does not end in .png", shown(path)), "name it .png"))
 }

@@ -19,7 +19,7 @@ use std::time::{Duration, Instant};
 use clap::builder::Styles;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, plain};
 use crate::ink::Output;
 
 /// Work that lasts no longer shows no progress.
@@ -106,9 +106,9 @@ impl Talk {
     pub fn say(&self, line: &str) -> Result<()> {
         match self.lines {
             _ if self.loudness == Loudness::Quiet => Ok(()),
-            Lines::Stdout => self.answer(line),
+            Lines::Stdout => self.answer(&plain(line.to_owned())),
             Lines::Stderr => {
-                self.aside(line);
+                self.aside(&plain(line.to_owned()));
                 Ok(())
             }
         }
@@ -126,7 +126,7 @@ impl Talk {
     pub fn warn(&self, line: &str) {
         if self.loudness > Loudness::Quiet {
             let yellow = STYLES.get_invalid().bold();
-            self.aside(&format!("{yellow}warning:{yellow:#} {line}"));
+            self.aside(&format!("{yellow}warning:{yellow:#} {}", plain(line.to_owned())));
         }
     }
 
@@ -134,7 +134,7 @@ impl Talk {
     pub fn error(&self, error: &Error) {
         self.finish_bar();
         let red = STYLES.get_error();
-        self.aside(&format!("{red}error:{red:#} {error}"));
+        self.aside(&format!("{red}error:{red:#} {}", plain(error.to_string())));
     }
 
     /// How far a stage of the work has come, from 0 to 1, which ends it. A bar appears on a terminal once the work has

@@ -17,7 +17,7 @@ pub struct TerrainArguments {
     /// Take a part only: west, south, east, north in the CRS of the DEM (metres, feet or degrees, as it has them)
     #[arg(long, value_name = "E0,N0,E1,N1", value_parser = values::crop, allow_hyphen_values = true, help_heading = "Surface")]
     crop: Option<[f64; 4]>,
-    /// The band with the elevations, from 1 [default: 1]
+    /// The band with the elevations, from 1 [default: the first]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..), help_heading = "Surface")]
     band: Option<u16>,
     /// Metres between samples, for a DEM that does not say where it lies (an image)

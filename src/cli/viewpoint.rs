@@ -16,6 +16,8 @@ use crate::view::{Camera, Fixed, choose, direction};
 const DEGREE_DECIMALS: i32 = 8;
 /// Decimals of other printed coordinates.
 const METRE_DECIMALS: i32 = 3;
+/// By how much an eye that is printed with them may be off, and a little more for what f32 rounds: metres.
+const ROUNDED: f64 = 0.001;
 
 /// The flags, as typed.
 #[derive(Debug, Clone, clap::Args)]
@@ -39,7 +41,7 @@ pub struct ViewArguments {
     /// Direction of view, degrees clockwise from grid north [default: towards the middle of the DEM]
     #[arg(long, value_name = "DEG", value_parser = values::azimuth, allow_hyphen_values = true)]
     azimuth: Option<f64>,
-    /// Direction of view, degrees above the horizon, -90 to 90 [default: 0 from a given eye]
+    /// Direction of view, degrees above the horizon, -90 to 90 [default: level, from a given eye]
     #[arg(long, value_name = "DEG", value_parser = values::altitude, allow_hyphen_values = true)]
     altitude: Option<f64>,
     /// Horizontal field of view, degrees
@@ -208,14 +210,14 @@ impl View {
         format!("--eye {x},{y},{} --azimuth {azimuth} --altitude {altitude} --fov {fov} --size {width}x{height}", eye.z)
     }
 
-    /// Warns where the eye is below the ground of that level.
+    /// Warns where the eye is below the ground of that level, by more than eyes are rounded.
     pub fn warn_below_ground(&self, surface: &Surface, level: Level, talk: &Talk) {
         let eye = self.camera.eye;
-        if let Some(ground) = surface.height_below(eye.truncate(), level)
-            && eye.z < ground
-        {
-            let depth = ground - eye.z;
-            talk.warn(&format!("the eye is {depth:.1} m below the ground; give --eye E,N,+H to stand above it"));
+        let below = surface.height_below(eye.truncate(), level).map(|ground| ground - eye.z);
+        if let Some(depth) = below.filter(|depth| *depth > ROUNDED) {
+            let decimals = if depth < 0.1 { METRE_DECIMALS as usize } else { 1 };
+            let depth = format!("{depth:.decimals$}");
+            talk.warn(&format!("the eye is {depth} m below the ground; give --eye E,N,+H to stand above it"));
         }
     }
 
@@ -289,11 +291,17 @@ fn above(surface: &Surface, level: Level, place: DVec2, height: Height, flag: &'
     match height {
         Height::Absolute(z) => Ok(place.extend(z)),
         Height::AboveGround(h) => match surface.height_below(place, level) {
-            // To the millimetre, so that it prints short.
-            Some(ground) => Ok(place.extend(((ground + h) * 1e3).round() / 1e3)),
+            Some(ground) => Ok(place.extend(to_millimetre(ground, h))),
             None => Err(no_ground(surface, place, flag)),
         },
     }
+}
+
+/// Metres `h` above the ground, to the millimetre, so that it prints short; never below the ground unless that was asked.
+fn to_millimetre(ground: f64, h: f64) -> f64 {
+    let millimetres = (ground + h) * 1e3;
+    let rounded = millimetres.round() / 1e3;
+    if h >= 0.0 && rounded < ground { millimetres.ceil() / 1e3 } else { rounded }
 }
 
 fn no_ground(surface: &Surface, place: DVec2, flag: &'static str) -> Error {

@@ -7,7 +7,7 @@ use glam::{DAffine2, DMat2, DVec2};
 use super::crs::Crs;
 use super::history::History;
 use super::source::{Source, heard};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, shown};
 
 /// How far, in cells, a row may leave its line before the grid counts as turned: rounding of file formats.
 const STRAIGHT_CELLS: f64 = 1e-3;
@@ -254,7 +254,7 @@ fn assumed_crs(degrees: bool) -> String {
 }
 
 fn has_place(source: &Source) -> Error {
-    let what = format!("{} says itself where it lies and how large its cells are", source.path.display());
+    let what = format!("{} says itself where it lies and how large its cells are", shown(&source.path));
     Error::flag("--cell", what, "leave it out, or use --resample for cells of another size")
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::error::plain;
+use crate::error::{plain, shown};
 
 /// Clauses on how a DEM came about, in the order in which things were done.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -45,7 +45,7 @@ impl History {
         let add = |list: &mut Vec<String>, clauses: Vec<String>| {
             let clauses: Vec<_> = clauses.into_iter().filter(|clause| !list.contains(clause)).collect();
             list.extend(clauses.into_iter().map(|clause| match path {
-                Some(path) => format!("{}: {clause}", path.display()),
+                Some(path) => format!("{}: {clause}", shown(path)),
                 None => clause,
             }));
         };

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use super::crs::Crs;
 use super::history::History;
 use super::read::{ReadOptions, Reading, Stage};
-use crate::error::Result;
+use crate::error::{Result, shown};
 
 /// What is known of a DEM after reading it whole. `Display` prints a few aligned lines.
 ///
@@ -93,7 +93,7 @@ impl Display for Info {
         let crs = name_of(&self.crs);
         for (i, path) in self.paths.iter().enumerate() {
             let driver = if i == 0 { format!(" ({})", self.driver) } else { String::new() };
-            writeln!(f, "file       {}{driver}", path.display())?;
+            writeln!(f, "file       {}{driver}", shown(path))?;
         }
         self.source.iter().try_for_each(|source| writeln!(f, "source     {source}"))?;
         writeln!(f, "size       {} columns x {} rows = {} samples", self.columns, self.rows, self.columns * self.rows)?;

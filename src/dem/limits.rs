@@ -10,7 +10,7 @@ use super::ReadOptions;
 use super::grid::Grid;
 use super::mosaic::Mosaic;
 use super::target::Target;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, shown};
 
 /// Most samples of a DEM held in memory: 128 MiB of heights, the largest buffer that every GPU binds.
 pub const MAX_SAMPLES: usize = 1 << 25;
@@ -68,7 +68,7 @@ impl Whole {
     fn reason(&self) -> String {
         match self {
             Self::Warped => "where they are warped".into(),
-            Self::Apart(path) => format!("where {} is warped to the grid of the first file", path.display()),
+            Self::Apart(path) => format!("where {} is warped to the grid of the first file", shown(path)),
             Self::Filled => "where voids are filled".into(),
         }
     }
@@ -90,7 +90,7 @@ pub(super) fn too_many(path: &Path, grid: &Grid, why: &Whole, metres: f64) -> Er
     let samples = *columns as u64 * *rows as u64;
     let reason = why.reason();
     Error::Limit {
-        what: format!("{}: {columns} x {rows} = {samples} samples, at most {MAX_SAMPLES} fit {reason}", path.display()),
+        what: format!("{}: {columns} x {rows} = {samples} samples, at most {MAX_SAMPLES} fit {reason}", shown(path)),
         remedy: format!(
             "{}, use --crop to take a part, or --resample {metres} for cells of {metres} m",
             why.remedy(grid)
@@ -102,7 +102,7 @@ fn over_budget(path: &Path, grid: &Grid, why: &Whole, memory: u64) -> Error {
     let samples = grid.columns as u64 * grid.rows as u64;
     let (needed, reason) = (held_bytes(samples).div_ceil(1 << 20), why.reason());
     Error::Limit {
-        what: format!("{}: needs {needed} MiB of memory {reason}, more than --memory allows", path.display()),
+        what: format!("{}: needs {needed} MiB of memory {reason}, more than --memory allows", shown(path)),
         remedy: format!("give --memory {needed}MiB (it is {} MiB), or {}", memory >> 20, why.remedy(grid)),
     }
 }
@@ -113,7 +113,7 @@ fn check_longest(path: &Path, grid: &Grid, metres: f64) -> Result<()> {
         return Ok(());
     }
     Err(Error::Limit {
-        what: format!("{}: {columns} x {rows} samples, at most {LARGEST_SIDE} along a side fit", path.display()),
+        what: format!("{}: {columns} x {rows} samples, at most {LARGEST_SIDE} along a side fit", shown(path)),
         remedy: format!("use --crop to take a part, or --resample {metres} for cells of {metres} m"),
     })
 }
@@ -133,7 +133,7 @@ pub(super) fn not_held([columns, rows]: [usize; 2]) -> Error {
 fn check_read(path: &Path, read: u64, held: u64) -> Result<()> {
     if read > MAX_READ {
         return Err(Error::Limit {
-            what: format!("{}: {read} samples would be read to be warped, at most {MAX_READ} fit", path.display()),
+            what: format!("{}: {read} samples would be read to be warped, at most {MAX_READ} fit", shown(path)),
             remedy: "use --crop to take a part, or make it coarser with `gdalwarp -tr M M -r average IN OUT.tif`"
                 .into(),
         });
@@ -144,7 +144,7 @@ fn check_read(path: &Path, read: u64, held: u64) -> Result<()> {
 fn check_memory(path: &Path, needed: u64, available: Option<u64>) -> Result<()> {
     match available {
         Some(available) if available < needed => Err(Error::Limit {
-            what: format!("{}: needs {} MiB of memory, {} MiB are free", path.display(), needed >> 20, available >> 20),
+            what: format!("{}: needs {} MiB of memory, {} MiB are free", shown(path), needed >> 20, available >> 20),
             remedy: "use --crop to take a part, or --resample M for larger cells".into(),
         }),
         _ => Ok(()),

@@ -100,7 +100,7 @@ impl Local {
     pub fn beside(&self, remote: &Path) -> Option<PathBuf> {
         let plain = self.before.is_empty() && self.after.is_empty() && !self.file.is_absolute();
         let (folder, _) = remote.to_str()?.rsplit_once('/')?;
-        plain.then(|| format!("{folder}/{}", self.file.display()).into())
+        plain.then(|| format!("{folder}/{}", self.file.to_string_lossy()).into())
     }
 
     /// The archive and the file in it in `inner`.

@@ -19,7 +19,7 @@ use gdal::{Dataset, DatasetOptions, GdalOpenFlags, Metadata, config};
 use super::formats::{self, FORMATS, VECTORS};
 use super::name::{Local, Name, Place};
 use super::vrt;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, shown};
 
 thread_local! {
     /// The first complaint of GDAL on this thread since `heard` last began.
@@ -114,7 +114,7 @@ impl Source {
         let absolute = name.to_string_lossy();
         let listed = self.dataset.metadata_domain("SUBDATASETS").unwrap_or_default();
         let grids = listed.iter().filter_map(|line| line.split_once("_NAME=").map(|(_, grid)| grid));
-        let shown = self.path.to_string_lossy();
+        let shown = shown(&self.path);
         let grids: Vec<_> = grids.map(|g| g.replace(&*absolute, &shown).replace('"', "")).collect();
         match grids.first() {
             Some(first) => self.error(
@@ -240,13 +240,14 @@ fn cannot_open(path: &Path, name: &Path, complaint: Option<String>) -> Error {
 
 /// The first sentence of GDAL's words, with the file as the user named it, and no full stop.
 fn one_line(words: &str, path: &Path) -> String {
-    let sentence = words.lines().next().unwrap_or_default().split(". ").next().unwrap_or_default();
-    let line = sentence.trim().trim_end_matches('.');
     let absolute = std::path::absolute(path).unwrap_or_default();
-    match absolute.to_str() {
-        Some(absolute) if !absolute.is_empty() => line.replace(absolute, &path.to_string_lossy()),
-        _ => line.to_owned(),
-    }
+    let words = match absolute.to_str() {
+        // First of all: a name may hold what ends a line or a sentence.
+        Some(absolute) if !absolute.is_empty() => words.replace(absolute, &shown(path)),
+        _ => words.to_owned(),
+    };
+    let sentence = words.lines().next().unwrap_or_default().split(". ").next().unwrap_or_default();
+    sentence.trim().trim_end_matches('.').to_owned()
 }
 
 fn starts_with_gzip(path: &Path) -> bool {

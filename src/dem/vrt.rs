@@ -15,7 +15,7 @@ use xxhash_rust::xxh3::Xxh3;
 
 use super::name::{Name, Place, names_remote};
 use super::xml::{self, Entry};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, shown};
 
 /// VRTs in VRTs at most: nobody needs more, and recursion stays small.
 const MAX_DEPTH: usize = 8;
@@ -194,7 +194,7 @@ impl Inspection<'_> {
         let mut local = match Name::of(text) {
             Name::Remote(_) if !self.allow_remote => return Err(self.away(entry, vrt)),
             Name::Remote(name) if name != Path::new(text) => {
-                return names("which GDAL knows by another name", &format!("write `{}` there", name.display()));
+                return names("which GDAL knows by another name", &format!("write `{}` there", shown(&name)));
             }
             Name::Remote(name) => return Ok((name, Place::Remote)),
             Name::Other => return names("which is no file", PLAIN),

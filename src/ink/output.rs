@@ -14,7 +14,7 @@ use std::sync::{Mutex, PoisonError};
 
 use tempfile::TempPath;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, shown};
 
 /// A file being made, or bytes for standard output.
 #[derive(Debug)]
@@ -47,12 +47,14 @@ impl Output {
             // A rename would put a plain file in the place of a device or a pipe.
             Ok(meta) if !meta.is_file() => return Err(failed("it is no regular file".into())),
             Ok(_) => fs::canonicalize(path).map_err(|e| failed(e.to_string()))?,
-            Err(_) if path.file_name().is_none() => return Err(failed("it names no file".into())),
-            Err(_) => path.to_owned(),
+            Err(_) if names_no_file(path) => return Err(failed("it names no file".into())),
+            Err(e) if e.kind() == ErrorKind::NotFound => path.to_owned(),
+            // Too long a name, above all: the temporary file would have a short one.
+            Err(e) => return Err(failed(e.to_string())),
         };
         let folder = target.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
         if !folder.is_dir() {
-            return Err(failed(format!("there is no folder {}", folder.display())));
+            return Err(failed(format!("there is no folder {}", shown(folder))));
         }
         let mut builder = tempfile::Builder::new();
         builder.prefix(".hachure-");
@@ -130,6 +132,13 @@ impl Output {
         };
         published.map_err(|e| Error::Output { path: self.path, what: e.to_string() })
     }
+}
+
+/// Whether it ends in `..`, in a separator or in `/.`, which `Path` passes over and a rename does not.
+fn names_no_file(path: &Path) -> bool {
+    let bytes = path.as_os_str().as_encoded_bytes();
+    let end = bytes.strip_suffix(b".").unwrap_or(bytes);
+    path.file_name().is_none() || end.last().is_some_and(|byte| std::path::is_separator(char::from(*byte)))
 }
 
 fn print(bytes: &[u8]) -> io::Result<()> {

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, HashSet};
 use super::detail::{self, Detail};
 use super::{Border, Plan};
 use crate::error::Result;
-use crate::surface::lattice::CELL_STEPS;
+use crate::surface::lattice::{CELL_STEPS, CHUNK_QUADS};
 use crate::surface::{Lattice, Surface, Tile};
 use crate::view::Camera;
 
@@ -39,7 +39,8 @@ pub fn left_out(plan: &Plan, surface: &Surface, lattice: &Lattice, camera: &Came
             leave("rasterizing", "hidden by nearer land or beside the page", Some(saved));
         }
         let tiles: HashSet<Tile> = chunks.iter().map(Tile::of).collect();
-        let all: usize = [surface.dem().columns(), surface.dem().rows()].map(|n| (n - 1).div_ceil(32)).iter().product();
+        let of_level_1 = |samples: usize| (samples - 1).div_ceil(CHUNK_QUADS as usize);
+        let all = of_level_1(surface.dem().columns()) * of_level_1(surface.dem().rows());
         if let Some(saved) = of(all.saturating_sub(tiles.len()), all, "tiles of samples") {
             leave("samples", "no chunk of the frame needs them", Some(saved));
         }
