@@ -44,6 +44,8 @@ impl Frame {
 pub struct Page {
     /// Ink, kind, sub-pixel place and depth.
     pub marks: Marks,
+    /// How many pixels show land, inked or not.
+    pub covered: u64,
     /// Nodes the longest walk visited; 0 for other methods.
     pub longest_walk: u32,
 }
@@ -86,6 +88,7 @@ impl<'a> Renderer<'a> {
         pieces.check()?;
         let size = pieces.largest();
         let dem = surface.dem();
+        dem.check_patches()?;
         let (lattice, room) = match plan.detail {
             Detail::Uniform(level) => {
                 let lattice = Lattice::uniform(dem, level)?;
@@ -103,6 +106,7 @@ impl<'a> Renderer<'a> {
         loaded.bind(gpu, visibility)?;
         let renderer = Self { gpu, surface, plan, visibility, pieces, rim, loaded: RefCell::new(loaded) };
         renderer.load(&mut renderer.loaded.borrow_mut())?;
+        dem.check()?;
         Ok(renderer)
     }
 
@@ -145,10 +149,13 @@ impl<'a> Renderer<'a> {
     /// Draws a frame to its mask, piece by piece, and waits for it.
     ///
     /// # Errors
-    /// Whatever the driver reports; [`Error::Flag`] for an eye out of reach or a camera of another page size.
+    /// Whatever the driver reports; [`Error::Flag`] for an eye out of reach or a camera of another page size;
+    /// [`Error::Input`] where samples cannot be read, or their files have changed: see [`Dem::check`](crate::dem::Dem::check).
     pub fn frame(&self, camera: &Camera) -> Result<()> {
         self.look(camera)?;
-        self.pieces.iter().try_for_each(|piece| self.run(camera, piece, None))
+        self.pieces.iter().try_for_each(|piece| self.run(camera, piece, None))?;
+        // What could not be read has passed for a void.
+        self.surface.dem().check()
     }
 
     /// Draws a frame and brings it back: [`Self::frame`], then [`Self::read`].
@@ -165,17 +172,18 @@ impl<'a> Renderer<'a> {
     /// # Errors
     /// As [`Self::draw_piece`].
     pub fn page(&self, camera: &Camera, progress: impl Fn(f64)) -> Result<Page> {
-        let (mut list, mut longest_walk) = (Vec::new(), 0);
+        let (mut list, mut covered, mut longest_walk) = (Vec::new(), 0, 0);
         let count = self.pieces.iter().len() as f64;
         self.look(camera)?;
         for (done, piece) in (1..).zip(self.pieces.iter()) {
             self.run(camera, piece, None)?;
             let frame = self.read_piece(piece)?;
             list.append(&mut marks::of_piece(&frame.raster, piece));
+            covered += marks::covered(&frame.raster, piece);
             longest_walk = longest_walk.max(frame.longest_walk);
             progress(f64::from(done) / count);
         }
-        Ok(Page { marks: Marks::new(self.pieces.page(), list), longest_walk })
+        Ok(Page { marks: Marks::new(self.pieces.page(), list), covered, longest_walk })
     }
 
     /// Draws a piece of a frame and brings it back, halo and all: `piece.drawn` of the page.
@@ -195,11 +203,12 @@ impl<'a> Renderer<'a> {
     /// As [`Self::frame`]; [`Error::Gpu`] when the driver's timestamps make no sense.
     pub fn timed_frame(&self, camera: &Camera) -> Result<FrameTime> {
         self.look(camera)?;
-        self.pieces.iter().try_fold(FrameTime::default(), |time, piece| {
+        let time = self.pieces.iter().try_fold(FrameTime::default(), |time, piece| {
             let mut timer = Timer::new(self.gpu);
             self.run(camera, piece, Some(&mut timer))?;
             Ok(time.and(&timer.read(self.gpu)?))
-        })
+        })?;
+        self.surface.dem().check().map(|()| time)
     }
 
     /// Draws a frame and says how long it took, ms: by the wall clock around [`Self::frame`], or by the device's
@@ -239,7 +248,7 @@ impl<'a> Renderer<'a> {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
             stage.pass.record(&mut pass, &stage.groups[0], extent);
         }
-        Ok(())
+        self.surface.dem().check()
     }
 
     /// Composes the last frame and copies it to the CPU.
@@ -274,6 +283,7 @@ impl<'a> Renderer<'a> {
             return Err(Error::Gpu { what: format!("the driver cut {} walks short", counts.cut_short) });
         }
         let raster = InkRaster { width, height, pixels: bytemuck::pod_collect_to_vec(&bytes) };
+        self.surface.dem().check()?;
         Ok(Frame { raster, longest_walk: counts.longest_walk })
     }
 

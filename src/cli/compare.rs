@@ -11,6 +11,7 @@ use super::terrain::TerrainArguments;
 use super::values::{self, LevelChoice, Size};
 use super::viewpoint::{View, ViewArguments};
 use super::views::{self, NamedView};
+use super::{blank, cells};
 use crate::error::{Error, Result, shown};
 use crate::gpu::sizes::page_fits;
 use crate::gpu::{Gpu, depth_draw};
@@ -135,6 +136,8 @@ pub fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
         let dem = arguments.terrain.read(&job.files, arguments.exaggeration, talk)?;
         // Truth looks at every sample again and again.
         dem.held()?;
+        dem.check_patches()?;
+        cells::warn(&dem, arguments.exaggeration, talk);
         let surface = Surface::new(dem);
         let terrain = Terrain::new(&surface);
         for (named, size) in job.views.iter().flat_map(|view| sizes.iter().map(move |size| (view, *size))) {
@@ -144,6 +147,11 @@ pub fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
             let name = scene_name(&named.name, size, &sizes);
             view.warn_below_ground(&surface, LevelChoice::Auto.near(), talk);
             let found = comparison.scene(&gpu, &name, &terrain, &view.camera, &hearing)?;
+            if found.runs.iter().all(|run| run.inked == 0) {
+                let (_, lies) = blank::where_it_lies(&surface, &view);
+                let remedy = "`hachure draw` with the same view names one that shows it";
+                talk.warn(&format!("{name}: no line of the DEM is on the page, {lies}; {remedy}"));
+            }
             let (scene, of_scene, drawn) = arguments.scene(name, &job.files, &surface, &view, found);
             scenes.push(scene);
             done.set(scenes.len() as f64);

@@ -9,11 +9,13 @@ use clap::ValueEnum;
 use serde::Serialize;
 
 use super::device::DeviceArguments;
+use super::flat_earth::FlatEarth;
 use super::outputs::OutputArguments;
 use super::talk::Talk;
 use super::terrain::TerrainArguments;
 use super::values::{self, LevelChoice};
 use super::viewpoint::{View, ViewArguments, ViewReport};
+use super::{blank, cells};
 use crate::dem::Dem;
 use crate::error::{Error, Result, shown};
 use crate::gpu::Gpu;
@@ -115,6 +117,7 @@ struct Report {
     level: DrawnLevel,
     facets: u64,
     inked: usize,
+    covered: u64,
     longest_walk: u32,
     pieces: usize,
     warm_frames: usize,
@@ -124,6 +127,7 @@ struct Report {
     adapter: String,
     int64: bool,
     view: ViewReport,
+    flat_earth: Option<FlatEarth>,
     left_out: Vec<LeftOut>,
 }
 
@@ -154,6 +158,9 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     let dem = arguments.terrain.read(&arguments.terrain.dems, arguments.exaggeration, talk)?;
     // The renderer holds all samples on the device.
     talk.progress("computing normals", 0.1);
+    if !dem.is_filed() {
+        dem.check_patches()?;
+    }
     let surface = Surface::new(dem);
     let cache = Cache::of_user();
     let prepare = || {
@@ -167,6 +174,8 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
         (prepare(), gpu.join().unwrap_or_else(|panic| resume_unwind(panic)))
     });
     prepared?;
+    surface.dem().check_patches()?;
+    cells::warn(surface.dem(), arguments.exaggeration, talk);
     let view = arguments.view.view(&surface, arguments.level.near())?;
     view.warn_below_ground(&surface, arguments.level.near(), talk);
     talk.say(&format!("view: {}", view.flags()))?;
@@ -188,8 +197,11 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     }
     talk.progress("writing", 0.8);
     outputs.write(&drawing, &page, report.as_ref())?;
+    surface.dem().check()?;
     talk.progress("writing", 1.0);
     outputs.publish()?;
+    let flat_earth = arguments.flat_earth(&renderer, &view, &page);
+    flat_earth.map_or(Ok(()), |flat_earth| talk.say(&flat_earth.words()))?;
     talk.say(&format!(
         "{}: {} facets, {} of {} pixels inked, {:.2} s",
         shown(arguments.outputs.drawing()),
@@ -197,7 +209,9 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
         page.marks.inked(),
         u64::from(view.camera.width) * u64::from(view.camera.height),
         started.elapsed().as_secs_f64()
-    ))
+    ))?;
+    blank::warn(&renderer, &surface, &view, arguments.level, &page, talk);
+    Ok(())
 }
 
 impl DrawArguments {
@@ -248,6 +262,7 @@ impl DrawArguments {
             level: self.detail()?.into(),
             facets: renderer.facets(),
             inked: page.marks.inked(),
+            covered: page.covered,
             longest_walk: page.longest_walk,
             pieces,
             warm_frames,
@@ -257,8 +272,14 @@ impl DrawArguments {
             adapter: format!("{} ({})", gpu.info.name, gpu.info.driver_info),
             int64: gpu.int64,
             view: view.report(surface.dem().georeference(), self.exaggeration),
+            flat_earth: self.flat_earth(renderer, view, page),
             left_out: renderer.left_out(camera)?,
         })
+    }
+
+    /// Where the DEM lies on Earth.
+    fn flat_earth(&self, renderer: &Renderer<'_>, view: &View, page: &Page) -> Option<FlatEarth> {
+        view.is_on_earth().then(|| FlatEarth::of(&page.marks, &view.camera, renderer.near()))?
     }
 }
 

@@ -1,8 +1,11 @@
 //! The command line, one file a subcommand: flags as typed become options checked.
 
+pub mod blank;
+pub mod cells;
 pub mod compare;
 pub mod device;
 pub mod draw;
+pub mod flat_earth;
 pub mod generate;
 pub mod info;
 pub mod outputs;

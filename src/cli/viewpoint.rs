@@ -210,6 +210,11 @@ impl View {
         format!("--eye {x},{y},{} --azimuth {azimuth} --altitude {altitude} --fov {fov} --size {width}x{height}", eye.z)
     }
 
+    /// The same eye, looking elsewhere.
+    pub fn turned(&self, azimuth: f64, altitude: f64) -> Self {
+        Self { camera: Camera { azimuth, altitude, ..self.camera }, ..*self }
+    }
+
     /// Warns where the eye is below the ground of that level, by more than eyes are rounded.
     pub fn warn_below_ground(&self, surface: &Surface, level: Level, talk: &Talk) {
         let eye = self.camera.eye;
@@ -219,6 +224,11 @@ impl View {
             let depth = format!("{depth:.decimals$}");
             talk.warn(&format!("the eye is {depth} m below the ground; give --eye E,N,+H to stand above it"));
         }
+    }
+
+    /// Whether the DEM's CRS says where on Earth it lies.
+    pub fn is_on_earth(&self) -> bool {
+        self.lonlat.is_some()
     }
 
     /// The same eye on the globe, as a flag, where the DEM's CRS is known.

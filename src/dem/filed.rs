@@ -141,9 +141,10 @@ impl Filed {
         let _ = self.failure.set(error);
     }
 
-    /// The first error of those who could not return it.
+    /// The first error of those who could not return it, and whether the files are still those that were opened.
     pub fn check(&self) -> Result<()> {
-        self.failure.get().map_or(Ok(()), |error| Err(error.clone()))
+        let noticed = self.failure.get().cloned().map_or_else(|| self.mosaic.check_unchanged(), Err);
+        noticed.inspect_err(|error| self.fail(error.clone()))
     }
 
     /// The error for files without any elevation among `samples`.

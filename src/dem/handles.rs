@@ -5,7 +5,8 @@ use std::sync::{Mutex, PoisonError};
 
 use super::formats;
 use super::source::Source;
-use crate::error::Result;
+use super::watch::Watch;
+use crate::error::{Error, Result, shown};
 
 /// The handles on a file that no thread uses at the moment.
 pub(super) struct Handles {
@@ -15,14 +16,16 @@ pub(super) struct Handles {
     /// Size of the raster and stamp of its files as they were first opened.
     size: [usize; 2],
     stamp: Option<u64>,
+    watch: Watch,
     spare: Mutex<Vec<Source>>,
 }
 
 impl Handles {
     /// Of a file opened with this `allow_remote`.
     pub fn new(first: Source, allow_remote: bool) -> Self {
-        let (size, stamp) = ([first.columns, first.rows], first.stamp);
-        Self { path: first.path.clone(), band: first.band, allow_remote, size, stamp, spare: Mutex::new(vec![first]) }
+        let (size, stamp, watch) = ([first.columns, first.rows], first.stamp, Watch::over(&first.dataset));
+        let (path, band) = (first.path.clone(), first.band);
+        Self { path, band, allow_remote, size, stamp, watch, spare: Mutex::new(vec![first]) }
     }
 
     /// The file as the user named it.
@@ -45,6 +48,17 @@ impl Handles {
         let done = work(&source)?;
         self.spare().push(source);
         Ok(done)
+    }
+
+    /// Fails where the file, or one that it names, is no longer what was opened.
+    pub fn check_unchanged(&self) -> Result<()> {
+        let Some(changed) = self.watch.changed() else { return Ok(()) };
+        let which = match changed.file_name() == self.path.file_name() {
+            true => String::new(),
+            false => format!(" ({})", shown(changed)),
+        };
+        let what = format!("has changed since it was opened{which}");
+        Err(Error::input(&self.path, what, "run again when nothing writes to it"))
     }
 
     fn open(&self) -> Result<Source> {

@@ -129,6 +129,17 @@ pub(super) fn not_held([columns, rows]: [usize; 2]) -> Error {
     }
 }
 
+/// How the voids of a DEM of so many columns and rows are filled.
+pub(super) fn to_fill([columns, rows]: [usize; 2], is_filed: bool) -> String {
+    let samples = columns as u64 * rows as u64;
+    let needed = held_bytes(samples).div_ceil(1 << 20);
+    match is_filed {
+        false => "add --fill-voids".into(),
+        true if samples <= MAX_SAMPLES as u64 => format!("add --fill-voids --memory {needed}MiB"),
+        true => "fill them first: `gdal_fillnodata.py IN OUT.tif`".into(),
+    }
+}
+
 /// As many samples of a file as may be read to be warped, beside `held` others.
 fn check_read(path: &Path, read: u64, held: u64) -> Result<()> {
     if read > MAX_READ {

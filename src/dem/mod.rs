@@ -24,6 +24,7 @@ mod survey;
 mod target;
 mod tiling;
 mod vrt;
+mod watch;
 pub mod write;
 mod xml;
 
@@ -187,7 +188,8 @@ impl Dem {
         }
     }
 
-    /// The first error of those who gave a void in the place of a sample.
+    /// The first error of those who gave a void in the place of a sample, and whether the files are still those that
+    /// were opened: where they are not, what was read of them may not belong together.
     ///
     /// # Errors
     /// [`Error::Input`]; always the same.

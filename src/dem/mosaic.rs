@@ -116,6 +116,11 @@ impl Mosaic {
         Tiling::of(*stored, [0, 1].map(|i| window.first[i] as i64 - first[i]), window.size)
     }
 
+    /// Fails where a file is no longer what was opened.
+    pub fn check_unchanged(&self) -> Result<()> {
+        self.sources.iter().try_for_each(|placed| placed.handles.check_unchanged())
+    }
+
     /// What tells one state of the files from another, and how they are read; `None` where one is not on the disk.
     pub fn stamp(&self) -> Option<String> {
         let of =
@@ -206,8 +211,12 @@ impl Placed {
         progress: &dyn Fn(f64),
     ) -> Result<usize> {
         let band = source.band()?;
-        let masked = band.mask_flags().is_ok_and(|flags| flags.is_per_dataset());
-        let mask = if masked { band.open_mask_band().ok() } else { None };
+        let (mask, words) = heard(|| match band.mask_flags()?.is_per_dataset() {
+            true => band.open_mask_band().map(Some),
+            false => Ok(None),
+        });
+        // Without it what is masked would pass for land.
+        let mask = mask.map_err(|_| source.unreadable(words.as_deref()))?;
         let (own, there) = ([self.grid.columns, self.grid.rows], [raster.grid.columns, raster.grid.rows]);
         let low = [0, 1].map(|i| first[i].max(0));
         let end = [0, 1].map(|i| (first[i] + own[i] as i64).min(there[i] as i64));

@@ -6,8 +6,8 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::grid::Window;
-use super::{Band, Dem, Samples, Store};
-use crate::error::Result;
+use super::{Band, Dem, Samples, Store, limits};
+use crate::error::{Error, Result};
 
 /// Most samples that are kept of a filed DEM to stand for all, about: 16 MiB.
 const THINNED_SAMPLES: usize = 1 << 22;
@@ -135,6 +135,23 @@ impl Dem {
     /// How many patches exist, see [`Survey::patches`]; 0 where samples cannot be read, see [`Dem::check`].
     pub fn patches(&self) -> u64 {
         self.surveyed().map_or(0, |survey| survey.patches)
+    }
+
+    /// Whether there is anything to draw: one patch at least.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] where no three neighbouring samples hold an elevation; as [`Dem::survey`].
+    pub fn check_patches(&self) -> Result<()> {
+        let Survey { voids, patches: 0, .. } = self.survey(&|_| ())? else { return Ok(()) };
+        let [west, south, east, north] = self.extent();
+        Err(Error::Scene {
+            what: format!(
+                "the DEM (W {west} S {south} E {east} N {north} m) has no surface: {voids} of its {} samples are void, \
+                 and no three neighbours among the others span a facet",
+                self.columns() * self.rows()
+            ),
+            remedy: limits::to_fill([self.columns(), self.rows()], self.is_filed()),
+        })
     }
 
     /// The DEM itself if it is held; else a held one of every k-th sample and row, k being [`Dem::thinning`].

@@ -154,10 +154,13 @@ impl CameraUniform {
         let place = dem.grid_place(camera.eye.truncate());
         let eye_cell = place.floor();
         if !camera.eye.is_finite() || eye_cell.abs().max_element() >= f64::from(1 << 22) {
+            let [west, south, east, north] = dem.extent();
+            let (middle, file) = (DVec2::new(west + east, south + north) / 2.0, dem.georeference().file());
+            let near = dem.georeference().place_in(file, middle).unwrap_or(middle);
             return Err(Error::flag(
                 "--eye",
                 format!("{:.0},{:.0} is more than 4 million cells from the DEM", camera.eye.x, camera.eye.y),
-                "give an eye in the CRS of the DEM, near it",
+                format!("give an eye in the CRS of the DEM, near its middle at {},{}", near.x, near.y),
             ));
         }
         let offset = (place - eye_cell) * dem.cell() * DVec2::new(1.0, -1.0);

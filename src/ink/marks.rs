@@ -96,6 +96,17 @@ pub fn of_piece(raster: &InkRaster, piece: Piece) -> Vec<Mark> {
     (top..top + height).into_par_iter().flat_map_iter(of_row).collect()
 }
 
+/// How many pixels of a piece, which was drawn as `raster`, show land.
+pub fn covered(raster: &InkRaster, piece: Piece) -> u64 {
+    let [left, top] = [0, 1].map(|axis| (piece.kept.origin[axis] - piece.drawn.origin[axis]) as usize);
+    let [width, height] = piece.kept.size.map(|side| side as usize);
+    let of_row = |row: usize| {
+        let pixels = &raster.pixels[row * raster.width as usize + left..][..width];
+        pixels.iter().filter(|pixel| pixel.kind() != Kind::Sky).count() as u64
+    };
+    (top..top + height).into_par_iter().map(of_row).sum()
+}
+
 fn is_mark(raster: &InkRaster, column: u32, row: u32, pixel: Pixel) -> bool {
     let is_ink = |dx: i64, dy: i64| raster.at(i64::from(column) + dx, i64::from(row) + dy).is_some_and(Pixel::is_ink);
     let around = || (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (dx, dy))).filter(|&(dx, dy)| is_ink(dx, dy)).count();
