@@ -14,7 +14,8 @@ pub struct TerrainArguments {
     #[arg(required = true, value_name = "DEM")]
     pub dems: Vec<PathBuf>,
 
-    /// Take a part only: west, south, east, north in the CRS of the DEM (metres, feet or degrees, as it has them)
+    /// Take a part only: west, south, east, north in the CRS of the DEM (metres, feet or degrees, as it has them);
+    /// degrees whose west is beyond their east cross 180: 179,-17,-179,-16
     #[arg(long, value_name = "E0,N0,E1,N1", value_parser = values::crop, allow_hyphen_values = true, help_heading = "Surface")]
     crop: Option<[f64; 4]>,
     /// The band with the elevations, from 1 [default: the first]

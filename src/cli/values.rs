@@ -132,7 +132,7 @@ pub fn elevation_unit(text: &str) -> Result<ElevationUnit, String> {
 pub fn crop(text: &str) -> Result<[f64; 4], String> {
     let window: [f64; 4] = numbers(text, "E0,N0,E1,N1 in the CRS of the DEM")?;
     let [west, south, east, north] = window;
-    if west < east && south < north { Ok(window) } else { Err("want west,south,east,north in this order".into()) }
+    if west != east && south < north { Ok(window) } else { Err("want west,south,east,north in this order".into()) }
 }
 
 /// `WxH` in pixels.

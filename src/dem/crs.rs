@@ -6,11 +6,14 @@
 use gdal::spatial_ref::{AxisMappingStrategy, CoordTransform, SpatialRef};
 use glam::DVec2;
 
+use super::register;
 use super::source::heard;
 use crate::error::{Error, Result, plain};
 
 /// Relative difference of a linear unit to the metre that is still a metre.
 const METRE_EPSILON: f64 = 1e-9;
+/// Longitude and latitude, in the register of EPSG.
+const WGS84: u32 = 4326;
 
 /// A coordinate reference system: a name for people, a definition for PROJ, and a unit.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,7 +45,7 @@ impl Crs {
     /// # Errors
     /// [`Error::Limit`] when PROJ cannot find its register of coordinate systems.
     pub fn lonlat() -> Result<Self> {
-        Self::from_epsg(4326)
+        Self::from_epsg(WGS84)
     }
 
     /// The system that the register of EPSG gives this number.
@@ -56,13 +59,11 @@ impl Crs {
             Error::flag("--crs", what, remedy)
         };
         let (found, words) = heard(|| SpatialRef::from_epsg(code));
-        let found = found.map_err(|_| match words {
-            Some(words) if words.contains("proj.db") => Error::Limit {
-                what: "PROJ cannot find its register of coordinate systems (proj.db)".into(),
-                remedy: "install PROJ's data (Debian: proj-data), or set PROJ_DATA and PROJ_LIB to their folder".into(),
-            },
-            _ => wrong(format!("EPSG:{code} is unknown")),
-        })?;
+        let Ok(found) = found else {
+            // Without a register every code is unknown; one that has WGS 84 is whole.
+            let whole = code != WGS84 && heard(|| SpatialRef::from_epsg(WGS84)).0.is_ok();
+            return Err(if whole { wrong(format!("EPSG:{code} is unknown")) } else { register::error(words) });
+        };
         Self::of(found).ok_or_else(|| wrong(format!("EPSG:{code} is no system of places on a map")))
     }
 
@@ -143,6 +144,13 @@ impl Crs {
         }
     }
 
+    /// West, south, east and north of the area that it is made for, degrees, where the register tells.
+    pub(super) fn area(&self) -> Option<[f64; 4]> {
+        let (area, _) = heard(|| SpatialRef::from_epsg(self.epsg?).ok()?.area_of_use());
+        let area = area?;
+        Some([area.west_lon_degree, area.south_lat_degree, area.east_lon_degree, area.north_lat_degree])
+    }
+
     /// GDAL's handle, x first; `None` when unknown.
     pub(super) fn reference(&self) -> Option<SpatialRef> {
         if self.wkt.is_empty() {
@@ -152,6 +160,11 @@ impl Crs {
         reference.set_axis_mapping_strategy(AxisMappingStrategy::TraditionalGisOrder);
         Some(reference)
     }
+}
+
+/// Fails where PROJ has no register of coordinate systems: then files seem to name none.
+pub(super) fn check_register() -> Result<()> {
+    Crs::lonlat().map(drop)
 }
 
 /// The way from the coordinates of one system to those of another.

@@ -9,6 +9,8 @@ use std::sync::Once;
 
 use gdal::{DriverManager, Metadata, config};
 
+use super::{handles, quiet};
+
 /// Memory in which GDAL keeps blocks of files, MiB: by itself a twentieth of the machine's, for files that are read once.
 const CACHE_MIB: &str = "32";
 /// GDAL's names of the formats in which people bring elevations. Left out are those that name other files or addresses
@@ -71,6 +73,7 @@ const ONLY_REMOTE: &str = "CPL_VSIL_CURL_ALLOWED_FILENAME";
 pub(super) fn restrict(allow_remote: bool) {
     static ONCE: Once = Once::new();
     ONCE.call_once(restrict_process);
+    quiet::hush();
     // These options exist in every GDAL that the bindings know; setting them fails for names with a NUL alone.
     let _ = if allow_remote {
         config::clear_thread_local_config_option(ONLY_REMOTE)
@@ -80,10 +83,13 @@ pub(super) fn restrict(allow_remote: bool) {
 }
 
 /// Takes from GDAL the drivers off the list, Python in VRTs, the habit of leaving files beside a .gz, and most of its
-/// cache, unless the user has set that.
+/// cache and of the files that it keeps open for VRTs, unless the user has set those.
 fn restrict_process() {
     if config::get_config_option("GDAL_CACHEMAX", "").is_ok_and(|size| size.is_empty()) {
         let _ = config::set_config_option("GDAL_CACHEMAX", CACHE_MIB);
+    }
+    if config::get_config_option("GDAL_MAX_DATASET_POOL_SIZE", "").is_ok_and(|size| size.is_empty()) {
+        let _ = config::set_config_option("GDAL_MAX_DATASET_POOL_SIZE", &handles::most().to_string());
     }
     let _ = config::set_config_option("CPL_VSIL_GZIP_WRITE_PROPERTIES", "NO");
     let _ = config::set_config_option("GDAL_VRT_ENABLE_PYTHON", "NO");

@@ -4,8 +4,9 @@ use std::ops::RangeInclusive;
 
 use glam::{DAffine2, DMat2, DVec2};
 
-use super::crs::Crs;
+use super::crs::{self, Crs};
 use super::history::History;
+use super::labels;
 use super::source::{Source, heard};
 use crate::error::{Error, Result, shown};
 
@@ -58,13 +59,17 @@ impl Grid {
             (None, Some(cell)) => (from_cell(rows, cell), false),
             (None, None) => return Err(has_no_place(source)),
         };
+        if placed {
+            crs::check_register()?;
+        }
         let crs = match reference {
             Ok(reference) if placed => {
                 let name = reference.name().unwrap_or_default();
                 Crs::of(reference).ok_or_else(|| no_map(source, &name))?
             }
             _ if placed => {
-                let degrees = looks_like_degrees(&to_crs, columns, rows);
+                let grid = Self { crs: Crs::unknown(), to_crs, columns, rows };
+                let degrees = looks_like_degrees(&grid, DEGREE_CELL);
                 history.assume(assumed_crs(degrees));
                 if degrees { Crs::lonlat()? } else { Crs::unknown() }
             }
@@ -72,6 +77,9 @@ impl Grid {
         };
         let grid = Self { crs, to_crs, columns, rows };
         grid.check_size(source)?;
+        if placed {
+            labels::check(&grid, source, history)?;
+        }
         Ok(grid)
     }
 
@@ -234,12 +242,11 @@ fn from_cell(rows: usize, cell: f64) -> DAffine2 {
     DAffine2::from_mat2_translation(matrix, DVec2::new(0.0, rows as f64 * cell))
 }
 
-/// Whether coordinates without a CRS look like longitude and latitude.
-fn looks_like_degrees(to_crs: &DAffine2, columns: usize, rows: usize) -> bool {
-    let far = to_crs.transform_point2(DVec2::new(columns as f64, rows as f64));
-    let on_globe = [to_crs.translation, far].iter().all(|p| p.x.abs() <= 360.0 && p.y.abs() <= 90.0);
-    let m = to_crs.matrix2;
-    on_globe && m.x_axis.length() < DEGREE_CELL && m.y_axis.length() < DEGREE_CELL
+/// Whether coordinates look like longitude and latitude, with cells below `largest`.
+pub(super) fn looks_like_degrees(grid: &Grid, largest: f64) -> bool {
+    let far = grid.to_crs.transform_point2(DVec2::new(grid.columns as f64, grid.rows as f64));
+    let on_globe = [grid.to_crs.translation, far].iter().all(|p| p.x.abs() <= 360.0 && p.y.abs() <= 90.0);
+    on_globe && grid.cell().max_element() < largest
 }
 
 fn assumed_crs(degrees: bool) -> String {

@@ -1,31 +1,86 @@
-//! One raster file, open as often as threads read it at once: GDAL lets one thread at a time use a handle.
+//! Raster files, open as often as threads read them at once: GDAL lets one thread at a time use a handle.
+//!
+//! A system lets a process hold some hundreds of files open, and a DEM may have thousands. Handles that no thread uses
+//! wait in a pool of a few; the one that was used longest ago is closed for another, and opened again when it is asked
+//! for. Beside the pool each thread holds at most one. Not handled: other parts of the process that hold many files.
 
+use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::formats;
 use super::source::Source;
 use super::watch::Watch;
 use crate::error::{Error, Result, shown};
 
-/// The handles on a file that no thread uses at the moment.
+/// Most handles that wait.
+const MOST: usize = 64;
+/// Files that a process holds open beside them: libraries, the GPU's driver, outputs, a handle a thread.
+const OTHERS: usize = 48;
+/// Files that a handle takes: the raster, its mask, its overviews.
+const FILES: usize = 4;
+
+/// Handles of all files of a DEM that no thread uses at the moment, each with the number of its file; the one used last
+/// is the last.
+#[derive(Default)]
+pub(super) struct Pool(Mutex<Spare>);
+
+#[derive(Default)]
+struct Spare {
+    files: usize,
+    sources: VecDeque<(usize, Source)>,
+}
+
+/// A file and where its handles wait.
 pub(super) struct Handles {
     path: PathBuf,
+    exact: PathBuf,
     band: usize,
     allow_remote: bool,
     /// Size of the raster and stamp of its files as they were first opened.
     size: [usize; 2],
     stamp: Option<u64>,
     watch: Watch,
-    spare: Mutex<Vec<Source>>,
+    file: usize,
+    pool: Arc<Pool>,
+}
+
+impl Pool {
+    /// A number for one more file.
+    fn add(&self) -> usize {
+        let mut spare = self.spare();
+        spare.files += 1;
+        spare.files
+    }
+
+    fn take(&self, file: usize) -> Option<Source> {
+        let mut spare = self.spare();
+        let place = spare.sources.iter().rposition(|(of, _)| *of == file)?;
+        spare.sources.remove(place).map(|(_, source)| source)
+    }
+
+    fn put(&self, file: usize, source: Source) {
+        let mut spare = self.spare();
+        spare.sources.push_back((file, source));
+        let oldest = if spare.sources.len() > most() { spare.sources.pop_front() } else { None };
+        // Closing takes a while, and others wait for the lock.
+        drop(spare);
+        drop(oldest);
+    }
+
+    fn spare(&self) -> MutexGuard<'_, Spare> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
 }
 
 impl Handles {
-    /// Of a file opened with this `allow_remote`.
-    pub fn new(first: Source, allow_remote: bool) -> Self {
-        let (size, stamp, watch) = ([first.columns, first.rows], first.stamp, Watch::over(&first.dataset));
-        let (path, band) = (first.path.clone(), first.band);
-        Self { path, band, allow_remote, size, stamp, watch, spare: Mutex::new(vec![first]) }
+    /// Of a file opened with this `allow_remote`, waiting in `pool`.
+    pub fn new(first: Source, allow_remote: bool, pool: &Arc<Pool>) -> Self {
+        let (size, stamp, file) = ([first.columns, first.rows], first.stamp, pool.add());
+        let watch = Watch::over(&first.dataset);
+        let (path, exact, band, pool) = (first.path.clone(), first.exact.clone(), first.band, pool.clone());
+        pool.put(file, first);
+        Self { path, exact, band, allow_remote, size, stamp, watch, file, pool }
     }
 
     /// The file as the user named it.
@@ -43,10 +98,9 @@ impl Handles {
     pub fn read<T>(&self, work: impl FnOnce(&Source) -> Result<T>) -> Result<T> {
         // What a file names may be opened by its first reading: on this thread, whichever opened the file.
         formats::restrict(self.allow_remote);
-        let spare = self.spare().pop();
-        let source = spare.map_or_else(|| self.open(), Ok)?;
+        let source = self.pool.take(self.file).map_or_else(|| self.open(), Ok)?;
         let done = work(&source)?;
-        self.spare().push(source);
+        self.pool.put(self.file, source);
         Ok(done)
     }
 
@@ -62,14 +116,30 @@ impl Handles {
     }
 
     fn open(&self) -> Result<Source> {
-        let source = Source::open(&self.path, self.band, self.allow_remote)?;
+        let source = Source::open(&self.exact, self.band, self.allow_remote)?;
         if source.stamp != self.stamp || [source.columns, source.rows] != self.size {
             return Err(source.error("has changed since it was opened", "run again when nothing writes to it"));
         }
-        Ok(source)
+        Ok(Source { path: self.path.clone(), ..source })
     }
+}
 
-    fn spare(&self) -> std::sync::MutexGuard<'_, Vec<Source>> {
-        self.spare.lock().unwrap_or_else(PoisonError::into_inner)
-    }
+/// How many files may be held open that no thread reads at the moment, by what the system allows the process.
+pub(super) fn most() -> usize {
+    (allowed().saturating_sub(OTHERS) / FILES).clamp(2, MOST)
+}
+
+/// Files that the process may hold open.
+#[cfg(unix)]
+fn allowed() -> usize {
+    let mut limit = libc::rlimit { rlim_cur: 0, rlim_max: 0 };
+    // SAFETY: it writes the two numbers of `limit`.
+    let known = unsafe { libc::getrlimit(libc::RLIMIT_NOFILE, &raw mut limit) } == 0;
+    if known { usize::try_from(limit.rlim_cur).unwrap_or(usize::MAX) } else { 0 }
+}
+
+/// Files that the process may hold open: the least that the system's own library allows.
+#[cfg(not(unix))]
+fn allowed() -> usize {
+    512
 }

@@ -1,6 +1,8 @@
 //! The elevation grid: what every later stage reads. GDAL is known in this folder alone.
 
+mod archive;
 mod bands;
+mod crop;
 mod crs;
 mod elevation;
 mod filed;
@@ -9,24 +11,32 @@ pub mod fractal;
 mod georeference;
 mod grid;
 mod handles;
+mod hgt;
 mod history;
 pub mod info;
 mod inscribed;
+mod labels;
 mod limits;
+mod lossless;
+mod mistaken;
 mod mosaic;
 mod name;
 mod overviews;
+mod quiet;
 mod raster;
 pub mod read;
+mod register;
 mod samples;
 mod source;
 mod survey;
 mod target;
 mod tiling;
 mod vrt;
+mod vsi;
 mod watch;
 pub mod write;
 mod xml;
+mod zip;
 
 use std::sync::{Arc, OnceLock};
 

@@ -6,22 +6,24 @@
 //! read, on the thread that asks; several may ask at once.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use gdal::raster::{GdalType, RasterBand};
 use glam::DVec2;
 
+use super::crop;
 use super::crs::Way;
 use super::elevation::{Elevation, Reading};
 use super::grid::{Grid, Window, span};
-use super::handles::Handles;
+use super::handles::{Handles, Pool};
 use super::raster::Raster;
 use super::source::{Source, heard};
 use super::tiling::Tiling;
 use super::{History, ReadOptions};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, shown};
 
 /// How far, in cells, samples may lie from those of the first file and still count as the same places.
-const ALIGNED_CELLS: f64 = 0.01;
+pub(super) const ALIGNED_CELLS: f64 = 0.01;
 /// Samples read at once: 8 MiB of f64.
 const BLOCK_SAMPLES: usize = 1 << 20;
 /// Formats whose blocks are unpacked one by one and cost time: there, threads gain by reading at once. Others are read
@@ -66,10 +68,15 @@ impl Mosaic {
     /// Opens `paths`, at least one, and checks all that can be checked without reading samples.
     pub fn open(paths: &[PathBuf], options: &ReadOptions, history: &mut History) -> Result<Self> {
         let mut sources: Vec<Placed> = Vec::with_capacity(paths.len());
+        let pool = Arc::new(Pool::default());
         for path in paths {
-            let base = sources.first().map(|first| first.grid.north_up());
-            let placed = Placed::open(path, options, base.as_ref(), paths.len() == 1, history)?;
+            let base = sources.first().map(|first| (first.handles.path(), first.grid.north_up()));
+            let placed = Placed::open(path, options, base, paths.len() == 1, &pool, history)?;
             sources.push(placed);
+        }
+        if let [path] = paths {
+            let twin = Placed::beside_itself(path, options, &sources[0], &pool)?;
+            sources.extend(twin);
         }
         let Some(first) = sources.first() else {
             let none = Error::input(Path::new("DEM"), "no file is named", "name at least one raster");
@@ -86,7 +93,7 @@ impl Mosaic {
         sources.iter_mut().for_each(|placed| placed.lie = placed.lie.moved(low));
         let to_crs = base.to_crs * glam::DAffine2::from_translation(DVec2::new(low[0] as f64, low[1] as f64));
         let [columns, rows] = [0, 1].map(|i| (end[i] - low[i]) as usize);
-        if sources.len() > 1 {
+        if paths.len() > 1 {
             history.convert(format!("{} files laid together: {columns} x {rows} samples", sources.len()));
         }
         let format = sources[0].format.clone();
@@ -152,12 +159,13 @@ impl Mosaic {
 }
 
 impl Placed {
-    /// `base` is the grid that the first file lays; the first itself has none before it.
+    /// `base` is the first file and the grid that it lays; the first itself has none before it.
     fn open(
         path: &Path,
         options: &ReadOptions,
-        base: Option<&Grid>,
+        base: Option<(&Path, Grid)>,
         alone: bool,
+        pool: &Arc<Pool>,
         history: &mut History,
     ) -> Result<Self> {
         let mut own = History::default();
@@ -166,18 +174,33 @@ impl Placed {
         if options.band.is_none() && bands > 1 {
             own.assume(format!("elevations are in band 1 of {bands} (choose another with --band N)"));
         }
+        if let Some(member) = &source.member {
+            own.convert(format!("{member} is taken of the archive, its only raster"));
+        }
         let grid = Grid::of(&source, options.cell, alone, &mut own)?;
         let elevation = Elevation::of(&source, &grid.crs, options.elevation_unit, &mut own)?;
-        let lie = Lie::of(&grid, base.unwrap_or(&grid.north_up()), path)?;
+        let later = base.is_some();
+        let (first, onto) = base.unwrap_or_else(|| (path, grid.north_up()));
+        let lie = Lie::of(&grid, &onto).ok_or_else(|| no_way([(path, &grid), (first, &onto)]))?;
         if matches!(lie, Lie::Apart { .. }) {
             own.convert("warped to the grid of the first file, cubic".into());
         }
-        history.take(own, base.is_some().then_some(path));
+        history.take(own, later.then_some(path));
         let (width, height) = source.band()?.block_size();
         let driver = source.dataset.driver();
         let (parallel, format) = (PARALLEL.contains(&driver.short_name().as_str()), driver.long_name());
-        let handles = Handles::new(source, options.allow_remote);
+        let handles = Handles::new(source, options.allow_remote, pool);
         Ok(Self { handles, elevation, grid, lie, stored: [width, height], parallel, format })
+    }
+
+    /// The only file a second time, a turn farther, where it runs round the globe and the crop crosses its outer edges.
+    fn beside_itself(path: &Path, options: &ReadOptions, first: &Self, pool: &Arc<Pool>) -> Result<Option<Self>> {
+        let (grid, flipped) = (first.grid.north_up(), first.lie.bounds(&first.grid));
+        let crop = crop::on(&grid, options.crop)?;
+        let Some(columns) = crop::round_the_globe(&grid, crop) else { return Ok(None) };
+        let mut twin = Self::open(path, options, Some((path, grid)), true, pool, &mut History::default())?;
+        twin.lie = first.lie.moved([flipped.0[0] - columns, 0]);
+        Ok(Some(twin))
     }
 
     /// Lays what falls into `window` of the mosaic over `raster`, which holds just that; returns how many samples
@@ -186,6 +209,11 @@ impl Placed {
         match self.lie {
             Lie::Aligned { first, flip } => {
                 let first = [0, 1].map(|i| first[i] - window.first[i] as i64);
+                let (own, there) = ([self.grid.columns, self.grid.rows], window.size);
+                if (0..2).any(|i| first[i] >= there[i] as i64 || first[i] + own[i] as i64 <= 0) {
+                    // Not even opened: there may be thousands of files.
+                    return Ok(0);
+                }
                 self.handles.read(|source| self.copy(source, first, flip, raster, progress))
             }
             Lie::Apart { .. } => {
@@ -220,9 +248,6 @@ impl Placed {
         let (own, there) = ([self.grid.columns, self.grid.rows], [raster.grid.columns, raster.grid.rows]);
         let low = [0, 1].map(|i| first[i].max(0));
         let end = [0, 1].map(|i| (first[i] + own[i] as i64).min(there[i] as i64));
-        if low[0] >= end[0] || low[1] >= end[1] {
-            return Ok(0);
-        }
         let window = Window { first: low.map(|v| v as usize), size: [0, 1].map(|i| (end[i] - low[i]) as usize) };
         let (mut marks, mut done) = (0, 0);
         for Window { first: at, size } in window.blocks(block_size(self.stored, own[0])) {
@@ -285,15 +310,14 @@ fn block<T: GdalType + Copy>(source: &Source, band: &RasterBand, from: [usize; 2
 }
 
 impl Lie {
-    /// Of `grid`, that of the file `path`, to `base`.
-    fn of(grid: &Grid, base: &Grid, path: &Path) -> Result<Self> {
+    /// Of `grid` to `base`; `None` where no way leads from one system to the other.
+    fn of(grid: &Grid, base: &Grid) -> Option<Self> {
         let own = grid.whole().outline();
         let mut places = grid.outline(grid.whole());
-        let way = Way::between(&grid.crs, &base.crs).ok_or_else(|| no_way(path, grid, base))?;
-        way.carry(&mut places);
+        Way::between(&grid.crs, &base.crs)?.carry(&mut places);
         base.pixels(&mut places);
         if places.iter().any(|place| !place.is_finite()) {
-            return Err(no_way(path, grid, base));
+            return None;
         }
         let [low, high] = span(&places);
         let size = DVec2::new(grid.columns as f64, grid.rows as f64);
@@ -305,13 +329,13 @@ impl Lie {
             (*place - first - DVec2::new(x, y)).abs().max_element() <= ALIGNED_CELLS
         });
         if aligned {
-            return Ok(Self::Aligned { first: [first.x as i64, first.y as i64], flip: [flip_x, flip_y] });
+            return Some(Self::Aligned { first: [first.x as i64, first.y as i64], flip: [flip_x, flip_y] });
         }
         // Places of the base between the outermost samples; where there are none the mosaic need not grow.
         let (low, high) = ((low - 0.5).ceil(), (high + 0.5).floor());
         let grows = low.cmplt(high).all();
         let (low, high) = if grows { (low, high) } else { (DVec2::ZERO, DVec2::ZERO) };
-        Ok(Self::Apart { first: [low.x as i64, low.y as i64], end: [high.x as i64, high.y as i64] })
+        Some(Self::Apart { first: [low.x as i64, low.y as i64], end: [high.x as i64, high.y as i64] })
     }
 
     /// First column and row, and those beyond the last, of `grid` that lies so.
@@ -374,14 +398,27 @@ fn turn(raw: &mut [f64], width: usize, [along, down]: [bool; 2]) {
     }
 }
 
-fn no_way(path: &Path, grid: &Grid, base: &Grid) -> Error {
+/// The error for two files, each with its grid, between whose systems no way is known: it is about the one that names
+/// none, else about the first.
+fn no_way([one, other]: [(&Path, &Grid); 2]) -> Error {
+    let nameless = |(_, grid): (&Path, &Grid)| grid.crs.wkt().is_empty();
+    let [(path, grid), (beside, base)] = if nameless(other) && !nameless(one) { [other, one] } else { [one, other] };
     let name = |crs: &super::Crs| match crs.label() {
         label if label.is_empty() => "no named coordinate system".to_owned(),
         label => label,
     };
-    Error::input(
-        path,
-        format!("lies in {}, and no way from there to {} is known", name(&grid.crs), name(&base.crs)),
-        "draw it alone, or name its system with `gdal_translate -a_srs EPSG:CODE IN OUT.tif`",
-    )
+    let what = format!(
+        "lies in {}, and no way from there to {}, that of {}, is known",
+        name(&grid.crs),
+        name(&base.crs),
+        shown(beside)
+    );
+    let code = base.crs.epsg().map_or("CODE".to_owned(), |code| code.to_string());
+    let remedy = match grid.crs.wkt().is_empty() {
+        true => {
+            format!("draw it alone, or where it is in that too, say so: `gdal_translate -a_srs EPSG:{code} IN OUT.tif`")
+        }
+        false => "draw each alone".to_owned(),
+    };
+    Error::input(path, what, remedy)
 }

@@ -1,11 +1,12 @@
 //! What a DEM may be called: local files, archives, grids in containers; with `--allow-remote` files on a network too.
 //!
 //! GDAL takes many strings for something else than a file: addresses, pipes, memory, connections, one inside another.
-//! Every name is taken apart here, and what is not understood to its end is refused; nothing is opened. Not handled:
-//! archives in archives, and a file swapped for another between check and use.
+//! Every name is taken apart here, as [`lossless`] text, and what is not understood to its end is refused; nothing is
+//! opened. Not handled: archives in archives, and a file swapped for another between check and use.
 
-use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
+
+use super::lossless;
 
 /// Ways into an archive. The rest of the name is the archive and perhaps a file in it.
 const ARCHIVES: [&str; 3] = ["/vsizip/", "/vsigzip/", "/vsitar/"];
@@ -71,13 +72,14 @@ pub(super) struct Local {
 }
 
 impl Local {
-    /// A file by the ending of its name: a `.gz` or `.zip` is read through.
+    /// A file by the ending of its name: `.gz`, `.zip` and `.tar`, packed or not, are read through.
     pub fn by_ending(file: &Path) -> Self {
-        let ending = file.file_name().and_then(OsStr::to_str).unwrap_or_default().to_ascii_lowercase();
+        let ending = file.file_name().map(lossless::text).unwrap_or_default().to_ascii_lowercase();
         let before = match ending.rsplit('.').next() {
+            _ if ending.ends_with(".tar.gz") => "/vsitar/",
+            Some("tar" | "tgz") => "/vsitar/",
             Some("gz") => "/vsigzip/",
-            // The driver of .hgt reads the tile's corner from the name, zip or not.
-            Some("zip") if !ending.ends_with(".hgt.zip") => "/vsizip/",
+            Some("zip") => "/vsizip/",
             _ => "",
         };
         Self { before: before.into(), file: file.into(), after: String::new(), archive: !before.is_empty() }
@@ -85,10 +87,15 @@ impl Local {
 
     /// What GDAL is asked to open.
     pub fn connection(&self) -> PathBuf {
-        let mut name = OsString::from(&self.before);
+        let mut name = lossless::name(&self.before);
         name.push(&self.file);
-        name.push(&self.after);
+        name.push(lossless::name(&self.after));
         name.into()
+    }
+
+    /// The way into the archive that holds it, as GDAL calls it; empty where it is read as it stands.
+    pub fn way(&self) -> &str {
+        if self.archive { &self.before } else { "" }
     }
 
     /// Where it lies.
@@ -106,8 +113,9 @@ impl Local {
     /// The archive and the file in it in `inner`.
     fn in_archive(before: &str, inner: &str) -> Self {
         // The archive is the part of the way that is a file.
-        let archive = Path::new(inner).ancestors().find(|way| way.is_file()).unwrap_or(Path::new(inner));
-        let after = inner[archive.as_os_str().len()..].to_owned();
+        let way = PathBuf::from(lossless::name(inner));
+        let archive = way.ancestors().find(|way| way.is_file()).unwrap_or(&way);
+        let after = inner[lossless::text(archive.as_os_str()).len()..].to_owned();
         Self { before: before.into(), file: archive.into(), after, archive: true }
     }
 
@@ -120,7 +128,7 @@ impl Local {
         let quote = if bare.len() < fields[*place].len() { "\"" } else { "" };
         let before = fields[..*place].iter().fold(format!("{prefix}:"), |text, field| text + field + ":") + quote;
         let after = fields[place + 1..].iter().fold(quote.to_owned(), |text, field| text + ":" + field);
-        Some(Self { before, file: bare.into(), after, archive: false })
+        Some(Self { before, file: lossless::name(bare).into(), after, archive: false })
     }
 }
 
@@ -134,13 +142,12 @@ impl Name {
             return Self::of_virtual(text);
         }
         match Local::in_container(text) {
-            Some(grid) if grid.file.to_str().is_some_and(|file| names_remote(file) || file.contains('"')) => {
-                Self::Other
-            }
+            Some(grid) if is_no_file(&lossless::text(grid.file.as_os_str())) => Self::Other,
             Some(grid) => Self::Local(grid),
             None if is_connection(text) => Self::Other,
             None => {
-                Self::Local(Local { before: String::new(), file: text.into(), after: String::new(), archive: false })
+                let file = lossless::name(text).into();
+                Self::Local(Local { before: String::new(), file, after: String::new(), archive: false })
             }
         }
     }
@@ -149,13 +156,18 @@ impl Name {
         let archive = ARCHIVES.iter().find_map(|before| Some((*before, text.strip_prefix(before)?)));
         let inner = archive.map_or(text, |(_, inner)| inner);
         match archive {
-            _ if REMOTE.iter().any(|prefix| inner.starts_with(prefix)) => Self::Remote(text.into()),
+            _ if REMOTE.iter().any(|prefix| inner.starts_with(prefix)) => Self::Remote(lossless::name(text).into()),
             Some((before, inner)) if !inner.starts_with("/vsi") && !inner.starts_with('{') => {
                 Self::Local(Local::in_archive(before, inner))
             }
             _ => Self::Other,
         }
     }
+}
+
+/// Whether what stands in the place of a container's file is none.
+fn is_no_file(text: &str) -> bool {
+    names_remote(text) || text.contains('"')
 }
 
 /// Whether `text` begins as the name of something that is not on the disk.

@@ -26,8 +26,8 @@ const CELLS: std::ops::RangeInclusive<f64> = 1e-3..=1e6;
 /// What to read of files and how to change it on the way.
 #[derive(Debug, Clone)]
 pub struct ReadOptions {
-    /// West, south, east, north in units of the first file's CRS; samples inside are read. `None`, the default, reads
-    /// all.
+    /// West, south, east, north in units of the first file's CRS; samples inside are read. Degrees whose west is beyond
+    /// their east cross the meridian of 180 (or 0). `None`, the default, reads all.
     pub crop: Option<[f64; 4]>,
     /// Factor on every elevation, above 0 and at most 1000. Default 1.
     pub exaggeration: f64,
@@ -196,7 +196,8 @@ fn check_options(options: &ReadOptions) -> Result<()> {
     }
     let Some([west, south, east, north]) = options.crop else { return Ok(()) };
     let finite = [west, south, east, north].iter().all(|edge| edge.is_finite());
-    if finite && west < east && south < north {
+    // Degrees may have their west beyond their east, see `crop`.
+    if finite && west != east && south < north {
         return Ok(());
     }
     let what = format!("{west},{south},{east},{north} is no rectangle");

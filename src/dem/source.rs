@@ -2,9 +2,9 @@
 //!
 //! GDAL prints its complaints on stderr as they come, often several for one fault. The first use of this module
 //! installs a process-wide GDAL error handler that prints nothing and keeps the first complaint of each thread as
-//! context for our own one line. What a name means is settled in `name`, what a file would make GDAL open in `vrt`, and
-//! which drivers may read it in `formats`, before GDAL opens anything. Not handled: directories that GDAL takes for one
-//! raster, and HDF5, which prints diagnostics of its own when netCDF is read on another thread than the first.
+//! context for our own one line. What a name means is settled in `name`, which member of an archive is meant in `archive`,
+//! what a file would make GDAL open in `vrt`, and which drivers may read it in `formats`, before GDAL opens anything.
+//! Not handled: directories that GDAL takes for one raster.
 
 use std::cell::Cell;
 use std::fs::{self, File};
@@ -12,13 +12,14 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Once;
 
-use gdal::errors::{CplErrType, GdalError};
+use gdal::errors::CplErrType;
 use gdal::raster::{GdalDataType, RasterBand};
-use gdal::{Dataset, DatasetOptions, GdalOpenFlags, Metadata, config};
+use gdal::{Dataset, GdalOpenFlags, Metadata, config};
 
+use super::archive::{self, Member};
 use super::formats::{self, FORMATS, VECTORS};
 use super::name::{Local, Name, Place};
-use super::vrt;
+use super::{hgt, lossless, mistaken, vrt, vsi};
 use crate::error::{Error, Result, shown};
 
 thread_local! {
@@ -33,6 +34,10 @@ pub(super) const MIN_SIDE: usize = 2;
 pub(super) struct Source {
     /// The file as the user named it.
     pub path: PathBuf,
+    /// What opens just this again: of an archive the member that was taken.
+    pub exact: PathBuf,
+    /// The member of an archive that was taken, where the user named the archive alone.
+    pub member: Option<String>,
     /// GDAL's handle.
     pub dataset: Dataset,
     /// Samples from the first to the last column.
@@ -51,16 +56,16 @@ impl Source {
     /// on a network or, for a VRT, outside its folder.
     pub fn open(path: &Path, band: usize, allow_remote: bool) -> Result<Self> {
         formats::restrict(allow_remote);
-        let (name, place) = connection(path, allow_remote)?;
+        let Connection { name, place, exact, member } = connection(path, allow_remote)?;
         let vrt::Inspected { is_vrt, stamp } = vrt::inspect(path, &name, &place, allow_remote)?;
         // What was not inspected as a VRT is not opened as one.
         let drivers = if is_vrt { ["VRT"].as_slice() } else { &FORMATS };
         let flags =
             GdalOpenFlags::GDAL_OF_RASTER | GdalOpenFlags::GDAL_OF_READONLY | GdalOpenFlags::GDAL_OF_VERBOSE_ERROR;
-        let (opened, complaint) = heard(|| open_as(&name, flags, drivers));
-        let dataset = opened.map_err(|_| cannot_open(path, &name, complaint))?;
+        let (opened, complaint) = vsi::open(&name, flags, drivers);
+        let dataset = opened.ok_or_else(|| cannot_open(path, &name, &place, complaint))?;
         let (columns, rows) = dataset.raster_size();
-        let source = Self { path: path.to_owned(), dataset, columns, rows, band, stamp };
+        let source = Self { path: path.to_owned(), exact, member, dataset, columns, rows, band, stamp };
         source.check_band(&name)?;
         source.check_length()?;
         Ok(source)
@@ -157,34 +162,91 @@ pub(super) fn heard<T>(work: impl FnOnce() -> T) -> (T, Option<String>) {
     (result, COMPLAINT.take())
 }
 
-fn open_as(name: &Path, open_flags: GdalOpenFlags, drivers: &[&str]) -> std::result::Result<Dataset, GdalError> {
-    Dataset::open_ex(name, DatasetOptions { open_flags, allowed_drivers: Some(drivers), ..Default::default() })
+/// What GDAL is asked to open.
+struct Connection {
+    /// In GDAL's words.
+    name: PathBuf,
+    /// Where that lies.
+    place: Place,
+    /// The same in the user's words: of an archive the member that was taken.
+    exact: PathBuf,
+    /// The member, where the user named the archive alone.
+    member: Option<String>,
 }
 
-/// What GDAL is asked to open and where that lies: absolute, so that no file name is taken for something else.
-fn connection(path: &Path, allow_remote: bool) -> Result<(PathBuf, Place)> {
-    let name = match path.to_str() {
-        Some(text) if !path.exists() => Name::of(text),
-        _ => Name::Local(Local::by_ending(path)),
+/// What GDAL is asked to open and where that lies: absolute, so that no file name is taken for something else; of an
+/// archive its one raster, and a member that can be read.
+fn connection(path: &Path, allow_remote: bool) -> Result<Connection> {
+    let name = match path.exists() {
+        true => Name::Local(Local::by_ending(path)),
+        false => Name::of(&lossless::text(path.as_os_str())),
     };
-    match name {
+    let (name, place, way) = match name {
         Name::Local(mut local) => {
             check_file(path, &local.file)?;
             local.file = std::path::absolute(&local.file).map_err(|e| unreadable_file(path, &e))?;
-            Ok((local.connection(), local.place()))
+            (local.connection(), local.place(), local.way().to_owned())
         }
-        Name::Remote(name) if allow_remote => Ok((name, Place::Remote)),
-        Name::Remote(_) => Err(Error::input(
-            path,
-            "lies on a network",
-            "download it first, or add `--allow-remote` if you trust where it comes from",
-        )),
-        Name::Other => Err(Error::input(
-            path,
-            "is no file, but a connection to something else",
-            "save the raster to a file and name that",
-        )),
+        Name::Remote(name) if allow_remote => remote(name),
+        Name::Remote(_) => {
+            return Err(Error::input(
+                path,
+                "lies on a network",
+                "download it first, or add `--allow-remote` if you trust where it comes from",
+            ));
+        }
+        Name::Other => {
+            return Err(Error::input(
+                path,
+                "is no file, but a connection to something else",
+                "save the raster to a file and name that",
+            ));
+        }
+    };
+    let in_archive = ["/vsizip/", "/vsitar/"].contains(&way.as_str());
+    let member = if in_archive { archive::member(path, &way, &name, &place, allow_remote)? } else { None };
+    let connection = match member {
+        Some(Member { connection, typed, inner }) => {
+            Connection { name: connection, place, exact: typed, member: Some(inner) }
+        }
+        None => Connection { name, place, exact: path.to_owned(), member: None },
+    };
+    let is_tile = archive::is_tile(&lossless::text(connection.name.as_os_str()));
+    if is_tile && connection.member.is_none() && !matches!(connection.place, Place::File(_)) {
+        // Not even looked at by GDAL's driver of .hgt files, which would look for a tile in it.
+        return Err(damaged_archive(path, &connection.place));
     }
+    if !way.is_empty()
+        && let Err((what, remedy)) = archive::check(&connection.name, &connection.place)
+    {
+        return Err(told_of_archive(path, &connection.place).unwrap_or_else(|| Error::input(path, what, remedy)));
+    }
+    Ok(connection)
+}
+
+/// A file on a network, read through where it is an archive.
+fn remote(name: PathBuf) -> (PathBuf, Place, String) {
+    let local = Local::by_ending(&name);
+    let through = ["/vsizip/", "/vsitar/"].contains(&local.way()) && !name.starts_with(local.way());
+    match through {
+        true => (local.connection(), Place::Remote, local.way().to_owned()),
+        false => (name, Place::Remote, String::new()),
+    }
+}
+
+/// What a file that is called an archive is instead.
+fn told_of_archive(path: &Path, place: &Place) -> Option<Error> {
+    let Place::Archive(archive) = place else { return None };
+    let head = vsi::head(archive)?;
+    let packed = head.starts_with(b"PK") || head.starts_with(b"\x1f\x8b") || mistaken::is_tar(&head);
+    let told = if packed { None } else { mistaken::what(&head, "") };
+    told.map(|(what, remedy)| Error::input(path, what, remedy))
+}
+
+fn damaged_archive(path: &Path, place: &Place) -> Error {
+    told_of_archive(path, place).unwrap_or_else(|| {
+        Error::input(path, "is a damaged archive, or one in another", "copy or download it again, or unpack it first")
+    })
 }
 
 /// A regular file that is there, readable and not empty.
@@ -210,25 +272,43 @@ fn unreadable_file(path: &Path, error: &std::io::Error) -> Error {
         std::io::ErrorKind::PermissionDenied => {
             Error::input(path, "may not be read", "ask its owner for permission to read it")
         }
+        _ if is_out_of_files(error) => {
+            Error::input(path, format!("cannot be read ({error})"), "let the program open more: `ulimit -n 1024`")
+        }
         _ => Error::input(path, format!("cannot be read ({error})"), "check the file and the disk"),
     }
 }
 
-/// Why GDAL did not open `name`: vector data, a fault that GDAL names, or no raster at all.
-fn cannot_open(path: &Path, name: &Path, complaint: Option<String>) -> Error {
-    let (vector, _) = heard(|| open_as(name, GdalOpenFlags::GDAL_OF_VECTOR, &VECTORS));
-    if vector.is_ok_and(|v| v.layer_count() > 0) {
+/// Whether the system lets this process, or all together, open no more files.
+#[cfg(unix)]
+fn is_out_of_files(error: &std::io::Error) -> bool {
+    [Some(libc::EMFILE), Some(libc::ENFILE)].contains(&error.raw_os_error())
+}
+
+/// Other systems have no such limit that is met.
+#[cfg(not(unix))]
+fn is_out_of_files(_: &std::io::Error) -> bool {
+    false
+}
+
+/// Why GDAL did not open `name`: vector data, something else in a raster's place, a fault that GDAL names, or no raster.
+fn cannot_open(path: &Path, name: &Path, place: &Place, complaint: Option<String>) -> Error {
+    let (vector, _) = vsi::open(name, GdalOpenFlags::GDAL_OF_VECTOR, &VECTORS);
+    if vector.is_some_and(|v| v.layer_count() > 0) {
         return Error::input(
             path,
             "holds points, lines or areas, not a raster of elevations",
             "give a DEM raster; contours and points become one with `gdal_grid`",
         );
     }
+    if let Some((what, remedy)) = told(path, name, place) {
+        return Error::input(path, what, remedy);
+    }
     match complaint.filter(|words| !words.contains("not recognized as a supported file format")) {
         Some(words) => Error::input(
             path,
             format!("cannot be opened as a raster ({})", one_line(&words, path)),
-            "check the file with `gdalinfo`",
+            "copy or download it again, or see what `gdalinfo IN` says of it",
         ),
         None => Error::input(
             path,
@@ -236,6 +316,14 @@ fn cannot_open(path: &Path, name: &Path, complaint: Option<String>) -> Error {
             "give a DEM such as GeoTIFF, .asc, .flt, .bil or .dem, perhaps made by `gdal_translate IN OUT.tif`",
         ),
     }
+}
+
+/// What the file is instead of a raster, by its first bytes and its name.
+fn told(path: &Path, name: &Path, place: &Place) -> Option<mistaken::Told> {
+    let file = if let Place::File(file) = place { file } else { name };
+    let named = lossless::text(path.as_os_str()).to_ascii_lowercase();
+    let tile = || hgt::what(path, fs::metadata(file).ok()?.len());
+    vsi::head(file).and_then(|head| mistaken::what(&head, &named)).or_else(tile)
 }
 
 /// The first sentence of GDAL's words, with the file as the user named it, and no full stop.

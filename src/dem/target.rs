@@ -9,6 +9,7 @@ use std::path::Path;
 
 use glam::DVec2;
 
+use super::crop;
 use super::crs::{Crs, Way};
 use super::grid::{Grid, Window, span};
 use super::inscribed::largest;
@@ -45,7 +46,8 @@ pub(super) struct Target {
 impl Target {
     /// For the grid of the files; `path` is the first, for messages. Fails when too little is left.
     pub fn of(files: &Grid, path: &Path, options: &ReadOptions, history: &mut History) -> Result<Self> {
-        let window = match options.crop {
+        let crop = crop::on(files, options.crop)?;
+        let window = match crop {
             None => files.whole(),
             Some(crop) => files.window(crop).ok_or_else(|| outside(files, path))?,
         };
@@ -53,7 +55,7 @@ impl Target {
         let target = if files.is_north_up() && !files.crs.is_geographic() && options.resample.is_none() {
             Self { grid: files.part(window), window, warps: false }
         } else {
-            Self::warped(files, window, path, options, history)?
+            Self::warped(files, window, path, crop, options, history)?
         };
         check_sides([target.grid.columns, target.grid.rows], files, path)?;
         if let Some(stretch) = target.stretch().filter(|stretch| (stretch - 1.0).abs() > TRUE_SCALE) {
@@ -83,7 +85,14 @@ impl Target {
         Some(metric_epsg(middle))
     }
 
-    fn warped(files: &Grid, window: Window, path: &Path, options: &ReadOptions, history: &mut History) -> Result<Self> {
+    fn warped(
+        files: &Grid,
+        window: Window,
+        path: &Path,
+        crop: Option<[f64; 4]>,
+        options: &ReadOptions,
+        history: &mut History,
+    ) -> Result<Self> {
         let crs = if files.crs.is_geographic() { zone(files, window, path)? } else { files.crs.clone() };
         let way = Way::between(&files.crs, &crs).ok_or_else(|| lost(path))?;
         let back = Way::between(&crs, &files.crs).ok_or_else(|| lost(path))?;
@@ -93,7 +102,7 @@ impl Target {
             None => cell_like(files, window, &way).ok_or_else(|| lost(path))?,
         };
         let all = lattice_around(files, window, &way, &crs, cell).ok_or_else(|| lost(path))?;
-        let region = Region { files, crop: options.crop, back };
+        let region = Region { files, crop, back };
         let inside =
             |at: &[[usize; 2]]| region.holds(at.iter().map(|[c, r]| all.sample(*c as f64, *r as f64)).collect());
         check_extent(&all, cell * unit, path)?;
@@ -264,14 +273,19 @@ fn outside(files: &Grid, path: &Path) -> Error {
 
 /// To so many significant digits.
 fn rounded(value: f64, digits: i32) -> f64 {
-    let scale = 10f64.powi(digits - 1 - value.abs().log10().floor() as i32);
-    (value * scale).round() / scale
+    scale(value, digits).map_or(value, |scale| (value * scale).round() / scale)
 }
 
 /// Upward to two significant digits.
 fn rounded_up(value: f64) -> f64 {
-    let scale = 10f64.powi(1 - value.log10().floor() as i32);
-    (value * scale).ceil() / scale
+    scale(value, 2).map_or(value, |scale| (value * scale).ceil() / scale)
+}
+
+/// The power of ten by which `value` has so many digits before its point; `None` for 0 and where there is no such power.
+fn scale(value: f64, digits: i32) -> Option<f64> {
+    let power = f64::from(digits - 1) - value.abs().log10().floor();
+    let scale = 10f64.powf(power);
+    (power.abs() < 300.0 && scale.is_normal()).then(|| 10f64.powi(power as i32))
 }
 
 #[cfg(test)]
@@ -294,5 +308,9 @@ mod tests {
         assert_eq!(rounded(27.4961, 3), 27.5);
         assert_eq!(rounded_up(111.2), 120.0);
         assert_eq!(rounded_up(0.0451), 0.046);
+        for odd in [0.0, -0.0, f64::MIN_POSITIVE, 5e-324, f64::MAX, f64::INFINITY] {
+            assert_eq!((rounded(odd, 3), rounded_up(odd)), (odd, odd));
+        }
+        assert!(rounded(f64::NAN, 3).is_nan() && rounded_up(f64::NAN).is_nan());
     }
 }

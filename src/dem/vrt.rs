@@ -13,6 +13,7 @@ use std::path::{Component, Path, PathBuf};
 
 use xxhash_rust::xxh3::Xxh3;
 
+use super::archive;
 use super::name::{Name, Place, names_remote};
 use super::xml::{self, Entry};
 use crate::error::{Error, Result, shown};
@@ -227,7 +228,15 @@ impl Inspection<'_> {
         if !file.is_file() {
             return names("which is no file", "name the raster file itself");
         }
-        Ok((local.connection(), local.place()))
+        let (connection, place) = (local.connection(), local.place());
+        let readable = match place {
+            Place::Archive(_) => archive::check(&connection, &place),
+            _ => archive::check_tile(&file, &place),
+        };
+        match readable {
+            Ok(()) => Ok((connection, place)),
+            Err((what, remedy)) => names(&format!("which {what}"), &remedy),
+        }
     }
 
     /// A text that is no source by its element, but that GDAL might come to open.

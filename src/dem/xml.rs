@@ -2,17 +2,18 @@
 //!
 //! A VRT is recognised and parsed by GDAL's own code, so that no file means one thing to the inspection and another to
 //! GDAL (its parser forgives what every other refuses). The tree is copied out once, names in lower case as GDAL does
-//! not tell them apart. Alone in this crate it speaks to `gdal-sys`: the safe crate has none of these calls. Cost: the
-//! file's length in memory, twice.
+//! not tell them apart. The safe crate has none of these calls. Cost: the file's length in memory, twice.
 
-use std::ffi::{CStr, CString, c_char};
+use std::ffi::{CStr, c_char};
 use std::path::Path;
 use std::{iter, ptr};
 
 use gdal::GdalOpenFlags;
 use gdal_sys::{CPLXMLNode, CPLXMLNodeType};
 
+use super::lossless;
 use super::source::heard;
+use super::vsi::c_string;
 
 /// A text of the tree.
 #[derive(Debug)]
@@ -114,12 +115,8 @@ fn lower(value: *const c_char) -> String {
     text(value).to_ascii_lowercase()
 }
 
-/// A string of a node. Bytes that are no UTF-8 are replaced: a file of that name is then not found.
+/// A string of a node, see [`lossless`].
 fn text(value: *const c_char) -> String {
     // SAFETY: called on the values of nodes alone, which GDAL ends in 0.
-    if value.is_null() { String::new() } else { unsafe { CStr::from_ptr(value) }.to_string_lossy().into_owned() }
-}
-
-fn c_string(name: &Path) -> Option<CString> {
-    CString::new(name.as_os_str().as_encoded_bytes()).ok()
+    if value.is_null() { String::new() } else { lossless::text_of(unsafe { CStr::from_ptr(value) }.to_bytes()) }
 }

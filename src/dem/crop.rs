@@ -1,0 +1,43 @@
+//! The rectangle that a crop means on the grid of the files: degrees run round the globe.
+//!
+//! A crop of degrees whose west is beyond its east crosses the meridian where they begin anew: 179 to -179 is 179 to 181.
+
+use super::grid::Grid;
+use super::mosaic::ALIGNED_CELLS;
+use crate::error::{Error, Result};
+
+/// `crop` with its west below its east, in the units of `grid`. Fails where it is no rectangle there.
+pub(super) fn on(grid: &Grid, crop: Option<[f64; 4]>) -> Result<Option<[f64; 4]>> {
+    let Some([west, south, east, north]) = crop else { return Ok(None) };
+    match grid.crs.turn() {
+        _ if west < east => Ok(crop),
+        Some(turn) if west <= turn && east + turn > west => Ok(Some([west, south, east + turn, north])),
+        _ => {
+            let what = format!("{west},{south},{east},{north} has its west beyond its east");
+            let remedy = format!("give the two in the other order: --crop {east},{south},{west},{north}");
+            Err(Error::flag("--crop", what, remedy))
+        }
+    }
+}
+
+/// Columns by which a grid that runs once round the globe is to be laid beside itself, so that a crop across its outer
+/// edges finds both sides: west (negative) or east. `None` where that is not needed, or its ends do not meet.
+pub(super) fn round_the_globe(grid: &Grid, crop: Option<[f64; 4]>) -> Option<i64> {
+    let ([west, _, east, _], turn) = (crop?, grid.crs.turn()?);
+    let columns = turn / grid.cell().x;
+    let whole = grid.columns as f64;
+    let meets = (columns - columns.round()).abs() <= ALIGNED_CELLS && columns.round() <= whole;
+    if !grid.is_north_up() || !meets {
+        return None;
+    }
+    let [first, _, last, _] = grid.extent();
+    let (middle, centre) = ((west + east) / 2.0, (first + last) / 2.0);
+    let moved = grid.crs.near(middle, centre) - middle;
+    let (west, east) = (west + moved, east + moved);
+    let beside = columns.round() as i64;
+    match (west < first, east > last) {
+        (true, false) => Some(-beside),
+        (false, true) => Some(beside),
+        _ => None,
+    }
+}
