@@ -61,6 +61,7 @@ override thrifty: bool = true;
 @group(0) @binding(5) var<storage, read> heights: array<f32>;
 @group(0) @binding(6) var<storage, read> gradients_east: array<f32>;
 @group(0) @binding(7) var<storage, read> gradients_north: array<f32>;
+// A word a block of 64 x 64 samples, row by row: whether all of them, or none, hold an elevation, or where its bits lie.
 @group(0) @binding(8) var<storage, read> valid: array<u32>;
 @group(0) @binding(9) var<storage, read> facing_0: array<u32>;
 @group(0) @binding(10) var<storage, read> facing_1: array<u32>;
@@ -118,8 +119,12 @@ fn pixel_depth(pixel: vec2<u32>) -> u32 {
 
 // Whether sample (c, r) holds an elevation.
 fn is_valid(c: u32, r: u32) -> bool {
-    let i = r * scene.samples.x + c;
-    return ((valid[i >> 5u] >> (i & 31u)) & 1u) == 1u;
+    let across = (scene.samples.x + 63u) >> 6u;
+    var word = valid[(r >> 6u) * across + (c >> 6u)];
+    if word != 0u && word != 0xffffffffu {
+        word = valid[word + (r & 63u) * 2u + ((c >> 5u) & 1u)];
+    }
+    return ((word >> (c & 31u)) & 1u) == 1u;
 }
 
 // Facing bits from facet `id` on to the end of its word, a set bit is away. Decided once, in the facing pass.

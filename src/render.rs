@@ -5,9 +5,11 @@ mod floor;
 use std::cell::{Ref, RefCell};
 use std::time::Instant;
 
+use crate::dem::Dem;
 use crate::error::{Error, Result};
 use crate::gpu::buffers::Room;
 use crate::gpu::clock::Timer;
+use crate::gpu::sizes::rim_fits;
 use crate::gpu::stages::Stages;
 use crate::gpu::uniforms::{Counts, near_plane};
 use crate::gpu::work::Work;
@@ -16,7 +18,7 @@ use crate::gpu::{border, facing, project, rasterize, seam, tessellate};
 use crate::ink::{InkRaster, Marks, marks};
 use crate::plan::left_out::{LeftOut, left_out};
 use crate::plan::{Batch, Border, Detail, Method, Piece, Pieces, Plan, Thrift, Visibility, batches, detail};
-use crate::surface::rim::{RimEdge, rim};
+use crate::surface::rim::{RimEdge, rim, rim_length};
 use crate::surface::{Lattice, Surface};
 use crate::view::Camera;
 
@@ -97,7 +99,7 @@ impl<'a> Renderer<'a> {
             }
             Detail::Adaptive { .. } => (Lattice::empty(dem, surface.pyramid()?.coarsest_step())?, FIRST_ROOM),
         };
-        let rim = if plan.border == Border::On { rim(dem)? } else { Vec::new() };
+        let rim = if plan.border == Border::On { bindable_rim(dem)? } else { Vec::new() };
         let visibility = plan.method.visibility(gpu.int64);
         let buffers = Buffers::new(gpu, surface, &lattice, room, &rim, visibility, size)?;
         let stages = Stages::new(gpu, dem, &plan, !rim.is_empty(), room, size)?;
@@ -395,6 +397,12 @@ impl<'a> Renderer<'a> {
         loaded.bind(gpu, *visibility)?;
         loaded.buffers.load(gpu, surface, &loaded.lattice).map(drop)
     }
+}
+
+/// The rim, where a device can bind it: told before it is made.
+fn bindable_rim(dem: &Dem) -> Result<Vec<RimEdge>> {
+    rim_fits(rim_length(dem)?)?;
+    rim(dem)
 }
 
 impl Loaded {

@@ -183,7 +183,7 @@ impl Field {
             ("chunks", bytemuck::cast_slice(&chunks)),
             ("nodes", bytemuck::cast_slice(self.lattice.tree().nodes())),
             ("summaries", bytemuck::cast_slice(&self.summaries)),
-            ("valid", bytemuck::cast_slice(self.dem.held().expect("in memory").valid())),
+            ("valid", bytemuck::cast_slice(self.dem.validity().expect("in memory").words())),
             ("facing_0", bytemuck::cast_slice(&self.facing)),
             ("facing_1", &[]),
             ("segments", bytemuck::cast_slice(segments)),

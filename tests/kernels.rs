@@ -222,7 +222,7 @@ pub fn chunk_uniforms(lattice: &Lattice) -> Vec<ChunkUniform> {
 fn walk(field: &Field, segments: &[[i32; 4]]) -> Vec<Option<[u32; 3]>> {
     let scene = SceneUniform::new(&field.dem, &field.lattice);
     let chunks = chunk_uniforms(&field.lattice);
-    let valid = field.dem.held().expect("in memory").valid();
+    let valid = field.dem.validity().expect("in memory").words();
     let data: [(&str, &[u8]); 8] = [
         ("scene", bytemuck::bytes_of(&scene)),
         ("chunks", bytemuck::cast_slice(&chunks)),

@@ -46,6 +46,7 @@ mod silhouettes;
 mod times;
 mod tolerances;
 mod truth;
+mod validity;
 mod vertices;
 mod viewpoints;
 mod watertight;

@@ -1,12 +1,13 @@
 //! Samples that stay in their files, read tile by tile as they are asked for.
 //!
-//! Tiles read are kept while they fit a budget; the one that was asked for longest ago goes first. Any number of threads
+//! Tiles read are kept while they fit a budget; the one that was asked for longest ago goes first, the last one stays. Any number of threads
 //! may ask at once: a tile that two want is read by one, the other waits. No core's work is stolen by a reading (nothing
 //! in it is parallel), so that waiting cannot turn in a circle. Memory beside the budget: GDAL's own cache (32 MiB) and
 //! a few tiles on their way.
 
 use std::collections::{HashMap, HashSet};
 use std::fmt::{self, Debug, Formatter};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 use xxhash_rust::xxh3::xxh3_128;
@@ -31,6 +32,8 @@ pub(super) struct Filed {
     marks: Mutex<Marks>,
     overviews: OnceLock<Overviews>,
     failure: OnceLock<Error>,
+    /// How many samples were read from the files.
+    samples_read: AtomicU64,
 }
 
 /// Exaggerated metres of a tile, NaN at voids, once they are read.
@@ -67,6 +70,7 @@ impl Filed {
             marks: Mutex::default(),
             overviews: OnceLock::new(),
             failure: OnceLock::new(),
+            samples_read: AtomicU64::new(0),
         }
     }
 
@@ -131,6 +135,11 @@ impl Filed {
         self.overviews.get()
     }
 
+    /// How many samples were read from the files so far, each as often as it was.
+    pub fn samples_read(&self) -> u64 {
+        self.samples_read.load(Ordering::Relaxed)
+    }
+
     /// How many samples are void by their impossible value alone, among those read so far.
     pub fn marks(&self) -> usize {
         lock(&self.marks).count
@@ -161,6 +170,7 @@ impl Filed {
         self.kept(1, window, || {
             let first = [0, 1].map(|i| self.window.first[i] + window.first[i]);
             let (raster, marks) = self.mosaic.read(Window { first, ..window }, &|_| ())?;
+            self.samples_read.fetch_add(window.samples(), Ordering::Relaxed);
             if marks > 0 {
                 lock(&self.marks).add(window.first, marks);
             }
@@ -193,7 +203,8 @@ impl Kept {
         let (tile, bytes) = (Tile::default(), window.samples() as usize * size_of::<f32>());
         while self.bytes + bytes > budget {
             let oldest = self.tiles.iter().min_by_key(|(_, (_, request, _))| *request).map(|(place, _)| *place);
-            let Some((_, _, freed)) = oldest.and_then(|place| self.tiles.remove(&place)) else { return tile };
+            // The last one stays, however large: whoever asks sample by sample would read it for each.
+            let Some((_, _, freed)) = oldest.and_then(|place| self.tiles.remove(&place)) else { break };
             self.bytes -= freed;
         }
         self.bytes += bytes;
@@ -238,7 +249,9 @@ mod tests {
         assert_eq!(kept.bytes, 12_000);
         assert!(Arc::ptr_eq(&tiles[0], &kept.tile(1, tile(0), 12_000)), "asked for since");
         assert!(!Arc::ptr_eq(&tiles[1], &kept.tile(1, tile(1), 12_000)), "gone");
-        let mut none = Kept::default();
-        assert!(!Arc::ptr_eq(&none.tile(1, tile(0), 3_999), &none.tile(1, tile(0), 3_999)), "more than the budget");
+        let mut one = Kept::default();
+        let last = [0, 1].map(|c| one.tile(1, tile(c), 3_999));
+        assert!(Arc::ptr_eq(&last[1], &one.tile(1, tile(1), 3_999)), "the last one, though larger than the budget");
+        assert_eq!((one.bytes, one.tiles.len()), (4_000, 1), "but no other");
     }
 }

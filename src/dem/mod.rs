@@ -31,6 +31,7 @@ mod source;
 mod survey;
 mod target;
 mod tiling;
+mod validity;
 mod vrt;
 mod vsi;
 mod watch;
@@ -57,6 +58,7 @@ pub use overviews::{Entry, OverviewBuilder, Overviews};
 pub use read::{ReadOptions, Stage, read, read_all};
 pub use samples::Samples;
 pub use survey::{Survey, SurveyBuilder};
+pub use validity::{BLOCK_SIDE, Validity};
 
 /// A north-up grid of elevations in metres.
 ///
@@ -228,6 +230,14 @@ impl Dem {
         match &self.store {
             Store::Held(_) => None,
             Store::Filed(filed) => filed.stamp(),
+        }
+    }
+
+    /// How many samples were read from the files of a filed DEM so far, each as often as it was; 0 for a held one.
+    pub fn samples_read(&self) -> u64 {
+        match &self.store {
+            Store::Held(_) => 0,
+            Store::Filed(filed) => filed.samples_read(),
         }
     }
 

@@ -91,6 +91,17 @@ impl Samples {
         })
     }
 
+    /// Of the 64 samples of row `r` from column `c` on those that hold an elevation, the first in the lowest bit; none
+    /// outside.
+    pub(super) fn valid_from(&self, c: usize, r: usize) -> u64 {
+        let Some(first) = self.index(c, r) else { return 0 };
+        let word = |k: usize| u64::from(self.valid.get(first / 32 + k).copied().unwrap_or(0));
+        let (here, shift) = (word(0) | word(1) << 32, first % 32);
+        let bits = if shift == 0 { here } else { here >> shift | word(2) << (64 - shift) };
+        let left = self.window.size[0] - (c - self.window.first[0]);
+        if left < 64 { bits & ((1 << left) - 1) } else { bits }
+    }
+
     /// The heights of a window, NaN at voids and outside.
     pub(super) fn part(&self, window: Window) -> Vec<f32> {
         let mut heights = vec![f32::NAN; window.samples() as usize];

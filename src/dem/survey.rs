@@ -6,6 +6,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::grid::Window;
+use super::validity::{Validity, ValidityBuilder};
 use super::{Band, Dem, Samples, Store, limits};
 use crate::error::{Error, Result};
 
@@ -26,6 +27,8 @@ pub struct Survey {
     /// Exaggerated metres of every k-th sample of every k-th row of a filed DEM, k as [`Dem::thinning`] says, row-major,
     /// NaN at voids. Empty for a held one.
     pub thinned: Vec<f32>,
+    /// Which samples hold an elevation.
+    pub validity: Validity,
 }
 
 /// A survey in the making, from bands of the DEM.
@@ -33,6 +36,7 @@ pub struct SurveyBuilder<'a> {
     dem: &'a Dem,
     figures: Figures,
     thinned: Vec<f32>,
+    validity: ValidityBuilder,
 }
 
 /// Range, voids and patches of some rows.
@@ -65,13 +69,14 @@ impl Survey {
 impl<'a> SurveyBuilder<'a> {
     /// Of a DEM, no row seen yet.
     pub fn new(dem: &'a Dem) -> Self {
-        Self { dem, figures: Figures::NONE, thinned: Vec::new() }
+        Self { dem, figures: Figures::NONE, thinned: Vec::new(), validity: ValidityBuilder::new(dem) }
     }
 
     /// Takes the next rows, which `samples` holds with the one below them.
     pub fn take(&mut self, samples: &Samples, rows: Range<usize>) {
         let of_rows = rows.clone().into_par_iter().map(|r| Figures::of_row(samples, r));
         self.figures = self.figures.with(of_rows.reduce(|| Figures::NONE, Figures::with));
+        self.validity.take(samples, rows.clone());
         if self.dem.is_filed() {
             let step = self.dem.thinning();
             let row = |r| samples.row_from(0, r).step_by(step).map(|height| height.unwrap_or(f32::NAN));
@@ -84,12 +89,12 @@ impl<'a> SurveyBuilder<'a> {
     /// # Errors
     /// [`Error::Input`](crate::error::Error::Input) for a filed DEM that is all void.
     pub fn finish(self) -> Result<Survey> {
-        let Self { figures: Figures(range, voids, patches), thinned, dem } = self;
+        let Self { figures: Figures(range, voids, patches), thinned, validity, dem } = self;
         let marks = if let Store::Filed(filed) = &dem.store { filed.marks() } else { 0 };
         let range = Some(range).filter(|[low, high]| low <= high);
         match (&dem.store, range) {
             (Store::Filed(filed), None) => Err(filed.all_void(voids)),
-            _ => Ok(Survey { range, voids, marks, patches, thinned }),
+            _ => Ok(Survey { range, voids, marks, patches, thinned, validity: validity.finish() }),
         }
     }
 }
@@ -152,6 +157,11 @@ impl Dem {
             ),
             remedy: limits::to_fill([self.columns(), self.rows()], self.is_filed()),
         })
+    }
+
+    /// Which samples hold an elevation; `None` where samples cannot be read, see [`Dem::check`].
+    pub fn known_validity(&self) -> Option<&Validity> {
+        self.surveyed().map(|survey| &survey.validity)
     }
 
     /// The DEM itself if it is held; else a held one of every k-th sample and row, k being [`Dem::thinning`].

@@ -4,7 +4,6 @@
 //! frame where one batch has room for all. No binding exceeds 128 MiB, whatever the level: vertices and the queue are sized
 //! by a batch, facing bits lie in up to two parts.
 
-use std::borrow::Cow;
 use std::cell::Cell;
 use std::collections::{HashMap, HashSet};
 
@@ -17,7 +16,6 @@ use super::pool::{Placed, Pool};
 use super::rasterize_large::EMPTY_QUEUE;
 use super::sizes::{self, LARGEST_BINDING, fits};
 use super::uniforms::{BatchUniform, CameraUniform, ChunkUniform, SceneUniform};
-use crate::dem::{Band, Dem};
 use crate::error::{Error, Result};
 use crate::plan::batches::{BATCH_CHUNKS, PART_CHUNKS};
 use crate::plan::{Batch, Visibility, batches};
@@ -116,8 +114,9 @@ impl Buffers {
         let dem = surface.dem();
         buffers.uniform(gpu, "scene", bytemuck::bytes_of(&SceneUniform::new(dem, lattice)));
         buffers.uniform(gpu, "camera", bytemuck::bytes_of(&CameraUniform::zeroed()));
-        let valid = if dem.voids() > 0 { valid_bits(dem)? } else { Cow::Borrowed(&[0][..]) };
-        buffers.upload(gpu, "valid", bytemuck::cast_slice(&valid))?;
+        let valid = if dem.voids() > 0 { dem.validity()?.words() } else { &[0] };
+        sizes::valid_fits(valid.len() as u64)?;
+        buffers.upload(gpu, "valid", bytemuck::cast_slice(valid))?;
         buffers.upload(gpu, "rim", bytemuck::cast_slice(rim))?;
         buffers.upload(gpu, "empty_queue", bytemuck::bytes_of(&EMPTY_QUEUE))?;
         buffers.upload(gpu, "no_pixels", bytemuck::bytes_of(&NO_PIXELS))?;
@@ -310,22 +309,4 @@ fn upload_uniforms(gpu: &Gpu, entries: &[BatchUniform]) -> wgpu::Buffer {
         slot[..size_of::<BatchUniform>()].copy_from_slice(bytemuck::bytes_of(entry));
     }
     upload(gpu, "batches", &bytes, wgpu::BufferUsages::UNIFORM)
-}
-
-/// A bit a sample, row by row, whether it holds an elevation.
-fn valid_bits(dem: &Dem) -> Result<Cow<'_, [u32]>> {
-    if let Ok(samples) = dem.held() {
-        return Ok(Cow::Borrowed(samples.valid()));
-    }
-    let mut bits = vec![0_u32; (dem.columns() * dem.rows()).div_ceil(32)];
-    for band in dem.bands(0) {
-        let Band { rows, samples } = band?;
-        for r in rows {
-            for (c, height) in samples.row_from(0, r).enumerate() {
-                let i = r * dem.columns() + c;
-                bits[i / 32] |= u32::from(height.is_some()) << (i % 32);
-            }
-        }
-    }
-    Ok(Cow::Owned(bits))
 }

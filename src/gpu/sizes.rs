@@ -4,7 +4,7 @@ use super::buffers::Room;
 use super::uniforms::{ChunkUniform, Counts};
 use crate::error::{Error, Result};
 use crate::plan::batches::{BATCH_CHUNKS, PART_CHUNKS};
-use crate::plan::cost::{PIXEL_BYTES, VERTEX_BYTES, WORD_BYTES};
+use crate::plan::cost::{PIXEL_BYTES, RIM_EDGE_BYTES, VERTEX_BYTES, WORD_BYTES};
 use crate::plan::pieces::{LARGEST_PIECE, LONGEST_PIECE};
 use crate::surface::lattice::{CHUNK_FACETS, CHUNK_VERTICES, CHUNK_WORDS};
 use crate::surface::tile::TILE_SAMPLES;
@@ -72,20 +72,40 @@ pub fn written(room: Room, [width, height]: [u32; 2]) -> Result<Vec<(&'static st
     Ok(sizes)
 }
 
+/// Whether a rim of so many edges can be bound whole.
+///
+/// # Errors
+/// [`Error::Limit`] when it cannot.
+pub fn rim_fits(edges: u64) -> Result<()> {
+    binds(edges * RIM_EDGE_BYTES, "border lines", "use --border off, or a --crop")
+}
+
+/// Whether so many words that tell voids from samples can be bound whole.
+///
+/// # Errors
+/// [`Error::Limit`] when they cannot.
+pub fn valid_fits(words: u64) -> Result<()> {
+    binds(words * WORD_BYTES, "void marks", "use a --crop")
+}
+
 /// Whether a storage buffer can be bound whole.
 ///
 /// # Errors
 /// [`Error::Limit`] when it cannot.
 pub fn fits(name: &str, size: u64) -> Result<()> {
+    binds(size, name, "use --level auto or a --crop; with --level auto a larger --error-px too")
+}
+
+fn binds(size: u64, of: &str, remedy: &str) -> Result<()> {
     if size <= LARGEST_BINDING {
         return Ok(());
     }
     Err(Error::Limit {
         what: format!(
-            "this DEM needs {} MiB of {name}, a device binds {}",
+            "this DEM needs {} MiB of {of}, a device binds {}",
             size.div_ceil(1 << 20),
             LARGEST_BINDING >> 20
         ),
-        remedy: "use --level auto or a --crop".into(),
+        remedy: remedy.into(),
     })
 }

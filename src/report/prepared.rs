@@ -5,7 +5,7 @@
 //! times and sizes, the crop, the exaggeration) and the code that makes it:
 //!
 //! ```text
-//! blocks of overviews | header | thinned samples | index of the blocks | pyramid | where the header begins, hash from there
+//! blocks of overviews | header | thinned samples | validity | index of the blocks | pyramid | where the header begins, hash from there
 //! ```
 //!
 //! What is damaged is noticed: blocks when they are read, the rest at once.
@@ -18,7 +18,7 @@ use bytemuck::{Pod, Zeroable};
 use xxhash_rust::xxh3::{Xxh3, xxh3_128};
 
 use super::cache::{Cache, create};
-use crate::dem::{Dem, Entry, OverviewBuilder, Overviews, Survey, SurveyBuilder};
+use crate::dem::{Dem, Entry, OverviewBuilder, Overviews, Survey, SurveyBuilder, Validity};
 use crate::error::Result;
 use crate::ink::Output;
 use crate::surface::{Pyramid, PyramidBuilder, Surface, SurfaceBand};
@@ -30,6 +30,7 @@ const CODE: &str = concat!(
     include_str!("../dem/overviews.rs"),
     include_str!("../dem/samples.rs"),
     include_str!("../dem/survey.rs"),
+    include_str!("../dem/validity.rs"),
     include_str!("../surface/bounds.rs"),
     include_str!("../surface/lattice.rs"),
     include_str!("../surface/normals.rs"),
@@ -47,6 +48,7 @@ struct Header {
     marks: u64,
     patches: u64,
     thinned: u64,
+    validity: u64,
 }
 
 /// The last bytes of a file.
@@ -145,18 +147,20 @@ fn make(surface: &Surface, path: &Path, progress: &dyn Fn(f64)) -> Result<Result
 impl Sheet {
     /// Writes what follows the blocks.
     fn finish(&mut self, survey: &Survey, index: &[Entry], pyramid: &Pyramid) {
-        let Survey { range, voids, marks, patches, thinned } = survey;
+        let Survey { range, voids, marks, patches, thinned, validity } = survey;
         let header = Header {
             range: range.unwrap_or([1.0, 0.0]),
             voids: *voids as u64,
             marks: *marks as u64,
             patches: *patches,
             thinned: thinned.len() as u64,
+            validity: validity.words().len() as u64,
         };
         let begin = self.bytes;
         self.hash.reset();
         self.write(bytemuck::bytes_of(&header));
         self.write(bytemuck::cast_slice(thinned));
+        self.write(bytemuck::cast_slice(validity.words()));
         self.write(bytemuck::cast_slice(index));
         pyramid.bytes().for_each(|bytes| self.write(bytes));
         let footer = Footer { header: begin, hash: self.hash.digest() };
@@ -181,12 +185,14 @@ fn recall(surface: &Surface, path: &Path, file: File) -> io::Result<()> {
     };
     let mut header = Header::zeroed();
     fill(bytemuck::bytes_of_mut(&mut header))?;
-    let Header { range, voids, marks, patches, thinned } = header;
-    if thinned > size {
+    let Header { range, voids, marks, patches, thinned, validity } = header;
+    if thinned.max(validity) > size {
         return Err(damaged());
     }
     let mut thinned = vec![0.0; thinned as usize];
     fill(bytemuck::cast_slice_mut(&mut thinned))?;
+    let mut valid = vec![0; validity as usize];
+    fill(bytemuck::cast_slice_mut(&mut valid))?;
     let mut index = vec![Entry::zeroed(); Overviews::blocks(dem)];
     fill(bytemuck::cast_slice_mut(&mut index))?;
     let pyramid = Pyramid::from_bytes(dem, fill)?;
@@ -195,7 +201,8 @@ fn recall(surface: &Surface, path: &Path, file: File) -> io::Result<()> {
     }
     let range = Some(range).filter(|[low, high]| low <= high);
     let overviews = Overviews::new(dem, path, file.into_inner(), index).ok_or_else(damaged)?;
-    dem.remember(Survey { range, voids: voids as usize, marks: marks as usize, patches, thinned });
+    let validity = Validity::from_words(dem, valid).ok_or_else(damaged)?;
+    dem.remember(Survey { range, voids: voids as usize, marks: marks as usize, patches, thinned, validity });
     dem.remember_overviews(overviews);
     surface.remember(pyramid);
     Ok(())

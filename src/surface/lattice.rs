@@ -14,10 +14,12 @@
 //! facing bits are four words in a row, and a column of 8 quads is what one invocation works off, vertex by vertex. A
 //! facet's ID in a frame is `slot * 512 + local`.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use super::quadtree::{Growth, Quadtree};
-use crate::dem::{Dem, LARGEST_SIDE};
+use crate::dem::{Dem, LARGEST_SIDE, Validity};
 use crate::error::{Error, Result};
 
 /// Lattice steps along a cell's edge: the finest level.
@@ -171,7 +173,8 @@ impl Lattice {
         }
         let mut tree = Quadtree::new([columns as u32, rows as u32], CHUNK_QUADS * level.step());
         let chunk = |origin| Chunk { origin, step: level.step(), coarser: 0 };
-        let chunks = tree.number(|origin, _| (!is_void(dem, &chunk(origin))).then_some(Role::Seen));
+        let validity = dem.validity()?;
+        let chunks = tree.number(|origin, _| (!is_void(validity, &chunk(origin))).then_some(Role::Seen));
         let seen = chunks.len() as u32;
         Ok(Self { chunks: chunks.into_iter().map(|(_, (origin, _))| chunk(origin)).collect(), seen, tree })
     }
@@ -246,11 +249,14 @@ impl Lattice {
     /// some for voids or the DEM's edge.
     pub fn facets(&self, dem: &Dem) -> u64 {
         let last = [dem.columns(), dem.rows()].map(|samples| (samples as u32 - 1) * CELL_STEPS);
-        let whole = dem.voids() == 0;
-        let complete = |chunk: &Chunk| whole && (0..2).all(|axis| chunk.origin[axis] + chunk.size() <= last[axis]);
+        let voids = dem.known_validity().filter(|_| dem.voids() > 0);
+        let complete = |chunk: &Chunk| {
+            let inside = (0..2).all(|axis| chunk.origin[axis] + chunk.size() <= last[axis]);
+            inside && voids.is_none_or(|validity| is_whole(validity, chunk))
+        };
         let exists = |facet: &[LatticePoint; 3]| {
             let inside = facet.iter().all(|v| v.x <= last[0] && v.y <= last[1]);
-            inside && (whole || lies_on_patch(dem, *facet))
+            inside && voids.is_none_or(|validity| lies_on_patch(validity, *facet))
         };
         let count = |chunk: &Chunk| chunk.facets().filter(exists).count() as u64;
         // Of complete ones their sides decide: they are counted once for all with the same.
@@ -283,14 +289,24 @@ fn check_sides(dem: &Dem) -> Result<()> {
 }
 
 /// Whether no patch under `chunk` has all its corners.
-fn is_void(dem: &Dem, chunk: &Chunk) -> bool {
-    let cells = |axis: usize, samples: usize| {
-        let first = chunk.origin[axis] / CELL_STEPS;
-        let end = (chunk.origin[axis] + CHUNK_QUADS * chunk.step).div_ceil(CELL_STEPS);
-        first as usize..(end as usize).min(samples - 1)
-    };
-    !cells(1, dem.rows())
-        .any(|r| cells(0, dem.columns()).any(|c| patch_exists(dem, c, r, 0) || patch_exists(dem, c, r, 1)))
+fn is_void(validity: &Validity, chunk: &Chunk) -> bool {
+    let [columns, rows] = cells(chunk, validity.samples().map(|samples| samples - 1));
+    let exists = |c, r| validity.has_patch(c, r, 0) || validity.has_patch(c, r, 1);
+    !is_whole(validity, chunk) && !rows.into_iter().any(|r| columns.clone().any(|c| exists(c, r)))
+}
+
+/// Whether all samples under `chunk` are in the DEM and hold an elevation.
+fn is_whole(validity: &Validity, chunk: &Chunk) -> bool {
+    let [columns, rows] = cells(chunk, validity.samples());
+    validity.is_whole(columns.start..columns.end + 1, rows.start..rows.end + 1)
+}
+
+/// Columns and rows of the cells under `chunk`, cut to as many as there are.
+fn cells(chunk: &Chunk, there_are: [usize; 2]) -> [Range<usize>; 2] {
+    [0, 1].map(|axis| {
+        let end = (chunk.origin[axis] + chunk.size()).div_ceil(CELL_STEPS) as usize;
+        (chunk.origin[axis] / CELL_STEPS) as usize..end.min(there_are[axis])
+    })
 }
 
 /// Whether patch 0 (NW, SW, SE) or 1 (NW, SE, NE) of cell (c, r) has all its corners.
@@ -300,9 +316,9 @@ pub fn patch_exists(dem: &Dem, c: usize, r: usize, patch: usize) -> bool {
 }
 
 /// Whether the patch in which the middle of a facet lies exists.
-fn lies_on_patch(dem: &Dem, vertices: [LatticePoint; 3]) -> bool {
+fn lies_on_patch(validity: &Validity, vertices: [LatticePoint; 3]) -> bool {
     let sum = |of: fn(LatticePoint) -> u32| vertices.map(of).iter().map(|at| *at as usize).sum::<usize>();
     let (x, y) = (sum(|v| v.x), sum(|v| v.y));
     let cell = 3 * CELL_STEPS as usize;
-    patch_exists(dem, x / cell, y / cell, usize::from(x % cell > y % cell))
+    validity.has_patch(x / cell, y / cell, usize::from(x % cell > y % cell))
 }
