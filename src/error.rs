@@ -29,7 +29,7 @@ pub enum Error {
         remedy: String,
     },
     /// A file that cannot be written.
-    #[error("{}: cannot be written ({what}); choose another output path", shown(path))]
+    #[error("{}: cannot be written ({what}); {}", shown(path), way_out(what))]
     Output {
         /// The file as the user named it.
         path: PathBuf,
@@ -99,6 +99,34 @@ impl Error {
             _ => 1,
         }
     }
+}
+
+/// What to do about the system's reason not to write.
+fn way_out(what: &str) -> &'static str {
+    match what {
+        // EFBIG and ENOSPC of Linux and macOS.
+        _ if what.contains("(os error 27)") => "allow larger files (`ulimit -f unlimited`)",
+        _ if what.contains("(os error 28)") => "make room there or choose another output path",
+        _ => "choose another output path",
+    }
+}
+
+thread_local! {
+    /// Whether this thread copes where memory ends.
+    static COPES: std::cell::Cell<bool> = const { std::cell::Cell::new(false) };
+}
+
+/// Does work that copes where memory ends: it is told so, as by `try_reserve`, in the place of an end of the process.
+pub fn without_end<T>(work: impl FnOnce() -> T) -> T {
+    let before = COPES.replace(true);
+    let done = work();
+    COPES.set(before);
+    done
+}
+
+/// Whether the present work does.
+pub fn copes_without() -> bool {
+    COPES.try_with(std::cell::Cell::get).unwrap_or(false)
 }
 
 /// A path as it is printed, everywhere: on one line, with what would move the cursor of a terminal or turn its text

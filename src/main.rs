@@ -3,12 +3,18 @@
 use std::process::ExitCode;
 
 use clap::Parser;
-use hachure::cli::Arguments;
+use hachure::cli::{Arguments, memory, threads};
 
 /// Exit code for "try again": here, ended by a signal.
 const TRY_AGAIN: i32 = 75;
 
+/// Says in a line that memory has ended.
+#[global_allocator]
+static ALLOCATOR: memory::Allocator = memory::Allocator;
+
 fn main() -> ExitCode {
+    memory::prepare();
+    threads::prepare();
     let arguments = Arguments::parse();
     let talk = arguments.talk();
     let handled = ctrlc::set_handler(|| {

@@ -2,6 +2,7 @@
 
 mod agreement;
 mod borders;
+mod broken;
 mod chosen_view;
 mod cli;
 mod closed_forms;
@@ -26,9 +27,12 @@ mod ink;
 mod judged;
 mod kernels;
 mod left_out;
+mod limits;
 mod memory;
 mod mesh;
 mod mixed;
+mod names;
+mod nothing;
 mod pieces;
 mod pool;
 mod prepared;

@@ -1,13 +1,14 @@
 //! Pages without a line: what is said of them, and flags of a view that has lines.
 //!
 //! A view is looked for only then: from the same eye towards the middle of the DEM, else as one is chosen where none is
-//! given. Each is drawn before it is named. Cost: at most two more frames.
+//! given. Each is drawn before it is named. Cost: at most three more frames.
 
 use glam::DVec3;
 
 use super::talk::Talk;
 use super::values::{LevelChoice, Size};
-use super::viewpoint::{View, ViewArguments};
+use super::viewpoint::{FOV, View, ViewArguments};
+use crate::error::Error;
 use crate::render::{Page, Renderer};
 use crate::surface::Surface;
 use crate::view::{Camera, direction};
@@ -26,15 +27,18 @@ pub fn warn(renderer: &Renderer<'_>, surface: &Surface, view: &View, level: Leve
         }
     };
     let Camera { fov, width, height, .. } = view.camera;
-    let none_given = ViewArguments::of_file(None, None, [None; 2], fov, Size { width, height });
-    let turned = towards.map(|(azimuth, altitude)| view.turned(azimuth, altitude));
-    let views = turned.into_iter().chain(none_given.view(surface, level.near()));
+    let chosen = |fov| {
+        let none_given = ViewArguments::of_file(None, None, [None; 2], fov, Size { width, height });
+        none_given.view(surface, level.near()).ok()
+    };
+    let turned = || towards.map(|(azimuth, altitude)| view.turned(azimuth, altitude));
+    let views: [&dyn Fn() -> Option<View>; 3] = [&turned, &|| chosen(fov), &|| chosen(FOV)];
     // What cannot be drawn is no remedy; why not is no concern of a drawing that is done.
     let shows = |view: &View| renderer.page(&view.camera, |_| ()).is_ok_and(|page| page.marks.inked() > 0);
-    let remedy = match views.into_iter().find(shows) {
+    let remedy = match views.into_iter().find_map(|view| view().filter(shows)) {
         Some(view) => format!("give {}", view.flags()),
         None if page.covered == 0 => "give an eye above the land, near it".to_owned(),
-        None => "look along the land, or draw its border with --border on".to_owned(),
+        None => "look along the land, and draw its border (--border on)".to_owned(),
     };
     talk.warn(&format!("{what}; {remedy}"));
 }
@@ -53,6 +57,16 @@ pub fn where_it_lies(surface: &Surface, view: &View) -> (Option<(f64, f64)>, Str
         },
     );
     (towards, words)
+}
+
+/// An error of a view in which there is nothing to do, with where the DEM lies; others as they are.
+pub fn with_place(error: Error, surface: &Surface, view: &View) -> Error {
+    match error {
+        Error::Scene { what, remedy } => {
+            Error::Scene { what: format!("{what} ({})", where_it_lies(surface, view).1), remedy }
+        }
+        other => other,
+    }
 }
 
 /// Metres in words, with three or four figures.

@@ -146,12 +146,8 @@ pub fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
             (view.camera.width, view.camera.height) = (size.width, size.height);
             let name = scene_name(&named.name, size, &sizes);
             view.warn_below_ground(&surface, LevelChoice::Auto.near(), talk);
-            let found = comparison.scene(&gpu, &name, &terrain, &view.camera, &hearing)?;
-            if found.runs.iter().all(|run| run.inked == 0) {
-                let (_, lies) = blank::where_it_lies(&surface, &view);
-                let remedy = "`hachure draw` with the same view names one that shows it";
-                talk.warn(&format!("{name}: no line of the DEM is on the page, {lies}; {remedy}"));
-            }
+            let found = comparison.scene(&gpu, &name, &terrain, &view.camera, &hearing);
+            let found = found.map_err(|error| blank::with_place(error, &surface, &view))?;
             let (scene, of_scene, drawn) = arguments.scene(name, &job.files, &surface, &view, found);
             scenes.push(scene);
             done.set(scenes.len() as f64);

@@ -170,8 +170,12 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     };
     // Drivers take their time to start. Samples stay on this thread, where HDF5 keeps silent.
     let (prepared, gpu) = thread::scope(|scope| {
-        let gpu = scope.spawn(|| arguments.device.open_silently(wgpu::Features::empty()));
-        (prepare(), gpu.join().unwrap_or_else(|panic| resume_unwind(panic)))
+        let open = || arguments.device.open_silently(wgpu::Features::empty());
+        match thread::Builder::new().spawn_scoped(scope, open) {
+            Ok(gpu) => (prepare(), gpu.join().unwrap_or_else(|panic| resume_unwind(panic))),
+            // The system has no thread left.
+            Err(_) => (prepare(), open()),
+        }
     });
     prepared?;
     surface.dem().check_patches()?;

@@ -179,7 +179,8 @@ fn bar_after(wait: Duration) -> ProgressBar {
         bar.set_style(style.progress_chars("=> "));
     }
     let waiting = bar.clone();
-    thread::spawn(move || {
+    // Where the system has no thread left there is no bar.
+    let _ = thread::Builder::new().spawn(move || {
         thread::sleep(wait);
         waiting.set_draw_target(ProgressDrawTarget::stderr());
         waiting.enable_steady_tick(TICK);

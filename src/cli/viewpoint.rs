@@ -12,6 +12,8 @@ use crate::error::{Error, Result};
 use crate::surface::{Level, Surface};
 use crate::view::{Camera, Fixed, choose, direction};
 
+/// Horizontal field of view unless told otherwise, degrees.
+pub const FOV: f64 = 60.0;
 /// Decimals of printed degrees of longitude and latitude: a millimetre.
 const DEGREE_DECIMALS: i32 = 8;
 /// Decimals of other printed coordinates.
@@ -45,7 +47,7 @@ pub struct ViewArguments {
     #[arg(long, value_name = "DEG", value_parser = values::altitude, allow_hyphen_values = true)]
     altitude: Option<f64>,
     /// Horizontal field of view, degrees
-    #[arg(long, value_name = "DEG", value_parser = values::fov, allow_hyphen_values = true, default_value = "60")]
+    #[arg(long, value_name = "DEG", value_parser = values::fov, allow_hyphen_values = true, default_value_t = FOV)]
     fov: f64,
     /// Pixels across and down, each from 1 to 65536
     #[arg(long, value_name = "WxH", value_parser = values::size, default_value = "1920x1080")]

@@ -13,7 +13,7 @@ use glam::DVec2;
 use super::crs::Way;
 use super::grid::Grid;
 use super::source::heard;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, without_end};
 
 /// Farthest that GDAL fills from a sample with data, in samples: its own default.
 pub const FILL_REACH: u32 = 100;
@@ -37,7 +37,7 @@ impl Raster {
     pub fn void(grid: Grid) -> Result<Self> {
         let samples = grid.columns * grid.rows;
         let mut metres = Vec::new();
-        metres.try_reserve_exact(samples).map_err(|e| out_of_memory(&grid, &e.to_string()))?;
+        without_end(|| metres.try_reserve_exact(samples)).map_err(|e| out_of_memory(&grid, &e.to_string()))?;
         metres.resize(samples, f32::NAN);
         Ok(Self { grid, metres })
     }

@@ -89,6 +89,12 @@ impl Source {
     /// The error for samples that cannot be read, with GDAL's words where it has any: it says once, not twice, that a
     /// part of a mosaic is missing.
     pub fn unreadable(&self, words: Option<&str>) -> Error {
+        if let Some(words) = words.filter(|words| lacks_memory(words)) {
+            return Error::Limit {
+                what: format!("{}: not enough memory to read it ({})", shown(&self.path), one_line(words, &self.path)),
+                remedy: "use a smaller --memory or a --crop, or allow more (`ulimit -v` says how much)".into(),
+            };
+        }
         let what = match words {
             Some(words) => format!("is damaged or cut short ({})", one_line(words, &self.path)),
             None => "is damaged or cut short, or lacks a file that it refers to".to_owned(),
@@ -336,6 +342,12 @@ fn one_line(words: &str, path: &Path) -> String {
     };
     let sentence = words.lines().next().unwrap_or_default().split(". ").next().unwrap_or_default();
     sentence.trim().trim_end_matches('.').to_owned()
+}
+
+/// Whether GDAL complains of memory, not of the file.
+fn lacks_memory(words: &str) -> bool {
+    let words = words.to_lowercase();
+    ["cannot allocate", "out of memory", "memory allocation"].iter().any(|known| words.contains(known))
 }
 
 fn starts_with_gzip(path: &Path) -> bool {

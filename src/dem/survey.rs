@@ -87,7 +87,7 @@ impl<'a> SurveyBuilder<'a> {
     /// The survey, when all rows have been taken.
     ///
     /// # Errors
-    /// [`Error::Input`](crate::error::Error::Input) for a filed DEM that is all void.
+    /// [`Error::Input`] for a filed DEM that is all void.
     pub fn finish(self) -> Result<Survey> {
         let Self { figures: Figures(range, voids, patches), thinned, validity, dem } = self;
         let marks = if let Store::Filed(filed) = &dem.store { filed.marks() } else { 0 };
@@ -104,7 +104,7 @@ impl Dem {
     /// share done.
     ///
     /// # Errors
-    /// As [`Dem::window`]; [`Error::Input`](crate::error::Error::Input) for a filed DEM that is all void.
+    /// As [`Dem::window`]; [`Error::Input`] for a filed DEM that is all void.
     pub fn survey(&self, progress: &dyn Fn(f64)) -> Result<&Survey> {
         if let Some(survey) = self.survey.get() {
             return Ok(survey);

@@ -4,6 +4,7 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use super::clock::Clock;
+use super::memory;
 use crate::error::{Error, Result};
 
 /// Waiting longer than this for one submission means the device hangs.
@@ -83,7 +84,7 @@ impl Gpu {
             required_limits: limits,
             ..Default::default()
         }))
-        .map_err(|e| Error::Gpu { what: one_line(&e) })?;
+        .map_err(|e| memory::failure(one_line(&e)))?;
         let stamps = device.features().contains(wgpu::Features::TIMESTAMP_QUERY);
         let clock = if stamps { Clock::Timestamps } else { Clock::Wall };
         let (failure, lost) = (Arc::new(Mutex::new(None)), Arc::new(Mutex::new(None)));
@@ -115,7 +116,7 @@ impl Gpu {
     /// # Errors
     /// [`Error::Gpu`] with the driver's words.
     pub fn check(&self) -> Result<()> {
-        take(&self.failure).map_or(Ok(()), |what| Err(Error::Gpu { what }))
+        take(&self.failure).map_or(Ok(()), |what| Err(memory::failure(what)))
     }
 
     /// Copies a buffer's first `size` bytes to the CPU.
@@ -141,9 +142,9 @@ impl Gpu {
         });
         self.wait()?;
         if let Some(what) = take(&mapped) {
-            return Err(Error::Gpu { what });
+            return Err(memory::failure(what));
         }
-        let view = staging.slice(..).get_mapped_range().map_err(|e| Error::Gpu { what: one_line(&e) })?;
+        let view = staging.slice(..).get_mapped_range().map_err(|e| memory::failure(one_line(&e)))?;
         Ok(view.to_vec())
     }
 }
@@ -164,6 +165,9 @@ fn one_line(e: &dyn std::fmt::Display) -> String {
 }
 
 fn find(choice: &AdapterChoice) -> Result<wgpu::Adapter> {
+    if let Some(error) = memory::too_little() {
+        return Err(error);
+    }
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
     let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
     adapters.sort_by_key(|a| match a.get_info().device_type {
@@ -192,5 +196,6 @@ fn find(choice: &AdapterChoice) -> Result<wgpu::Adapter> {
     } else {
         format!("there is: {names}")
     };
-    found.ok_or(Error::NoAdapter { what, remedy })
+    // Drivers that open none for lack of memory do not say why.
+    found.ok_or_else(|| memory::too_little().unwrap_or(Error::NoAdapter { what, remedy }))
 }

@@ -10,6 +10,7 @@ pub mod copy;
 pub mod depth_draw;
 pub mod device;
 pub mod facing;
+pub mod memory;
 pub mod pairs;
 pub mod pass;
 pub mod pool;

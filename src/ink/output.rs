@@ -167,6 +167,14 @@ pub fn forget(path: &Path) {
     }
 }
 
+/// The same for a process that has no memory left: asks for none, and leaves what another thread is at.
+pub fn discard_now() {
+    if let Ok(list) = UNDER_WAY.try_lock() {
+        list.iter().rev().for_each(|path| drop(fs::remove_file(path).or_else(|_| fs::remove_dir(path))));
+        std::mem::forget(list);
+    }
+}
+
 /// Removes the temporary files of all outputs under way, and folders made for them where they are empty then: for a
 /// process about to be ended by a signal. Whoever makes or names another output from here on waits for that end.
 pub fn discard_all() {
