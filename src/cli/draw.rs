@@ -12,7 +12,7 @@ use super::device::DeviceArguments;
 use super::flat_earth::FlatEarth;
 use super::outputs::OutputArguments;
 use super::talk::Talk;
-use super::terrain::TerrainArguments;
+use super::terrain::{TerrainArguments, warn_of_survey};
 use super::values::{self, LevelChoice};
 use super::viewpoint::{View, ViewArguments, ViewReport};
 use super::{blank, cells};
@@ -180,6 +180,7 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     prepared?;
     surface.dem().check_patches()?;
     cells::warn(surface.dem(), arguments.exaggeration, talk);
+    warn_of_survey(surface.dem(), talk)?;
     let view = arguments.view.view(&surface, arguments.level.near())?;
     view.warn_below_ground(&surface, arguments.level.near(), talk);
     talk.say(&format!("view: {}", view.flags()))?;
@@ -302,6 +303,8 @@ fn explain(talk: &Talk, renderer: &Renderer<'_>, left_out: &[LeftOut], report: O
 
 impl DemReport {
     fn of(files: &[PathBuf], dem: &Dem) -> Self {
+        // What cannot be read fails elsewhere, with its reason.
+        let surveyed = dem.survey(&|_| ()).map(|survey| survey.assumed.clone()).unwrap_or_default();
         Self {
             files: files.iter().map(|file| file.to_string_lossy().into_owned()).collect(),
             columns: dem.columns(),
@@ -310,7 +313,7 @@ impl DemReport {
             extent_m: dem.extent(),
             voids: dem.voids(),
             converted: dem.history().converted().to_vec(),
-            assumed: [dem.history().assumed(), dem.history().usual()].concat(),
+            assumed: [dem.history().assumed(), &surveyed, dem.history().usual()].concat(),
         }
     }
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::talk::Talk;
 use super::values;
-use crate::dem::{self, Dem, ElevationUnit, ReadOptions, Stage};
+use crate::dem::{self, Dem, ElevationUnit, Encoding, Nodata, ReadOptions, Stage};
 use crate::error::Result;
 
 /// Which files, and what of them.
@@ -18,7 +18,7 @@ pub struct TerrainArguments {
     /// degrees whose west is beyond their east cross 180: 179,-17,-179,-16
     #[arg(long, value_name = "E0,N0,E1,N1", value_parser = values::crop, allow_hyphen_values = true, help_heading = "Surface")]
     crop: Option<[f64; 4]>,
-    /// The band with the elevations, from 1 [default: the first]
+    /// The band with the elevations, from 1 [default: the one called elevation, dem, height, idw or mean, else the first]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..), help_heading = "Surface")]
     band: Option<u16>,
     /// Metres between samples, for a DEM that does not say where it lies (an image)
@@ -30,9 +30,16 @@ pub struct TerrainArguments {
     /// Fill voids up to 100 samples from data
     #[arg(long, help_heading = "Surface")]
     fill_voids: bool,
-    /// The unit of elevations: m, ft or us-ft [default: as the DEM says, else metres]
+    /// The unit of elevations: m, dm, cm, mm, km, ft or us-ft [default: as the DEM says, else metres]
     #[arg(long, value_name = "UNIT", value_parser = values::elevation_unit, help_heading = "Surface")]
     elevation_unit: Option<ElevationUnit>,
+    /// Numbers in the file that are no data, beside the one it declares; A..B is all from A to B
+    #[arg(long, value_name = "V,A..B", value_parser = values::nodata, allow_hyphen_values = true, help_heading = "Surface")]
+    nodata: Option<Nodata>,
+    /// What the numbers in the file stand for: terrain-rgb or terrarium, colours of a picture; signed, unsigned numbers
+    /// the upper half of which is below 0 [default: elevations]
+    #[arg(long, value_name = "NAME", value_parser = values::encoding, help_heading = "Surface")]
+    encoding: Option<Encoding>,
     /// Open files on a network, and VRTs that refer to files outside their folder
     #[arg(long, help_heading = "Surface")]
     allow_remote: bool,
@@ -52,6 +59,8 @@ impl TerrainArguments {
             resample: self.resample,
             fill_voids: self.fill_voids,
             elevation_unit: self.elevation_unit,
+            nodata: self.nodata.clone().unwrap_or_default(),
+            encoding: self.encoding,
             allow_remote: self.allow_remote,
             memory: self.memory,
         }
@@ -69,6 +78,19 @@ impl TerrainArguments {
         dem.history().usual().iter().try_for_each(|clause| talk.detail(&format!("assumed: {clause}")))?;
         Ok(dem)
     }
+}
+
+/// Warns of what a look at all samples of a DEM found, where they stay in their file: of others [`TerrainArguments::read`]
+/// has told.
+///
+/// # Errors
+/// As [`Dem::survey`], which looks where nobody has looked before.
+pub fn warn_of_survey(dem: &Dem, talk: &Talk) -> Result<()> {
+    if dem.is_filed() {
+        let survey = dem.survey(&|_| ())?;
+        survey.assumed.iter().for_each(|clause| talk.warn(&format!("assumed that {clause}")));
+    }
+    Ok(())
 }
 
 /// A stage of reading, for its progress bar.

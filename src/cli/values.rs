@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 
 use glam::DVec2;
 
-use crate::dem::{ElevationUnit, LARGEST_SIDE as MOST_SAMPLES};
+use crate::dem::{ElevationUnit, Encoding, LARGEST_SIDE as MOST_SAMPLES, Nodata};
 use crate::gpu::AdapterChoice;
 use crate::plan::pieces::LARGEST_PAGE;
 use crate::plan::{Detail, Method};
@@ -118,14 +118,36 @@ pub fn metres(text: &str) -> Result<f64, String> {
     number(text).and_then(|m| if m > 0.0 { Ok(m) } else { Err("want metres above 0".into()) })
 }
 
-/// `m`, `ft` or `us-ft`.
+/// `m`, `dm`, `cm`, `mm`, `km`, `ft` or `us-ft`.
 pub fn elevation_unit(text: &str) -> Result<ElevationUnit, String> {
     match text {
         "m" => Ok(ElevationUnit::METRE),
+        "dm" => Ok(ElevationUnit::DECIMETRE),
+        "cm" => Ok(ElevationUnit::CENTIMETRE),
+        "mm" => Ok(ElevationUnit::MILLIMETRE),
+        "km" => Ok(ElevationUnit::KILOMETRE),
         "ft" => Ok(ElevationUnit::FOOT),
         "us-ft" => Ok(ElevationUnit::US_FOOT),
-        _ => Err("want m, ft or us-ft".into()),
+        _ => Err("want m, dm, cm, mm, km, ft or us-ft".into()),
     }
+}
+
+/// `V`, `A..B`, or several of them with commas between.
+pub fn nodata(text: &str) -> Result<Nodata, String> {
+    let number = |text: &str| text.trim().parse::<f64>().ok();
+    let range = |part: &str| match part.split_once("..") {
+        Some((low, high)) => Some([number(low)?, number(high)?]).filter(|[low, high]| low <= high),
+        None => number(part).map(|number| [number; 2]),
+    };
+    let ranges = text.split(',').map(range).collect::<Option<_>>();
+    ranges.map(Nodata::new).ok_or_else(|| "want numbers as the file has them, or ranges A..B with A below B".into())
+}
+
+/// `terrain-rgb`, `terrarium` or `signed`.
+pub fn encoding(text: &str) -> Result<Encoding, String> {
+    let known = [Encoding::TerrainRgb, Encoding::Terrarium, Encoding::Signed];
+    let found = known.into_iter().find(|encoding| encoding.name() == text);
+    found.ok_or_else(|| format!("want {}", known.map(Encoding::name).join(", ")))
 }
 
 /// `E0,N0,E1,N1`, west before east and south before north.

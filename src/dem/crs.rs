@@ -14,6 +14,9 @@ use crate::error::{Error, Result, plain};
 const METRE_EPSILON: f64 = 1e-9;
 /// Longitude and latitude, in the register of EPSG.
 const WGS84: u32 = 4326;
+/// Metres from the middle of the Earth to its equator, and how much another ellipsoid of the Earth may differ.
+const EARTH_RADIUS: f64 = 6_378_137.0;
+const EARTH_SHARE: f64 = 0.01;
 
 /// A coordinate reference system: a name for people, a definition for PROJ, and a unit.
 #[derive(Debug, Clone, PartialEq)]
@@ -129,6 +132,12 @@ impl Crs {
             Unit::Length(..) if self.metres_per_unit() == Some(1.0) => "metres",
             Unit::Length(_, name) => name,
         }
+    }
+
+    /// Whether its ellipsoid has about the size of the Earth's, or nobody names one.
+    pub(super) fn is_of_earth(&self) -> bool {
+        let radius = self.reference().and_then(|reference| heard(|| reference.semi_major()).0.ok());
+        radius.is_none_or(|radius| (radius / EARTH_RADIUS - 1.0).abs() < EARTH_SHARE)
     }
 
     /// `x` taken round the globe, where it is a longitude, to within half a turn of `middle`.

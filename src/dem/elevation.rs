@@ -3,7 +3,11 @@
 use gdal::raster::GdalDataType;
 
 use super::crs::Crs;
+use super::depth::is_depth;
+use super::encoding::Encoding;
 use super::history::History;
+use super::nodata::Nodata;
+use super::read::ReadOptions;
 use super::source::{Source, heard};
 use crate::error::{Error, Result};
 
@@ -11,6 +15,9 @@ use crate::error::{Error, Result};
 const DEEPEST: f64 = -32767.0;
 /// Above this many metres too: 9.97e36, 1e20. No mountain of the solar system reaches a quarter of it.
 const HIGHEST: f64 = 100_000.0;
+
+/// Lowest and highest of all land on Earth, metres: the Challenger Deep and Everest, and a little more.
+pub(super) const EARTH: [f64; 2] = [-11_100.0, 8_900.0];
 
 /// Units below this many metres are small enough for elevations to reach the marks.
 const SMALL_UNIT: f64 = 0.09;
@@ -31,10 +38,18 @@ impl ElevationUnit {
     pub const FOOT: Self = Self(FOOT);
     /// The US survey foot, 1200 / 3937 m.
     pub const US_FOOT: Self = Self(US_FOOT);
+    /// A tenth of a metre.
+    pub const DECIMETRE: Self = Self(0.1);
+    /// A hundredth of a metre.
+    pub const CENTIMETRE: Self = Self(0.01);
+    /// A thousandth of a metre.
+    pub const MILLIMETRE: Self = Self(0.001);
+    /// A thousand metres.
+    pub const KILOMETRE: Self = Self(1000.0);
 }
 
 /// How the numbers of one band become metres.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(super) struct Elevation {
     scale: f64,
     offset: f64,
@@ -42,6 +57,13 @@ pub(super) struct Elevation {
     factor: f64,
     nodata: Option<f64>,
     kind: GdalDataType,
+    /// Void because the user says so.
+    said: Nodata,
+    encoding: Option<Encoding>,
+    /// Whether the metres are depths.
+    depth: bool,
+    /// Whether the place is on Earth, or nobody says where it is.
+    on_earth: bool,
 }
 
 /// What one number of a band is.
@@ -56,16 +78,32 @@ pub(super) enum Reading {
 }
 
 impl Elevation {
-    /// The rules of the band of `source`, whose places are in `crs`; `unit` overrules what the file says. What was found
+    /// The rules of the band of `source`, whose places are in `crs`; `options` overrule what the file says. What was found
     /// goes to `history`.
-    pub fn of(source: &Source, crs: &Crs, unit: Option<ElevationUnit>, history: &mut History) -> Result<Self> {
+    pub fn of(source: &Source, crs: &Crs, options: &ReadOptions, history: &mut History) -> Result<Self> {
         let band = source.band()?;
+        let plain = Self {
+            scale: 1.0,
+            offset: 0.0,
+            factor: 1.0,
+            nodata: None,
+            kind: GdalDataType::Float64,
+            said: options.nodata.clone(),
+            encoding: options.encoding,
+            depth: false,
+            on_earth: crs.is_of_earth(),
+        };
+        if options.encoding.is_some_and(Encoding::is_picture) {
+            // The colours' own scale, unit and nodata are those of a picture.
+            return Ok(Self { factor: options.elevation_unit.map_or(1.0, |ElevationUnit(factor)| factor), ..plain });
+        }
         let elevation = Self {
             scale: band.scale().unwrap_or(1.0),
             offset: band.offset().unwrap_or(0.0),
-            factor: factor(source, crs, unit, history)?,
+            factor: factor(source, crs, options.elevation_unit, history)?,
             nodata: band.no_data_value(),
             kind: band.band_type(),
+            ..plain
         };
         let Self { scale, offset, .. } = elevation;
         if !scale.is_finite() || scale == 0.0 || !offset.is_finite() {
@@ -77,14 +115,19 @@ impl Elevation {
         if scale != 1.0 || offset != 0.0 {
             history.convert(format!("elevations are the file's numbers x {scale} + {offset}, as its band declares"));
         }
-        Ok(elevation)
+        if elevation.is_signed() {
+            let most = elevation.modulus() / 2.0 - 1.0;
+            history.convert(format!("numbers above {most} are below 0 (--encoding signed)"));
+        }
+        Ok(Self { depth: is_depth(source, &elevation, history)?, ..elevation })
     }
 
     /// What the number `raw` stands for.
     pub fn reading(&self, raw: f64) -> Reading {
-        let value = raw * self.scale + self.offset;
+        let number = self.number(raw);
+        let value = number * self.scale + self.offset;
         let metres = value * self.factor;
-        if self.is_declared_void(raw) || !metres.is_finite() {
+        if self.is_void(raw) || !metres.is_finite() || (number != raw && self.said.holds(number, self.kind)) {
             return Reading::Void;
         }
         // Marks are written in the file's own unit, but one much smaller than a metre reaches them with elevations.
@@ -93,14 +136,76 @@ impl Elevation {
         let lowest_numbers = self.kind == GdalDataType::Int16 && raw <= DEEPEST;
         match lowest_numbers || mark <= DEEPEST || metres > HIGHEST {
             true => Reading::Sentinel,
-            false => Reading::Metres(metres),
+            false => Reading::Metres(if self.depth { -metres } else { metres }),
         }
     }
 
+    /// The number that `raw` stands for where it was stored without its sign; `raw` itself elsewhere.
+    pub fn number(&self, raw: f64) -> f64 {
+        let modulus = self.modulus();
+        if self.is_signed() && raw >= modulus / 2.0 && raw < modulus { raw - modulus } else { raw }
+    }
+
+    /// Numbers below zero stored without a sign come out as much higher: 2 to the power of its bits. Those of 16 bits may
+    /// stand in a larger type since.
+    pub fn modulus(&self) -> f64 {
+        match self.kind {
+            GdalDataType::UInt8 => 256.0,
+            GdalDataType::UInt32 => 4_294_967_296.0,
+            _ => 65_536.0,
+        }
+    }
+
+    /// Lowest and highest metres of land on the planet.
+    pub fn limits(&self) -> [f64; 2] {
+        if self.on_earth { EARTH } else { [f64::NEG_INFINITY, f64::INFINITY] }
+    }
+
+    /// The type of the numbers as they are stored.
+    pub fn kind(&self) -> GdalDataType {
+        self.kind
+    }
+
+    /// The numbers that the user calls void.
+    pub fn said(&self) -> &Nodata {
+        &self.said
+    }
+
+    /// Whether the upper half of the numbers is below zero.
+    pub fn is_signed(&self) -> bool {
+        self.encoding == Some(Encoding::Signed)
+    }
+
+    /// Whether the numbers are taken for metres as they stand.
+    pub fn is_plain_metres(&self) -> bool {
+        self.factor == 1.0 && self.scale == 1.0 && self.offset == 0.0
+    }
+
+    /// The picture encoding of the file, if it has one.
+    pub fn picture(&self) -> Option<Encoding> {
+        self.encoding.filter(|encoding| encoding.is_picture())
+    }
+
     /// Declared as f64, stored as f32: -3.4028234663852886e38 and -3.40282e38 are the same mark.
-    fn is_declared_void(&self, raw: f64) -> bool {
-        self.nodata
-            .is_some_and(|nodata| raw == nodata || (self.kind == GdalDataType::Float32 && raw as f32 == nodata as f32))
+    fn is_void(&self, raw: f64) -> bool {
+        let declared = |nodata| raw == nodata || (self.kind == GdalDataType::Float32 && raw as f32 == nodata as f32);
+        self.nodata.is_some_and(declared) || self.said.holds(raw, self.kind)
+    }
+
+    /// Metres in 32 bits, nothing declared.
+    #[cfg(test)]
+    pub fn plain() -> Self {
+        Self {
+            scale: 1.0,
+            offset: 0.0,
+            factor: 1.0,
+            nodata: None,
+            kind: GdalDataType::Float32,
+            said: Nodata::default(),
+            encoding: None,
+            depth: false,
+            on_earth: true,
+        }
     }
 }
 
@@ -161,48 +266,45 @@ fn metres_per(unit: &str) -> Option<f64> {
 
 fn unknown_unit(source: &Source, unit: &str) -> Error {
     let what = format!("its elevations are in \"{unit}\", which is no known unit of length");
-    source.error(what, "say which it is with --elevation-unit m, ft or us-ft")
+    source.error(what, "say which it is with --elevation-unit m, dm, cm, mm, km, ft or us-ft")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    const PLAIN: Elevation =
-        Elevation { scale: 1.0, offset: 0.0, factor: 1.0, nodata: None, kind: GdalDataType::Float32 };
-
     #[test]
     fn sentinels_end_where_elevations_begin() {
-        assert_eq!(PLAIN.reading(-32767.0), Reading::Sentinel);
-        assert_eq!(PLAIN.reading(-32766.0), Reading::Metres(-32766.0));
-        assert_eq!(PLAIN.reading(100_000.0), Reading::Metres(100_000.0));
-        assert_eq!(PLAIN.reading(1e20), Reading::Sentinel);
-        assert_eq!(PLAIN.reading(f64::NAN), Reading::Void);
+        assert_eq!(Elevation::plain().reading(-32767.0), Reading::Sentinel);
+        assert_eq!(Elevation::plain().reading(-32766.0), Reading::Metres(-32766.0));
+        assert_eq!(Elevation::plain().reading(100_000.0), Reading::Metres(100_000.0));
+        assert_eq!(Elevation::plain().reading(1e20), Reading::Sentinel);
+        assert_eq!(Elevation::plain().reading(f64::NAN), Reading::Void);
     }
 
     #[test]
     fn sixteen_bits_of_decimetres_keep_their_mark() {
-        let decimetres = Elevation { scale: 0.1, kind: GdalDataType::Int16, ..PLAIN };
+        let decimetres = Elevation { scale: 0.1, kind: GdalDataType::Int16, ..Elevation::plain() };
         assert_eq!(decimetres.reading(-32768.0), Reading::Sentinel);
         assert_eq!(decimetres.reading(-4000.0), Reading::Metres(-400.0));
-        let scaled = Elevation { scale: 0.001, kind: GdalDataType::Int32, ..PLAIN };
+        let scaled = Elevation { scale: 0.001, kind: GdalDataType::Int32, ..Elevation::plain() };
         assert_eq!(scaled.reading(-32768.0), Reading::Metres(-32.768));
     }
 
     #[test]
     fn marks_are_written_in_the_unit_of_the_file() {
-        let feet = Elevation { factor: FOOT, ..PLAIN };
+        let feet = Elevation { factor: FOOT, ..Elevation::plain() };
         assert_eq!(feet.reading(-32767.0), Reading::Sentinel);
         assert_eq!(feet.reading(1000.0), Reading::Metres(304.8));
-        let millimetres = Elevation { factor: 0.001, kind: GdalDataType::Int32, ..PLAIN };
+        let millimetres = Elevation { factor: 0.001, kind: GdalDataType::Int32, ..Elevation::plain() };
         assert_eq!(millimetres.reading(-32768.0), Reading::Metres(-32.768));
     }
 
     #[test]
     fn nodata_is_compared_as_stored() {
-        let declared = Elevation { nodata: Some(-3.40282346638529e38), ..PLAIN };
+        let declared = Elevation { nodata: Some(-3.40282346638529e38), ..Elevation::plain() };
         assert_eq!(declared.reading(f64::from(f32::MIN)), Reading::Void);
-        let not_a_number = Elevation { nodata: Some(f64::NAN), ..PLAIN };
+        let not_a_number = Elevation { nodata: Some(f64::NAN), ..Elevation::plain() };
         assert_eq!(not_a_number.reading(5.0), Reading::Metres(5.0));
     }
 }

@@ -16,6 +16,7 @@ use super::grid::Window;
 use super::mosaic::Mosaic;
 use super::overviews::Overviews;
 use super::raster::Raster;
+use super::tally::{Tallies, merge};
 use super::tiling::{Tiling, gather};
 use crate::error::{Error, Result};
 
@@ -29,7 +30,7 @@ pub(super) struct Filed {
     budget: usize,
     stamp: Option<u128>,
     kept: Mutex<Kept>,
-    marks: Mutex<Marks>,
+    counted: Mutex<Counted>,
     overviews: OnceLock<Overviews>,
     failure: OnceLock<Error>,
     /// How many samples were read from the files.
@@ -47,11 +48,11 @@ struct Kept {
     bytes: usize,
 }
 
-/// How many samples of the tiles read so far are void by their impossible value alone.
+/// The numbers of the tiles read so far.
 #[derive(Default)]
-struct Marks {
+struct Counted {
     of: HashSet<[usize; 2]>,
-    count: usize,
+    tallies: Tallies,
 }
 
 impl Filed {
@@ -67,7 +68,7 @@ impl Filed {
             budget,
             stamp,
             kept: Mutex::default(),
-            marks: Mutex::default(),
+            counted: Mutex::default(),
             overviews: OnceLock::new(),
             failure: OnceLock::new(),
             samples_read: AtomicU64::new(0),
@@ -94,13 +95,13 @@ impl Filed {
         self.stamp
     }
 
-    /// All samples, metres, and how many of them are void by their impossible value alone. `progress` hears the share done.
-    pub fn raster(&self, progress: &dyn Fn(f64)) -> Result<(Raster, usize)> {
+    /// All samples, metres, and a tally of the files' numbers. `progress` hears the share done.
+    pub fn raster(&self, progress: &dyn Fn(f64)) -> Result<(Raster, Tallies)> {
         if self.mosaic.apart().is_some() {
             return self.mosaic.read(self.window, progress);
         }
         let metres = self.read(Window { first: [0, 0], ..self.window }, progress)?;
-        Ok((Raster { grid: self.mosaic.grid.part(self.window), metres }, self.marks()))
+        Ok((Raster { grid: self.mosaic.grid.part(self.window), metres }, self.tallies()))
     }
 
     /// Exaggerated metres of `window`, counted from the first sample, NaN at voids. `progress` hears the share done.
@@ -140,9 +141,14 @@ impl Filed {
         self.samples_read.load(Ordering::Relaxed)
     }
 
-    /// How many samples are void by their impossible value alone, among those read so far.
-    pub fn marks(&self) -> usize {
-        lock(&self.marks).count
+    /// The numbers read so far.
+    pub fn tallies(&self) -> Tallies {
+        lock(&self.counted).tallies.clone()
+    }
+
+    /// What had to be assumed of the numbers tallied, in words as those of a history.
+    pub fn assumed(&self, tallies: &Tallies) -> Vec<String> {
+        self.mosaic.assumed(tallies)
     }
 
     /// Keeps the first error of those who could not return it.
@@ -156,24 +162,31 @@ impl Filed {
         noticed.inspect_err(|error| self.fail(error.clone()))
     }
 
-    /// The error for files without any elevation among `samples`.
-    pub fn all_void(&self, samples: usize) -> Error {
+    /// The error for files without any elevation among `samples`; a unit that would make elevations of their numbers is
+    /// named.
+    pub fn all_void(&self, samples: usize, tallies: &Tallies) -> Error {
         let inside = if self.window == self.mosaic.grid.whole() { "" } else { " inside the crop" };
-        Error::input(
-            self.mosaic.path(),
-            format!("holds no elevation{inside}, all {samples} samples are void"),
-            "check the band and its nodata value with `gdalinfo -stats`, choose another --band, or move --crop",
-        )
+        let what = format!("holds no elevation{inside}, all {samples} samples are void");
+        match self.mosaic.other_units(tallies) {
+            Some(units) => Error::input(
+                self.mosaic.path(),
+                format!("{what} or above 100000 m"),
+                format!("if the heights are in another unit, add {units}"),
+            ),
+            None => Error::input(
+                self.mosaic.path(),
+                what,
+                "check the band and its nodata value with `gdalinfo -stats`, choose another --band, or move --crop",
+            ),
+        }
     }
 
     fn tile(&self, window: Window) -> Result<Arc<[f32]>> {
         self.kept(1, window, || {
             let first = [0, 1].map(|i| self.window.first[i] + window.first[i]);
-            let (raster, marks) = self.mosaic.read(Window { first, ..window }, &|_| ())?;
+            let (raster, tallies) = self.mosaic.read(Window { first, ..window }, &|_| ())?;
             self.samples_read.fetch_add(window.samples(), Ordering::Relaxed);
-            if marks > 0 {
-                lock(&self.marks).add(window.first, marks);
-            }
+            lock(&self.counted).add(window.first, tallies);
             let mut metres = raster.metres;
             exaggerate(&mut metres, self.exaggeration);
             Ok(metres.into())
@@ -213,10 +226,12 @@ impl Kept {
     }
 }
 
-impl Marks {
-    fn add(&mut self, tile: [usize; 2], marks: usize) {
+impl Counted {
+    fn add(&mut self, tile: [usize; 2], tallies: Tallies) {
         // A tile may come more than once.
-        self.count += if self.of.insert(tile) { marks } else { 0 };
+        if self.of.insert(tile) {
+            merge(&mut self.tallies, tallies);
+        }
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::ops::RangeInclusive;
 
+use gdal::Metadata;
 use glam::{DAffine2, DMat2, DVec2};
 
 use super::crs::{self, Crs};
@@ -55,6 +56,7 @@ impl Grid {
         let (to_crs, placed) = match (geotransform(source), cell) {
             (Some(_), Some(_)) => return Err(has_place(source)),
             (Some(to_crs), None) => (to_crs, true),
+            (None, _) if is_curved(source) => return Err(curved(source)),
             (None, _) if !alone => return Err(has_no_place_beside(source)),
             (None, Some(cell)) => (from_cell(rows, cell), false),
             (None, None) => return Err(has_no_place(source)),
@@ -263,6 +265,18 @@ fn assumed_crs(degrees: bool) -> String {
 fn has_place(source: &Source) -> Error {
     let what = format!("{} says itself where it lies and how large its cells are", shown(&source.path));
     Error::flag("--cell", what, "leave it out, or use --resample for cells of another size")
+}
+
+/// Whether the place of each sample stands in arrays beside it.
+fn is_curved(source: &Source) -> bool {
+    source.dataset.metadata_domain("GEOLOCATION").is_some_and(|lines| !lines.is_empty())
+}
+
+fn curved(source: &Source) -> Error {
+    source.error(
+        "its samples lie on no straight grid: the place of each stands in arrays of its own",
+        "warp it first, then give OUT.tif: `gdalwarp -geoloc -t_srs EPSG:4326 -ot Float32 -dstnodata nan IN OUT.tif`",
+    )
 }
 
 fn has_no_place(source: &Source) -> Error {

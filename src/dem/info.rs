@@ -68,7 +68,7 @@ pub fn info(paths: &[PathBuf], options: &ReadOptions, progress: &dyn Fn(Stage, f
     let dem = reading.finish(options, progress)?;
     let survey = dem.survey(&|done| progress(Stage::Read, done))?;
     let mut history = dem.history().clone();
-    survey.assumed().into_iter().for_each(|clause| history.assume(clause));
+    survey.assumed.iter().for_each(|clause| history.assume(clause.clone()));
     let [west, south, east, north] = dem.extent();
     let middle = dem.georeference().lonlat(glam::DVec2::new((west + east) / 2.0, (south + north) / 2.0))?;
     Ok(Info {

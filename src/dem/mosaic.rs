@@ -13,11 +13,14 @@ use glam::DVec2;
 
 use super::crop;
 use super::crs::Way;
+use super::doubt::{doubts, other_units, sentinels};
 use super::elevation::{Elevation, Reading};
+use super::encoding::Encoding;
 use super::grid::{Grid, Window, span};
 use super::handles::{Handles, Pool};
 use super::raster::Raster;
 use super::source::{Source, heard};
+use super::tally::{Tallies, Tally};
 use super::tiling::Tiling;
 use super::{History, ReadOptions};
 use crate::error::{Error, Result, shown};
@@ -29,6 +32,8 @@ const BLOCK_SAMPLES: usize = 1 << 20;
 /// Formats whose blocks are unpacked one by one and cost time: there, threads gain by reading at once. Others are read
 /// as fast by one thread, or only in the order in which they are written.
 const PARALLEL: [&str; 3] = ["GTiff", "COG", "VRT"];
+/// Files whose doubtful heights are told one by one.
+const DOUBTED_FILES: usize = 3;
 /// Samples around a window that cubic convolution reaches, and one more.
 const MARGIN: usize = 3;
 
@@ -144,17 +149,70 @@ impl Mosaic {
         })
     }
 
-    /// Reads the samples of `window`, and how many of them are void by their impossible value alone. `progress` hears the
-    /// share done.
-    pub fn read(&self, window: Window, progress: &dyn Fn(f64)) -> Result<(Raster, usize)> {
+    /// Reads the samples of `window`, with a tally of the files' numbers. `progress` hears the share done.
+    pub fn read(&self, window: Window, progress: &dyn Fn(f64)) -> Result<(Raster, Tallies)> {
         let mut raster = Raster::void(self.grid.part(window))?;
-        let mut marks = 0;
+        let mut tallies = Tallies::new();
         for (i, placed) in self.sources.iter().enumerate() {
             let share = |done: f64| progress((i as f64 + done) / self.sources.len() as f64);
-            marks += placed.read(window, &mut raster, &share)?;
+            let mut tally = Tally::new(&placed.elevation);
+            placed.read(window, &mut raster, &mut tally, &share)?;
+            if tally.samples > 0 {
+                tallies.insert(i, tally);
+            }
         }
         progress(1.0);
-        Ok((raster, marks))
+        Ok((raster, tallies))
+    }
+
+    /// What had to be assumed of the numbers tallied: of those that are void by their impossible value alone, and of those
+    /// that hardly are heights.
+    pub fn assumed(&self, tallies: &Tallies) -> Vec<String> {
+        self.marked(tallies).into_iter().chain(self.doubts(tallies)).collect()
+    }
+
+    /// Units in which all numbers would be elevations, where in metres they are too high for any.
+    pub fn other_units(&self, tallies: &Tallies) -> Option<String> {
+        tallies.iter().find_map(|(i, tally)| other_units(tally, &self.sources.get(*i)?.elevation))
+    }
+
+    fn marked(&self, tallies: &Tallies) -> Option<String> {
+        let marks = tallies.values().map(|tally| tally.marks).sum::<usize>();
+        let of = |(i, tally): (&usize, &Tally)| sentinels(tally, &self.sources.get(*i)?.elevation);
+        let mut numbers: Vec<_> =
+            tallies.iter().filter(|(_, tally)| tally.marks > 0).filter_map(of).flatten().collect();
+        numbers.sort_unstable_by(|a, b| a[0].total_cmp(&b[0]));
+        numbers.dedup();
+        let said = self.sources[0].elevation.said();
+        let remedy = if numbers.is_empty() { "N".to_owned() } else { said.with(&numbers).to_string() };
+        (marks > 0).then(|| {
+            format!(
+                "{marks} samples at or below -32767 or above 100000 m are voids (no such nodata is declared; name it with \
+                 --nodata {remedy}, or declare it with `gdal_translate -a_nodata N IN OUT.tif`)"
+            )
+        })
+    }
+
+    /// What of the numbers tallied hardly are heights, file by file, in words as those of a history.
+    fn doubts(&self, tallies: &Tallies) -> Vec<String> {
+        let of = |(i, tally): (&usize, &Tally)| {
+            Some((self.sources.get(*i)?, doubts(tally, &self.sources.get(*i)?.elevation)))
+        };
+        let doubted: Vec<_> = tallies.iter().filter_map(of).filter(|(_, doubts)| !doubts.is_empty()).collect();
+        let named = |placed: &Placed, clause: &String| match self.sources.len() {
+            1 => clause.clone(),
+            _ => format!("{}: {clause}", placed.handles.path().display()),
+        };
+        let first = doubted.iter().take(DOUBTED_FILES);
+        let mut told: Vec<_> =
+            first.flat_map(|(placed, doubts)| doubts.iter().map(|clause| named(placed, clause))).collect();
+        if doubted.len() > DOUBTED_FILES {
+            told.push(format!(
+                "numbers of {} more files are heights, of which the like holds",
+                doubted.len() - DOUBTED_FILES
+            ));
+        }
+        told
     }
 }
 
@@ -170,15 +228,12 @@ impl Placed {
     ) -> Result<Self> {
         let mut own = History::default();
         let source = Source::open(path, options.band.unwrap_or(1), options.allow_remote)?;
-        let bands = source.dataset.raster_count();
-        if options.band.is_none() && bands > 1 {
-            own.assume(format!("elevations are in band 1 of {bands} (choose another with --band N)"));
-        }
+        let source = source.with_chosen_band(options, &mut own)?;
         if let Some(member) = &source.member {
             own.convert(format!("{member} is taken of the archive, its only raster"));
         }
         let grid = Grid::of(&source, options.cell, alone, &mut own)?;
-        let elevation = Elevation::of(&source, &grid.crs, options.elevation_unit, &mut own)?;
+        let elevation = Elevation::of(&source, &grid.crs, options, &mut own)?;
         let later = base.is_some();
         let (first, onto) = base.unwrap_or_else(|| (path, grid.north_up()));
         let lie = Lie::of(&grid, &onto).ok_or_else(|| no_way([(path, &grid), (first, &onto)]))?;
@@ -203,27 +258,25 @@ impl Placed {
         Ok(Some(twin))
     }
 
-    /// Lays what falls into `window` of the mosaic over `raster`, which holds just that; returns how many samples
-    /// became void by their impossible value alone.
-    fn read(&self, window: Window, raster: &mut Raster, progress: &dyn Fn(f64)) -> Result<usize> {
+    /// Lays what falls into `window` of the mosaic over `raster`, which holds just that, and counts it in `tally`.
+    fn read(&self, window: Window, raster: &mut Raster, tally: &mut Tally, progress: &dyn Fn(f64)) -> Result<()> {
         match self.lie {
             Lie::Aligned { first, flip } => {
                 let first = [0, 1].map(|i| first[i] - window.first[i] as i64);
                 let (own, there) = ([self.grid.columns, self.grid.rows], window.size);
                 if (0..2).any(|i| first[i] >= there[i] as i64 || first[i] + own[i] as i64 <= 0) {
                     // Not even opened: there may be thousands of files.
-                    return Ok(0);
+                    return Ok(());
                 }
-                self.handles.read(|source| self.copy(source, first, flip, raster, progress))
+                self.handles.read(|source| self.copy(source, first, flip, raster, tally, progress))
             }
             Lie::Apart { .. } => {
-                let Some(part) = reach(&raster.grid, &self.grid) else { return Ok(0) };
+                let Some(part) = reach(&raster.grid, &self.grid) else { return Ok(()) };
                 let mut own = Raster::void(self.grid.part(part))?;
                 let first = part.first.map(|first| -(first as i64));
                 let share = |done: f64| progress(done / 2.0);
-                let marks = self.handles.read(|source| self.copy(source, first, [false; 2], &mut own, &share))?;
-                raster.lay(&own, &|done| progress((1.0 + done) / 2.0))?;
-                Ok(marks)
+                self.handles.read(|source| self.copy(source, first, [false; 2], &mut own, tally, &share))?;
+                raster.lay(&own, &|done| progress((1.0 + done) / 2.0))
             }
         }
     }
@@ -236,8 +289,9 @@ impl Placed {
         first: [i64; 2],
         flip: [bool; 2],
         raster: &mut Raster,
+        tally: &mut Tally,
         progress: &dyn Fn(f64),
-    ) -> Result<usize> {
+    ) -> Result<()> {
         let band = source.band()?;
         let (mask, words) = heard(|| match band.mask_flags()?.is_per_dataset() {
             true => band.open_mask_band().map(Some),
@@ -249,48 +303,50 @@ impl Placed {
         let low = [0, 1].map(|i| first[i].max(0));
         let end = [0, 1].map(|i| (first[i] + own[i] as i64).min(there[i] as i64));
         let window = Window { first: low.map(|v| v as usize), size: [0, 1].map(|i| (end[i] - low[i]) as usize) };
-        let (mut marks, mut done) = (0, 0);
+        let mut done = 0;
         for Window { first: at, size } in window.blocks(block_size(self.stored, own[0])) {
             // The first sample of the block in the file, counted backwards where flipped.
             let from = [0, 1].map(|i| {
                 let offset = (at[i] as i64 - first[i]) as usize;
                 if flip[i] { own[i] - offset - size[i] } else { offset }
             });
-            let mut raw = numbers(source, &band, mask.as_ref(), from, size)?;
+            let mut raw = numbers(source, &band, mask.as_ref(), self.elevation.picture(), from, size)?;
             turn(&mut raw, size[0], flip);
             for (row, raw) in raw.chunks_exact(size[0]).enumerate() {
                 let place = (at[1] + row) * there[0] + at[0];
-                marks += self.cover(&mut raster.metres[place..place + size[0]], raw);
+                self.cover(&mut raster.metres[place..place + size[0]], raw, tally);
             }
             done += size[0] * size[1];
             progress(done as f64 / window.samples() as f64);
         }
-        Ok(marks)
+        Ok(())
     }
 
-    /// Covers `metres` with those of the numbers `raw`; returns how many are marks that nobody declared.
-    fn cover(&self, metres: &mut [f32], raw: &[f64]) -> usize {
-        let mut marks = 0;
+    /// Covers `metres` with those of the numbers `raw`, and counts them in `tally`.
+    fn cover(&self, metres: &mut [f32], raw: &[f64], tally: &mut Tally) {
         for (metres, raw) in metres.iter_mut().zip(raw) {
-            match self.elevation.reading(*raw) {
-                Reading::Metres(value) => *metres = value as f32,
-                Reading::Void => {}
-                Reading::Sentinel => marks += 1,
+            let reading = self.elevation.reading(*raw);
+            tally.add(self.elevation.number(*raw), reading);
+            if let Reading::Metres(value) = reading {
+                *metres = value as f32;
             }
         }
-        marks
     }
 }
 
-/// A block of a file's numbers, NaN where the file masks them.
+/// A block of a file's numbers, decoded where it is a picture, NaN where the file masks them.
 fn numbers(
     source: &Source,
     band: &RasterBand,
     mask: Option<&RasterBand>,
+    picture: Option<Encoding>,
     from: [usize; 2],
     size: [usize; 2],
 ) -> Result<Vec<f64>> {
-    let mut raw = block::<f64>(source, band, from, size)?;
+    let mut raw = match picture {
+        Some(encoding) => encoding.decode(source, from, size)?,
+        None => block::<f64>(source, band, from, size)?,
+    };
     if let Some(mask) = mask {
         let seen = block::<u8>(source, mask, from, size)?;
         raw.iter_mut().zip(seen).filter(|(_, seen)| *seen == 0).for_each(|(raw, _)| *raw = f64::NAN);
@@ -299,7 +355,12 @@ fn numbers(
 }
 
 /// One block of numbers, or the error for a damaged file.
-fn block<T: GdalType + Copy>(source: &Source, band: &RasterBand, from: [usize; 2], size: [usize; 2]) -> Result<Vec<T>> {
+pub(super) fn block<T: GdalType + Copy>(
+    source: &Source,
+    band: &RasterBand,
+    from: [usize; 2],
+    size: [usize; 2],
+) -> Result<Vec<T>> {
     let (place, size) = ((from[0] as isize, from[1] as isize), (size[0], size[1]));
     let (block, complaint) = heard(|| band.read_as::<T>(place, size, size, None));
     match (block, complaint) {

@@ -8,12 +8,13 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::elevation::ElevationUnit;
+use super::encoding::Encoding;
 use super::filed::{Filed, exaggerate};
 use super::grid::Grid;
 use super::limits::are_held;
 use super::mosaic::Mosaic;
+use super::nodata::Nodata;
 use super::raster::{FILL_REACH, Raster};
-use super::survey::marked;
 use super::target::Target;
 use super::{Dem, Georeference, History, Samples, Store};
 use crate::error::{Error, Result};
@@ -31,7 +32,8 @@ pub struct ReadOptions {
     pub crop: Option<[f64; 4]>,
     /// Factor on every elevation, above 0 and at most 1000. Default 1.
     pub exaggeration: f64,
-    /// The band with the elevations, from 1. `None`, the default, takes the first.
+    /// The band with the elevations, from 1. `None`, the default, takes the one called elevation, dem, height, idw or mean,
+    /// else the first, and refuses pictures.
     pub band: Option<usize>,
     /// Metres between samples of files that do not say where they lie. Default `None`: such files are refused.
     pub cell: Option<f64>,
@@ -41,6 +43,10 @@ pub struct ReadOptions {
     pub fill_voids: bool,
     /// The unit of elevations, whatever the files say. Default `None`: the files' own, else metres.
     pub elevation_unit: Option<ElevationUnit>,
+    /// Numbers of the files that are voids, beside the one they declare. Default none.
+    pub nodata: Nodata,
+    /// How elevations are packed into the numbers of the files. Default `None`: they are the numbers.
+    pub encoding: Option<Encoding>,
     /// Open files on a network, and VRTs that refer to files outside their folder. Default false.
     pub allow_remote: bool,
     /// Bytes of memory for samples and normals. A DEM that takes more stays in its files, and half of them keep what was
@@ -58,6 +64,8 @@ impl Default for ReadOptions {
             resample: None,
             fill_voids: false,
             elevation_unit: None,
+            nodata: Nodata::default(),
+            encoding: None,
             allow_remote: false,
             memory: 1 << 30,
         }
@@ -89,7 +97,7 @@ pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Dem> {
 /// [`LARGEST_SIDE`](super::LARGEST_SIDE) along a side, where nothing is warped or filled.
 ///
 /// Sample (c, r) lies in the middle of its pixel. Scale, offset and unit of the band are applied, then the exaggeration.
-/// Voids are the declared nodata value, masked and transparent samples, numbers that are not finite, and marks for no
+/// Voids are the declared nodata value and those of the options, masked and transparent samples, numbers that are not finite, and marks for no
 /// data that the file forgot to declare: at or below -32767, above 100 000 m. Of files that overlap the last wins; those
 /// on another grid than the first are warped to it. Degrees and turned grids are warped to square cells in metres.
 /// What was converted and what had to be assumed stands in [`Dem::history`]. A path may name one grid of a container as
@@ -153,8 +161,8 @@ fn hold(
     history: &mut History,
     progress: &dyn Fn(Stage, f64),
 ) -> Result<Samples> {
-    let (mut raster, marks) = files.raster(&|done| progress(Stage::Read, done))?;
-    marked(marks).into_iter().for_each(|clause| history.assume(clause));
+    let (mut raster, tallies) = files.raster(&|done| progress(Stage::Read, done))?;
+    files.assumed(&tallies).into_iter().for_each(|clause| history.assume(clause));
     if let Some(grid) = warped {
         let mut onto = Raster::void(grid.clone())?;
         onto.lay(&raster, &|done| progress(Stage::Warp, done))?;
@@ -167,7 +175,7 @@ fn hold(
     }
     let Raster { grid, mut metres } = raster;
     if metres.iter().all(|height| height.is_nan()) {
-        return Err(files.all_void(metres.len()));
+        return Err(files.all_void(metres.len(), &tallies));
     }
     exaggerate(&mut metres, options.exaggeration);
     Ok(Samples::new(grid.whole(), metres))
@@ -193,6 +201,10 @@ fn check_options(options: &ReadOptions) -> Result<()> {
             let what = format!("{metres} is no size of a cell");
             return Err(Error::flag(flag, what, "give metres, from 0.001 to 1000000"));
         }
+    }
+    if let (Some(encoding), Some(_)) = (options.encoding.filter(|encoding| encoding.is_picture()), options.band) {
+        let what = format!("{} takes the three bands of a picture, not one", encoding.name());
+        return Err(Error::flag("--encoding", what, "leave out --band or --encoding"));
     }
     let Some([west, south, east, north]) = options.crop else { return Ok(()) };
     let finite = [west, south, east, north].iter().all(|edge| edge.is_finite());

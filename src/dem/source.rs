@@ -107,15 +107,21 @@ impl Source {
         if self.dataset.raster_count() == 0 {
             return Err(self.no_band(name));
         }
+        self.check_type()?;
+        if self.columns < MIN_SIDE || self.rows < MIN_SIDE {
+            let what = format!("is {} x {} samples; a surface needs at least 2 x 2", self.columns, self.rows);
+            return Err(self.error(what, "give a larger grid"));
+        }
+        Ok(())
+    }
+
+    /// Real numbers.
+    pub(super) fn check_type(&self) -> Result<()> {
         if self.band()?.band_type() == GdalDataType::Unknown {
             return Err(self.error(
                 "holds complex numbers, not elevations",
                 "give a file of real numbers, for instance made by `gdal_translate -ot Float32 IN OUT.tif`",
             ));
-        }
-        if self.columns < MIN_SIDE || self.rows < MIN_SIDE {
-            let what = format!("is {} x {} samples; a surface needs at least 2 x 2", self.columns, self.rows);
-            return Err(self.error(what, "give a larger grid"));
         }
         Ok(())
     }

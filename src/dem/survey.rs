@@ -22,6 +22,9 @@ pub struct Survey {
     pub voids: usize,
     /// Of these, samples that are void by their impossible value alone; 0 for a held DEM, whose history tells.
     pub marks: usize,
+    /// What had to be assumed of the files' numbers, in words as those of a history; empty for a held DEM, whose history
+    /// tells.
+    pub assumed: Vec<String>,
     /// Patches, two a cell, whose corners all hold an elevation.
     pub patches: u64,
     /// Exaggerated metres of every k-th sample of every k-th row of a filed DEM, k as [`Dem::thinning`] says, row-major,
@@ -59,13 +62,6 @@ impl Figures {
     }
 }
 
-impl Survey {
-    /// What of these figures had to be assumed of a filed DEM, in words as those of its history.
-    pub fn assumed(&self) -> Option<String> {
-        marked(self.marks)
-    }
-}
-
 impl<'a> SurveyBuilder<'a> {
     /// Of a DEM, no row seen yet.
     pub fn new(dem: &'a Dem) -> Self {
@@ -90,12 +86,16 @@ impl<'a> SurveyBuilder<'a> {
     /// [`Error::Input`] for a filed DEM that is all void.
     pub fn finish(self) -> Result<Survey> {
         let Self { figures: Figures(range, voids, patches), thinned, validity, dem } = self;
-        let marks = if let Store::Filed(filed) = &dem.store { filed.marks() } else { 0 };
-        let range = Some(range).filter(|[low, high]| low <= high);
-        match (&dem.store, range) {
-            (Store::Filed(filed), None) => Err(filed.all_void(voids)),
-            _ => Ok(Survey { range, voids, marks, patches, thinned, validity: validity.finish() }),
+        let (range, validity) = (Some(range).filter(|[low, high]| low <= high), validity.finish());
+        let Store::Filed(filed) = &dem.store else {
+            return Ok(Survey { range, voids, marks: 0, assumed: Vec::new(), patches, thinned, validity });
+        };
+        let tallies = filed.tallies();
+        if range.is_none() {
+            return Err(filed.all_void(voids, &tallies));
         }
+        let marks = tallies.values().map(|tally| tally.marks).sum();
+        Ok(Survey { range, voids, marks, assumed: filed.assumed(&tallies), patches, thinned, validity })
     }
 }
 
@@ -191,11 +191,4 @@ impl Dem {
     fn surveyed(&self) -> Option<&Survey> {
         self.kept(self.survey(&|_| ()))
     }
-}
-
-/// What is assumed where so many samples are void by their impossible value alone.
-pub(super) fn marked(marks: usize) -> Option<String> {
-    let clause = "samples at or below -32767 or above 100000 m are voids (no such nodata is declared; \
-                  declare it with `gdal_translate -a_nodata N IN OUT.tif`)";
-    (marks > 0).then(|| format!("{marks} {clause}"))
 }

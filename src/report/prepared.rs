@@ -5,7 +5,8 @@
 //! times and sizes, the crop, the exaggeration) and the code that makes it:
 //!
 //! ```text
-//! blocks of overviews | header | thinned samples | validity | index of the blocks | pyramid | where the header begins, hash from there
+//! blocks of overviews | header | thinned samples | validity | index of the blocks | pyramid | assumed | where the header begins,
+//! hash from there
 //! ```
 //!
 //! What is damaged is noticed: blocks when they are read, the rest at once.
@@ -49,6 +50,8 @@ struct Header {
     patches: u64,
     thinned: u64,
     validity: u64,
+    /// Bytes of what was assumed, a line each, behind the pyramid.
+    assumed: u64,
 }
 
 /// The last bytes of a file.
@@ -147,7 +150,8 @@ fn make(surface: &Surface, path: &Path, progress: &dyn Fn(f64)) -> Result<Result
 impl Sheet {
     /// Writes what follows the blocks.
     fn finish(&mut self, survey: &Survey, index: &[Entry], pyramid: &Pyramid) {
-        let Survey { range, voids, marks, patches, thinned, validity } = survey;
+        let Survey { range, voids, marks, assumed, patches, thinned, validity } = survey;
+        let assumed = assumed.join("\n");
         let header = Header {
             range: range.unwrap_or([1.0, 0.0]),
             voids: *voids as u64,
@@ -155,6 +159,7 @@ impl Sheet {
             patches: *patches,
             thinned: thinned.len() as u64,
             validity: validity.words().len() as u64,
+            assumed: assumed.len() as u64,
         };
         let begin = self.bytes;
         self.hash.reset();
@@ -163,6 +168,7 @@ impl Sheet {
         self.write(bytemuck::cast_slice(validity.words()));
         self.write(bytemuck::cast_slice(index));
         pyramid.bytes().for_each(|bytes| self.write(bytes));
+        self.write(assumed.as_bytes());
         let footer = Footer { header: begin, hash: self.hash.digest() };
         self.write(bytemuck::bytes_of(&footer));
     }
@@ -185,8 +191,8 @@ fn recall(surface: &Surface, path: &Path, file: File) -> io::Result<()> {
     };
     let mut header = Header::zeroed();
     fill(bytemuck::bytes_of_mut(&mut header))?;
-    let Header { range, voids, marks, patches, thinned, validity } = header;
-    if thinned.max(validity) > size {
+    let Header { range, voids, marks, patches, thinned, validity, assumed } = header;
+    if thinned.max(validity).max(assumed) > size {
         return Err(damaged());
     }
     let mut thinned = vec![0.0; thinned as usize];
@@ -195,14 +201,17 @@ fn recall(surface: &Surface, path: &Path, file: File) -> io::Result<()> {
     fill(bytemuck::cast_slice_mut(&mut valid))?;
     let mut index = vec![Entry::zeroed(); Overviews::blocks(dem)];
     fill(bytemuck::cast_slice_mut(&mut index))?;
-    let pyramid = Pyramid::from_bytes(dem, fill)?;
+    let pyramid = Pyramid::from_bytes(dem, &mut fill)?;
+    let mut words = vec![0; assumed as usize];
+    fill(&mut words)?;
     if hash.digest() != footer.hash {
         return Err(damaged());
     }
     let range = Some(range).filter(|[low, high]| low <= high);
     let overviews = Overviews::new(dem, path, file.into_inner(), index).ok_or_else(damaged)?;
     let validity = Validity::from_words(dem, valid).ok_or_else(damaged)?;
-    dem.remember(Survey { range, voids: voids as usize, marks: marks as usize, patches, thinned, validity });
+    let assumed = String::from_utf8(words).map_err(|_| damaged())?.lines().map(str::to_owned).collect();
+    dem.remember(Survey { range, voids: voids as usize, marks: marks as usize, assumed, patches, thinned, validity });
     dem.remember_overviews(overviews);
     surface.remember(pyramid);
     Ok(())

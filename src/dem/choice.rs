@@ -1,0 +1,123 @@
+//! Which band of a raster holds the elevations, and whether it can: colours and transparency are none.
+//!
+//! Without `--band` the first band in reading order is taken, or the one whose name says that it is the elevation; what
+//! is a mask is passed over. Not handled: names in other languages than English.
+
+use gdal::Metadata;
+use gdal::raster::{ColorInterpretation, GdalDataType};
+
+use super::encoding::Encoding;
+use super::source::Source;
+use super::{History, ReadOptions};
+use crate::error::{Error, Result};
+
+/// Words for elevation in the names of bands, the surest first. The last two are ways of gridding points.
+const NAMES: [&str; 5] = ["elevation", "dem", "height", "idw", "mean"];
+/// Bands whose names are told.
+const TOLD: usize = 12;
+
+impl Source {
+    /// The same file with the band that `options` ask for, or else the one that should hold elevations; what was assumed
+    /// goes to `history`. Fails where that band is a part of a picture, or the file none of the asked encoding.
+    pub fn with_chosen_band(self, options: &ReadOptions, history: &mut History) -> Result<Self> {
+        if let Some(encoding) = options.encoding {
+            encoding.check(&self)?;
+            if encoding.is_picture() {
+                history.convert(format!("elevations decoded from three bands ({})", encoding.name()));
+                return Ok(Self { band: 1, ..self });
+            }
+        }
+        let chosen = if options.band.is_some() { self } else { self.by_name(history)? };
+        chosen.check_type()?;
+        let kind = chosen.band()?.band_type();
+        if kind == GdalDataType::UInt8 && options.elevation_unit.is_none() {
+            history.assume(
+                "its 8-bit numbers, 0 to 255, are heights in whole metres (a picture or a hillshade has such numbers: \
+                 then give the DEM it was made from; for heights say --elevation-unit m)"
+                    .into(),
+            );
+        }
+        Ok(chosen)
+    }
+
+    fn by_name(self, history: &mut History) -> Result<Self> {
+        let bands: Vec<_> = (1..=self.dataset.raster_count())
+            .filter(|band| self.colour(*band) != ColorInterpretation::AlphaBand)
+            .map(|band| (band, self.name_of(band)))
+            .collect();
+        let named = NAMES.iter().find_map(|word| bands.iter().find(|(_, name)| has_word(name, word)));
+        let Some((band, name)) = named.or(bands.first()) else { return Err(self.picture(1)) };
+        if !matches!(self.colour(*band), ColorInterpretation::Undefined | ColorInterpretation::GrayIndex)
+            || (bands.len() == 3 && Encoding::of(&self)?.is_some())
+        {
+            return Err(self.picture(*band));
+        }
+        if bands.len() > 1 {
+            let count = bands.len();
+            let all = names(&bands);
+            let called = if named.is_some() { format!(", called {name}") } else { String::new() };
+            history.assume(format!(
+                "elevations are in band {band} of {count}{called} ({all}choose another with --band N)"
+            ));
+        }
+        Ok(Self { band: *band, ..self })
+    }
+
+    /// What a picture is refused with.
+    fn picture(&self, band: usize) -> Error {
+        if let Ok(Some(encoding)) = Encoding::of(self) {
+            let name = encoding.name();
+            let what = format!("is a picture with elevations packed into its colours ({name})");
+            return self.error(what, format!("add --encoding {name} to decode it"));
+        }
+        let colour = match self.colour(band) {
+            ColorInterpretation::PaletteIndex => "numbers of colours in a palette",
+            ColorInterpretation::AlphaBand => "transparency",
+            ColorInterpretation::RedBand => "the red of a picture",
+            ColorInterpretation::GreenBand => "the green of a picture",
+            ColorInterpretation::BlueBand => "the blue of a picture",
+            _ => "a colour of a picture",
+        };
+        self.error(
+            format!("band {band} holds {colour}, not elevations"),
+            format!("give the DEM that it was made from, or --band {band} to draw these numbers as heights"),
+        )
+    }
+
+    fn colour(&self, band: usize) -> ColorInterpretation {
+        self.dataset.rasterband(band).map_or(ColorInterpretation::Undefined, |band| band.color_interpretation())
+    }
+
+    /// Its description, or the variable of netCDF that it comes from; empty where it has neither.
+    fn name_of(&self, band: usize) -> String {
+        let Ok(band) = self.dataset.rasterband(band) else { return String::new() };
+        let described = band.description().unwrap_or_default();
+        if described.is_empty() { band.metadata_item("NETCDF_VARNAME", "").unwrap_or_default() } else { described }
+    }
+}
+
+/// Numbers and names of bands, if any has a name.
+fn names(bands: &[(usize, String)]) -> String {
+    if bands.iter().all(|(_, name)| name.is_empty()) {
+        return String::new();
+    }
+    let told = bands.iter().take(TOLD).map(|(band, name)| format!("{band} {name}").trim_end().to_owned());
+    let more = if bands.len() > TOLD { ", …" } else { "" };
+    format!("the bands are {}{more}; ", told.collect::<Vec<_>>().join(", "))
+}
+
+/// Whether a text has `word`, small letters, between signs that are no letters or digits.
+pub(super) fn has_word(text: &str, word: &str) -> bool {
+    text.split(|c: char| !c.is_alphanumeric()).any(|part| part.to_lowercase() == word)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_are_whole() {
+        assert!(has_word("Elevation (m)", "elevation") && has_word("z_mean", "mean") && has_word("DEM", "dem"));
+        assert!(!has_word("demand", "dem") && !has_word("depths", "depth") && !has_word("", "dem"));
+    }
+}

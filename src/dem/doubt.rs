@@ -1,0 +1,280 @@
+//! Heights that cannot be, told from a tally of a file's numbers: marks for no data that nobody declared, numbers below
+//! zero that wrapped round, units that are not metres.
+//!
+//! A mark is one exact number at an end of the range that stands far from all others: farther than a tenth of their
+//! range, and ten times as far as they stand from one another. The largest number of the type is one, and -9999 where
+//! nothing is lower. On Earth no land is outside -11 100 to 8 900 m. Not handled: marks amid the heights, such as a sea of
+//! -1, and what was smeared by a warp before the file was written, but for what is off the Earth.
+
+use gdal::raster::GdalDataType;
+
+use super::elevation::{EARTH, Elevation, Reading};
+use super::nodata::{Nodata, shown};
+use super::tally::Tally;
+
+/// A gap this large against the range of all others sets a number apart …
+const OF_RANGE: f64 = 0.1;
+/// … where it is so many times the distance between the others next to it.
+const OF_SPACING: f64 = 10.0;
+/// Distinct numbers that there must be beside it: land of two or three heights is a drawing, not a measurement.
+const OTHERS: usize = 3;
+/// The usual mark of those who cannot write one that is impossible.
+const USUAL: f64 = -9999.0;
+/// Most numbers named one by one.
+const NAMED: usize = 4;
+/// Share of samples up to which those outside all land may be spikes.
+const FEW: f64 = 0.01;
+/// Units smaller than the metre: words, metres, least height in metres at which a DEM of mountains would end.
+const UNITS: [(&str, f64); 3] = [("dm", 0.1), ("cm", 0.01), ("mm", 0.001)];
+/// Metres of a foot.
+const FOOT: f64 = 0.3048;
+/// What is no higher is land too low for the unit to be likely.
+const LOWEST_TOP: f64 = 30.0;
+
+/// One file's numbers on trial.
+struct Trial<'a> {
+    tally: &'a Tally,
+    elevation: &'a Elevation,
+    /// Numbers not yet told to be marks, from the outermost on.
+    low: Vec<(f64, u64)>,
+    high: Vec<(f64, u64)>,
+    marks: Vec<(f64, u64)>,
+    wrapped: bool,
+}
+
+/// What is assumed of numbers that hardly are heights, each with what to do, to stand behind "assumed that".
+pub(super) fn doubts(tally: &Tally, elevation: &Elevation) -> Vec<String> {
+    let mut trial = Trial::new(tally, elevation);
+    let wrapped = trial.wrapped();
+    trial.take_marks();
+    let (marked, outside) = (trial.marked(), trial.outside());
+    wrapped.into_iter().chain(marked).chain(outside).collect()
+}
+
+/// Units other than the metre in which all numbers are heights on Earth, if there are any, and how high they reach then.
+pub(super) fn other_units(tally: &Tally, elevation: &Elevation) -> Option<String> {
+    let trial = Trial::new(tally, elevation);
+    let huge = trial.huge();
+    if huge > 0 { trial.units(huge) } else { None }
+}
+
+/// The numbers that are voids by their impossible value alone, for `--nodata`; `None` where they are too many.
+pub(super) fn sentinels(tally: &Tally, elevation: &Elevation) -> Option<Vec<[f64; 2]>> {
+    let both = tally.low.iter().chain(&tally.high);
+    let mut found: Vec<_> =
+        both.filter(|(number, _)| elevation.reading(*number) == Reading::Sentinel).copied().collect();
+    found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+    found.dedup();
+    let all = found.iter().map(|(_, count)| *count).sum::<u64>() == tally.marks as u64 && found.len() <= NAMED;
+    let typed = |number: f64| shown(number, elevation.kind()).parse().unwrap_or(number);
+    all.then(|| found.iter().map(|(number, _)| [typed(*number); 2]).collect())
+}
+
+impl<'a> Trial<'a> {
+    fn new(tally: &'a Tally, elevation: &'a Elevation) -> Self {
+        let heights = |list: &[(f64, u64)]| {
+            let sound = |(number, _): &&(f64, u64)| matches!(elevation.reading(*number), Reading::Metres(_));
+            list.iter().filter(sound).copied().collect::<Vec<_>>()
+        };
+        let (low, high) = (heights(&tally.low), heights(&tally.high));
+        Self { tally, elevation, low, high, marks: Vec::new(), wrapped: false }
+    }
+
+    /// Numbers in the upper half of an unsigned type, none near the middle: they were below zero.
+    fn wrapped(&mut self) -> Option<String> {
+        let Tally { upper, below, high, .. } = self.tally;
+        let modulus = self.elevation.modulus();
+        let distinct = high.iter().filter(|(number, _)| *number >= modulus / 2.0).count();
+        let whole = upper.least.fract() == 0.0 && upper.greatest < modulus;
+        // Two may be two marks, unless the others go down to zero.
+        let through_zero = self.low.first().is_some_and(|(least, _)| (0.0..below * OF_RANGE).contains(least));
+        let several = distinct >= OTHERS || (distinct == 2 && through_zero);
+        if !several || !whole || self.elevation.is_signed() || upper.least - below.max(0.0) < modulus / 2.0 {
+            return None;
+        }
+        self.wrapped = true;
+        self.high = vec![(*below, 1)];
+        let [least, greatest] = [upper.least, upper.greatest].map(|number| number - modulus);
+        Some(format!(
+            "{} from {} to {} are heights (they look like {least} to {greatest}, stored without a sign; if they are, add \
+             --encoding signed)",
+            self.share(upper.count),
+            upper.least,
+            upper.greatest
+        ))
+    }
+
+    /// Moves numbers that stand apart from the ends of the range to `marks`, until neither end has one.
+    fn take_marks(&mut self) {
+        loop {
+            let [Some(low), Some(high)] = [self.low.first(), self.high.first()].map(|end| end.map(|end| end.0)) else {
+                return;
+            };
+            if low >= high {
+                return;
+            }
+            let (at_low, at_high) = (self.is_mark(&self.low, high), !self.wrapped && self.is_mark(&self.high, low));
+            if at_high {
+                self.marks.push(self.high.remove(0));
+            } else if at_low {
+                self.marks.push(self.low.remove(0));
+            } else {
+                return;
+            }
+        }
+    }
+
+    /// Whether the first number of `list`, which goes from one end of the range inward, is no height; `far` is the other
+    /// end.
+    fn is_mark(&self, list: &[(f64, u64)], far: f64) -> bool {
+        let [(number, count), others @ ..] = list else { return false };
+        if self.is_last_of_type(*number) {
+            return true;
+        }
+        let Some((next, _)) = others.first() else { return false };
+        let (gap, range) = ((next - number).abs(), (far - next).abs());
+        if *number == USUAL && *number < *next && (*count > 1 || gap > range / 2.0) {
+            return true;
+        }
+        let spacing = match others {
+            [_, .., (last, _)] => (last - next).abs() / (others.len() - 1) as f64,
+            _ => range,
+        };
+        let apart = gap > OF_RANGE * range && (gap > OF_SPACING * spacing || gap > range);
+        *count > 1 && others.len() >= OTHERS && apart
+    }
+
+    /// The largest number of an integer type; 0, the smallest of an unsigned one, is a height like others.
+    fn is_last_of_type(&self, number: f64) -> bool {
+        match self.elevation.kind() {
+            GdalDataType::UInt16 => !self.elevation.is_signed() && number == f64::from(u16::MAX),
+            GdalDataType::Int16 => number == f64::from(i16::MAX),
+            GdalDataType::UInt32 => !self.elevation.is_signed() && number == f64::from(u32::MAX),
+            GdalDataType::Int32 => number == f64::from(i32::MAX) || number == f64::from(i32::MIN),
+            _ => false,
+        }
+    }
+
+    fn marked(&self) -> Option<String> {
+        if self.marks.is_empty() {
+            return None;
+        }
+        let each = |(number, count): &(f64, u64)| format!("{} of exactly {}", self.share(*count), self.shown(*number));
+        let marks = self.marks.iter().map(each).collect::<Vec<_>>().join(" and ");
+        let ends = [self.low.first(), self.high.first()].map(|end| end.map_or(f64::NAN, |end| end.0));
+        let [low, high] = ends.map(|end| self.shown(end));
+        let all = if low == high { format!("all others are {low}") } else { format!("all others are {low} to {high}") };
+        let remedy = self.nodata(&[]);
+        let minus = self.elevation.modulus() - 1.0;
+        let wrapped =
+            self.marks.iter().any(|(number, _)| *number == minus) && self.low.first().is_some_and(|end| end.0 == 0.0);
+        let signed = if wrapped { ", if they are -1 without its sign, --encoding signed" } else { "" };
+        Some(format!("{marks} are heights ({all}; if they mark missing data, add --nodata {remedy}{signed})"))
+    }
+
+    /// What is left outside all land of the Earth.
+    fn outside(&self) -> Option<String> {
+        let huge = self.huge();
+        let sides = [self.beyond(0, 0), self.beyond(1, huge)];
+        let (mut clauses, mut ranges, mut all) = (Vec::new(), Vec::new(), 0);
+        for (side, (count, numbers)) in sides.iter().enumerate() {
+            let (Some((least, _)), Some((greatest, _))) = (numbers.first(), numbers.last()) else { continue };
+            let known = numbers.iter().map(|(_, count)| count).sum::<u64>() == *count;
+            let one_by_one = known && numbers.len() <= NAMED;
+            ranges.extend(numbers.iter().filter(|_| one_by_one).map(|(number, _)| [*number; 2]));
+            ranges.extend((!one_by_one).then_some([*least, *greatest]));
+            let span = [least, greatest].map(|number| self.shown(*number));
+            let span = if least == greatest { span[0].clone() } else { span.join(" to ") };
+            let word = ["below", "above"][side];
+            clauses.push(format!("{} of {span}, {word} all land on Earth ({} m),", self.share(*count), EARTH[side]));
+            all += count;
+        }
+        if clauses.is_empty() {
+            return None;
+        }
+        let units = self.units(huge);
+        let nodata = format!("if they are none, add --nodata {}", self.nodata(&ranges));
+        // A few may be spikes, whatever the unit.
+        let few = (all as f64) < FEW * self.tally.samples as f64;
+        let remedy = match units {
+            Some(units) if few => format!("in other units add {units}; {nodata}"),
+            Some(units) => format!("in other units add {units}"),
+            None => nodata,
+        };
+        Some(format!("{} are heights in the right unit ({remedy})", clauses.join(" and ")))
+    }
+
+    /// How many numbers lie below (0) or above (1) all land on Earth, marks left out, and the outermost of them from the
+    /// least on, each with its count where that is known. `huge` are those that pass for marks by their size alone.
+    fn beyond(&self, side: usize, huge: u64) -> (u64, Vec<(f64, u64)>) {
+        let metres = |number: f64| match self.elevation.reading(number) {
+            Reading::Metres(metres) => metres,
+            _ => f64::NAN,
+        };
+        let is_beyond = |number: f64| if side == 0 { metres(number) < EARTH[0] } else { metres(number) > EARTH[1] };
+        let marked: u64 = self.marks.iter().filter(|(number, _)| is_beyond(*number)).map(|(_, count)| count).sum();
+        let of = self.tally.outside[side];
+        let wrapped = if self.wrapped && side == 1 { self.tally.upper.count } else { 0 };
+        let count = of.count.saturating_sub(marked + wrapped);
+        let ends = self.low.iter().chain(&self.high).filter(|(number, _)| is_beyond(*number)).copied();
+        let mut numbers: Vec<_> = if count > 0 { ends.collect() } else { Vec::new() };
+        let mut further = Vec::new();
+        if count > 0 {
+            further.extend([of.least, of.greatest]);
+        }
+        if huge > 0 {
+            further.extend([self.tally.huge.least, self.tally.huge.greatest]);
+        }
+        further.retain(|number| !numbers.iter().chain(&self.marks).any(|(known, _)| known == number));
+        if self.wrapped {
+            further.retain(|number| *number < self.tally.upper.least);
+        }
+        numbers.extend(further.into_iter().map(|number| (number, 0)));
+        numbers.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        numbers.dedup();
+        (count + huge, numbers)
+    }
+
+    /// How many numbers that pass for marks by their size alone are many different ones, as heights in a small unit are.
+    fn huge(&self) -> u64 {
+        let huge = self.tally.huge;
+        let distinct = self.tally.high.iter().filter(|(number, _)| *number >= huge.least).count();
+        let fits = huge.greatest * UNITS[2].1 <= EARTH[1] && self.elevation.is_plain_metres();
+        if fits && distinct > OTHERS { huge.count } else { 0 }
+    }
+
+    /// Units in which all that is left is on Earth, each with the highest.
+    fn units(&self, huge: u64) -> Option<String> {
+        let greatest = self.high.first().map_or(f64::NEG_INFINITY, |end| end.0);
+        let greatest = if huge > 0 { self.tally.huge.greatest.max(greatest) } else { greatest };
+        let least = self.low.first().map_or(greatest, |end| end.0);
+        if !self.elevation.is_plain_metres() {
+            return None;
+        }
+        let on_earth = |metres: f64| least * metres >= EARTH[0] && greatest * metres <= EARTH[1];
+        let likely = |metres: f64| on_earth(metres) && greatest.max(-least) * metres > LOWEST_TOP;
+        let units = UNITS.into_iter().chain([("ft", FOOT)]).filter(|(_, metres)| likely(*metres));
+        let told: Vec<_> =
+            units.map(|(unit, metres)| format!("--elevation-unit {unit}: up to {:.1} m", greatest * metres)).collect();
+        (!told.is_empty()).then(|| told.join(", "))
+    }
+
+    /// What to type for `--nodata`: what was said before, the marks, and `more`.
+    fn nodata(&self, more: &[[f64; 2]]) -> Nodata {
+        let as_shown = |number: f64| self.shown(number).parse().unwrap_or(number);
+        let marks: Vec<_> = self.marks.iter().map(|(number, _)| [as_shown(*number); 2]).collect();
+        let more: Vec<_> = more.iter().map(|range| range.map(as_shown)).collect();
+        self.elevation.said().with(&marks).with(&more)
+    }
+
+    /// So many samples and their share.
+    fn share(&self, count: u64) -> String {
+        let percent = 100.0 * count as f64 / self.tally.samples.max(1) as f64;
+        let few = if percent < 0.1 { "under 0.1".to_owned() } else { format!("{percent:.1}") };
+        format!("{count} {} ({few} %)", if count == 1 { "sample" } else { "samples" })
+    }
+
+    fn shown(&self, number: f64) -> String {
+        shown(number, self.elevation.kind())
+    }
+}

@@ -1,0 +1,157 @@
+//! Elevations packed into whole numbers: into the three colours of a picture, or below 0 into unsigned ones.
+//!
+//! Formulas: Mapbox Terrain-RGB v1, and Terrarium of Mapzen. Which of the two a picture is, if any, shows when a few of
+//! its windows are decoded: the heights are on Earth, and the colour that counts most hardly changes from one pixel to
+//! the next, while in a picture for people all three change alike. Not handled: pictures that were compressed with
+//! losses or resampled, whose heights jump.
+
+use gdal::raster::{ColorInterpretation, GdalDataType};
+
+use super::elevation::EARTH;
+use super::glance::windows;
+use super::grid::Window;
+use super::mosaic::block;
+use super::source::Source;
+use crate::error::Result;
+
+/// Share of samples whose heights must be on Earth.
+const ON_EARTH: f64 = 0.99;
+/// Most that the first colour may change beside the others.
+const STEADY: f64 = 0.1;
+
+/// How elevations are packed into the numbers of a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Encoding {
+    /// Three bands of 8 bits: -10000 + (R x 65536 + G x 256 + B) / 10 metres.
+    TerrainRgb,
+    /// Three bands of 8 bits: R x 256 + G + B / 256 - 32768 metres.
+    Terrarium,
+    /// Unsigned numbers, the upper half of which are below 0: 65535 of 16 bits is -1.
+    Signed,
+}
+
+impl Encoding {
+    /// Those of pictures.
+    pub(super) const PICTURES: [Self; 2] = [Self::TerrainRgb, Self::Terrarium];
+
+    /// The word for `--encoding`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::TerrainRgb => "terrain-rgb",
+            Self::Terrarium => "terrarium",
+            Self::Signed => "signed",
+        }
+    }
+
+    /// Whether three bands make one elevation.
+    pub(super) fn is_picture(self) -> bool {
+        self != Self::Signed
+    }
+
+    fn metres(self, [red, green, blue]: [u8; 3]) -> f64 {
+        let [red, green, blue] = [red, green, blue].map(f64::from);
+        match self {
+            // One division, so that a decimal typed by hand is the same number.
+            Self::TerrainRgb => (red * 65536.0 + green * 256.0 + blue - 100_000.0) / 10.0,
+            Self::Terrarium => red * 256.0 + green + blue / 256.0 - 32768.0,
+            Self::Signed => red,
+        }
+    }
+
+    /// Metres of a block of a picture, NaN where all three colours are the number that it declares void.
+    pub(super) fn decode(self, source: &Source, from: [usize; 2], size: [usize; 2]) -> Result<Vec<f64>> {
+        let void = source.band()?.no_data_value();
+        let colours = colours(source, from, size)?;
+        let is_void = |colour: [u8; 3]| void.is_some_and(|void| colour.iter().all(|part| f64::from(*part) == void));
+        let metres = |colour| if is_void(colour) { f64::NAN } else { self.metres(colour) };
+        Ok(colours.into_iter().map(metres).collect())
+    }
+
+    /// The encoding of pictures that this one shows, if any.
+    pub(super) fn of(source: &Source) -> Result<Option<Self>> {
+        for encoding in Self::PICTURES {
+            if encoding.fits(source)? {
+                return Ok(Some(encoding));
+            }
+        }
+        Ok(None)
+    }
+
+    /// Fails unless `source` is a picture of elevations packed so.
+    pub(super) fn check(self, source: &Source) -> Result<()> {
+        if !self.is_picture() || self.fits(source)? {
+            return Ok(());
+        }
+        let other = Self::of(source)?.map(|other| format!("give --encoding {}: it is that", other.name()));
+        let name = self.name();
+        let remedy = other.unwrap_or_else(|| "leave --encoding out, or give the picture that has elevations".into());
+        Err(source.error(format!("is no picture of elevations as {name} packs them"), remedy))
+    }
+
+    /// Whether `source` has three bands of 8 bits that decode to land.
+    fn fits(self, source: &Source) -> Result<bool> {
+        let bands = source.dataset.raster_count();
+        let byte = |band: usize| source.dataset.rasterband(band).is_ok_and(|b| b.band_type() == GdalDataType::UInt8);
+        let alpha = |band| {
+            let of = source.dataset.rasterband(band);
+            of.is_ok_and(|band| band.color_interpretation() == ColorInterpretation::AlphaBand)
+        };
+        if !(1..=3).all(byte) || bands > 4 || (bands == 4 && !alpha(4)) {
+            return Ok(false);
+        }
+        let void = source.band()?.no_data_value();
+        let (mut seen, mut on_earth, mut changes) = (0, 0, [0; 3]);
+        for Window { first, size } in windows([source.columns, source.rows]) {
+            let mut colours = colours(source, first, size)?;
+            if bands == 4 {
+                let opaque = block::<u8>(
+                    source,
+                    &source.dataset.rasterband(4).map_err(|_| source.unreadable(None))?,
+                    first,
+                    size,
+                )?;
+                colours
+                    .iter_mut()
+                    .zip(opaque)
+                    .filter(|(_, opaque)| *opaque == 0)
+                    .for_each(|(colour, _)| *colour = [0; 3]);
+            }
+            // Black is no data in both, declared or not.
+            let is_void = |colour: [u8; 3]| colour == [0; 3] || void.is_some_and(|v| colour.map(f64::from) == [v; 3]);
+            for row in colours.chunks_exact(size[0]) {
+                let valid = row.iter().filter(|colour| !is_void(**colour));
+                seen += valid.clone().count();
+                on_earth += valid.filter(|colour| (EARTH[0]..=EARTH[1]).contains(&self.metres(**colour))).count();
+                for pair in row.windows(2).filter(|pair| !pair.iter().any(|colour| is_void(*colour))) {
+                    (0..3).for_each(|i| changes[i] += u64::from(pair[0][i].abs_diff(pair[1][i])));
+                }
+            }
+        }
+        let [first, second, third] = changes.map(|sum| sum as f64);
+        let land = seen > 0 && on_earth as f64 >= ON_EARTH * seen as f64;
+        Ok(land && first <= STEADY * second.max(third))
+    }
+}
+
+/// The first three bands of a block, pixel by pixel.
+fn colours(source: &Source, from: [usize; 2], size: [usize; 2]) -> Result<Vec<[u8; 3]>> {
+    let band = |i: usize| {
+        let band = source.dataset.rasterband(i).map_err(|_| source.unreadable(None))?;
+        block::<u8>(source, &band, from, size)
+    };
+    let [red, green, blue] = [band(1)?, band(2)?, band(3)?];
+    Ok(red.into_iter().zip(green).zip(blue).map(|((red, green), blue)| [red, green, blue]).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn formulas() {
+        assert_eq!(Encoding::TerrainRgb.metres([1, 134, 160]), 0.0);
+        assert_eq!(Encoding::TerrainRgb.metres([0, 0, 1]), -9999.9);
+        assert_eq!(Encoding::Terrarium.metres([128, 0, 0]), 0.0);
+        assert_eq!(Encoding::Terrarium.metres([131, 232, 128]), 1000.5);
+    }
+}
