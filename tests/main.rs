@@ -2,6 +2,7 @@
 
 mod agreement;
 mod borders;
+mod cache;
 mod chosen_view;
 mod cli;
 mod closed_forms;
@@ -29,6 +30,7 @@ mod left_out;
 mod memory;
 mod mesh;
 mod mixed;
+mod overwritten;
 mod pieces;
 mod pool;
 mod prepared;

@@ -1,5 +1,6 @@
 //! The command line, one file a subcommand: flags as typed become options checked.
 
+pub mod cache;
 pub mod compare;
 pub mod device;
 pub mod draw;
@@ -42,6 +43,8 @@ enum Command {
     Draw(Box<draw::DrawArguments>),
     /// Compare silhouette methods: their errors and their times, as a report
     Compare(Box<compare::CompareArguments>),
+    /// List, clear or make what is kept for later runs
+    Cache(Box<cache::CacheCommand>),
     /// Say what a DEM holds
     Info(info::InfoArguments),
     /// Make completions, man pages, and terrain to test with
@@ -67,6 +70,7 @@ impl Arguments {
         match &self.command {
             Command::Draw(arguments) => draw::run(arguments, talk),
             Command::Compare(arguments) => compare::run(arguments, talk),
+            Command::Cache(arguments) => cache::run(arguments, talk),
             Command::Info(arguments) => info::run(arguments, talk),
             Command::Generate(arguments) => generate::run(arguments, talk),
         }

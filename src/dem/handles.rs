@@ -4,25 +4,26 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use super::formats;
+use super::listed::Listed;
 use super::source::Source;
-use crate::error::Result;
+use crate::error::{Error, Result};
 
 /// The handles on a file that no thread uses at the moment.
 pub(super) struct Handles {
     path: PathBuf,
     band: usize,
     allow_remote: bool,
-    /// Size of the raster and stamp of its files as they were first opened.
+    /// Size of the raster and its files as they were first opened.
     size: [usize; 2],
-    stamp: Option<u64>,
+    listed: Listed,
     spare: Mutex<Vec<Source>>,
 }
 
 impl Handles {
     /// Of a file opened with this `allow_remote`.
     pub fn new(first: Source, allow_remote: bool) -> Self {
-        let (size, stamp) = ([first.columns, first.rows], first.stamp);
-        Self { path: first.path.clone(), band: first.band, allow_remote, size, stamp, spare: Mutex::new(vec![first]) }
+        let (size, listed) = ([first.columns, first.rows], Listed::new(&first.dataset, &first.rasters));
+        Self { path: first.path.clone(), band: first.band, allow_remote, size, listed, spare: Mutex::new(vec![first]) }
     }
 
     /// The file as the user named it.
@@ -30,9 +31,19 @@ impl Handles {
         &self.path
     }
 
-    /// What tells one state of the file and those it names from another, see [`Source::stamp`].
-    pub fn stamp(&self) -> Option<u64> {
-        self.stamp
+    /// The band that is read, from 1.
+    pub fn band(&self) -> usize {
+        self.band
+    }
+
+    /// Every file on the disk that it is made of.
+    pub fn listed(&self) -> &Listed {
+        &self.listed
+    }
+
+    /// The error where one of its files is another than when it was opened, or gone: a look at each, none inside.
+    pub fn check(&self) -> Result<()> {
+        if self.listed.have_changed() { Err(has_changed(&self.path)) } else { Ok(()) }
     }
 
     /// Lets `work` read from a handle that is its own meanwhile. One that failed is not used again: GDAL says once, not
@@ -49,13 +60,15 @@ impl Handles {
 
     fn open(&self) -> Result<Source> {
         let source = Source::open(&self.path, self.band, self.allow_remote)?;
-        if source.stamp != self.stamp || [source.columns, source.rows] != self.size {
-            return Err(source.error("has changed since it was opened", "run again when nothing writes to it"));
-        }
-        Ok(source)
+        self.check()?;
+        if [source.columns, source.rows] == self.size { Ok(source) } else { Err(has_changed(&self.path)) }
     }
 
     fn spare(&self) -> std::sync::MutexGuard<'_, Vec<Source>> {
         self.spare.lock().unwrap_or_else(PoisonError::into_inner)
     }
+}
+
+fn has_changed(path: &Path) -> Error {
+    Error::input(path, "has changed since it was opened", "run again when nothing writes to it")
 }

@@ -13,6 +13,7 @@ mod history;
 pub mod info;
 mod inscribed;
 mod limits;
+mod listed;
 mod mosaic;
 mod name;
 mod overviews;
@@ -43,7 +44,7 @@ pub use history::History;
 pub use info::{Info, info};
 pub use limits::{LARGEST_SIDE, MAX_SAMPLES};
 pub use overviews::{Entry, OverviewBuilder, Overviews};
-pub use read::{ReadOptions, Stage, read, read_all};
+pub use read::{ReadOptions, Reading, Stage, read, read_all};
 pub use samples::Samples;
 pub use survey::{Survey, SurveyBuilder};
 
@@ -65,6 +66,8 @@ pub struct Dem {
     survey: OnceLock<Survey>,
     georeference: Georeference,
     history: History,
+    /// What it was read from, for people.
+    label: String,
 }
 
 #[derive(Debug, Clone)]
@@ -89,12 +92,32 @@ impl Dem {
 
     fn new([columns, rows]: [usize; 2], cell: DVec2, origin: DVec2, store: Store) -> Self {
         let (georeference, history) = (Georeference::unknown(), History::default());
-        Self { columns, rows, cell, origin, store, survey: OnceLock::new(), georeference, history }
+        Self {
+            columns,
+            rows,
+            cell,
+            origin,
+            store,
+            survey: OnceLock::new(),
+            georeference,
+            history,
+            label: String::new(),
+        }
     }
 
     /// The same grid with where it lies on Earth and how it came about.
     fn with_source(self, georeference: Georeference, history: History) -> Self {
         Self { georeference, history, ..self }
+    }
+
+    /// The same, read from this.
+    fn with_label(self, label: String) -> Self {
+        Self { label, ..self }
+    }
+
+    /// What it was read from, as the user named it; empty for a DEM that was not.
+    pub fn label(&self) -> String {
+        self.label.clone()
     }
 
     /// Samples from west to east, at least 2.
@@ -187,10 +210,11 @@ impl Dem {
         }
     }
 
-    /// The first error of those who gave a void in the place of a sample.
+    /// The first error of those who gave a void in the place of a sample; and, while there is none, whether the files of a
+    /// filed DEM are still what they were when they were opened, by a look at the size and time of each.
     ///
     /// # Errors
-    /// [`Error::Input`]; always the same.
+    /// [`Error::Input`]; the first of samples that could not be read is kept.
     pub fn check(&self) -> Result<()> {
         match &self.store {
             Store::Held(_) => Ok(()),
@@ -210,13 +234,25 @@ impl Dem {
         }
     }
 
-    /// A stamp of a filed DEM: as long as it stays the same, so do the samples, as far as names, sizes and times of the
-    /// files and the way of reading them tell. `None` for held DEMs and for files that are not on the disk.
+    /// A stamp of a filed DEM: as long as it stays the same, so do the samples but for their exaggeration, as far as names,
+    /// sizes, times and both ends of all its files and the way of reading them tell. `None` for held DEMs and for files that
+    /// are not on the disk.
     pub fn stamp(&self) -> Option<u128> {
         match &self.store {
             Store::Held(_) => None,
             Store::Filed(filed) => filed.stamp(),
         }
+    }
+
+    /// The same samples of a filed DEM without exaggeration, and the factor that they lack; `None` for a held DEM, and where
+    /// that is 1.
+    pub fn plain(&self) -> Option<(Self, f64)> {
+        let Store::Filed(filed) = &self.store else { return None };
+        let (georeference, history) = (self.georeference.clone(), self.history.clone());
+        let store = Store::Filed(Arc::new(filed.plain()));
+        let plain = Self::new([self.columns, self.rows], self.cell, self.origin, store);
+        let plain = plain.with_source(georeference, history).with_label(self.label());
+        (filed.exaggeration() != 1.0).then(|| (plain, filed.exaggeration()))
     }
 
     /// World position of sample (c, r): easting, northing, exaggerated height, metres. Height 0 where there is none.

@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 
 use gdal::raster::{GdalType, RasterBand};
 use glam::DVec2;
+use xxhash_rust::xxh3::Xxh3;
 
 use super::crs::Way;
 use super::elevation::{Elevation, Reading};
@@ -18,7 +19,7 @@ use super::raster::Raster;
 use super::source::{Source, heard};
 use super::tiling::Tiling;
 use super::{History, ReadOptions};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, plain};
 
 /// How far, in cells, samples may lie from those of the first file and still count as the same places.
 const ALIGNED_CELLS: f64 = 0.01;
@@ -116,11 +117,34 @@ impl Mosaic {
         Tiling::of(*stored, [0, 1].map(|i| window.first[i] as i64 - first[i]), window.size)
     }
 
-    /// What tells one state of the files from another, and how they are read; `None` where one is not on the disk.
-    pub fn stamp(&self) -> Option<String> {
-        let of =
-            |placed: &Placed| Some(format!("{:?} {:?} {:?}", placed.handles.stamp()?, placed.elevation, placed.lie));
-        self.sources.iter().map(of).collect()
+    /// What it was opened from, in a few words.
+    pub fn label(&self) -> String {
+        let first = plain(self.path().display().to_string());
+        match self.sources.len() {
+            1 => first,
+            more => format!("{first} and {} more", more - 1),
+        }
+    }
+
+    /// Every file on the disk that it is made of.
+    pub fn files(&self) -> impl Iterator<Item = &Path> {
+        self.sources.iter().flat_map(|placed| placed.handles.listed().paths())
+    }
+
+    /// The error where one of its files is another than when it was opened: a look at each, none inside.
+    pub fn check(&self) -> Result<()> {
+        self.sources.iter().try_for_each(|placed| placed.handles.check())
+    }
+
+    /// Takes what tells one state of the files from any other, and how they are read and laid, into a hash; `None` where a
+    /// part is not on the disk.
+    pub fn hash(&self, hash: &mut Xxh3) -> Option<()> {
+        hash.update(format!("{:?}", self.grid).as_bytes());
+        for Placed { handles, elevation, lie, grid, .. } in &self.sources {
+            hash.update(format!("band {} {elevation:?} {lie:?} {grid:?}\n", handles.band()).as_bytes());
+            handles.listed().hash(hash)?;
+        }
+        Some(())
     }
 
     /// Samples to be read of each file that is warped, for `window` of the mosaic.
