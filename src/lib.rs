@@ -47,23 +47,26 @@
 //!
 //! | module | does |
 //! |---|---|
+//! | [`files`] | outputs that are whole or not there; which names mean one file |
+//! | [`cache`] | a folder of what took long to make: found again, capped, made by one process at a time |
 //! | [`dem`] | reads and holds the grid; alone knows GDAL |
 //! | [`surface`] | vertex normals, PN patches, the lattice and its IDs, bounds of chunks |
 //! | [`view`] | the camera, and a view where none is given |
 //! | [`plan`] | what a frame needs: method, batches |
 //! | [`gpu`] | device, buffers, one adapter a pass; the mathematics stands in `shaders/` |
 //! | [`ink`] | mask to chains to strokes to pictures |
-//! | [`report`] | comparisons as JSON, CSV, a plot and a page to read |
 //! | [`truth`] | where the lines really are, in f64, and how far ink is from them; knows nothing of the GPU |
 //! | [`render`] | the whole algorithm on one screen |
-//! | [`report`] | what a run cost and how it went |
+//! | [`report`] | comparisons as JSON, CSV, a plot and a page to read; what is kept of DEMs and truths |
 //! | [`cli`] | flags as typed become options checked |
 
 #![deny(missing_docs)]
 
+pub mod cache;
 pub mod cli;
 pub mod dem;
 pub mod error;
+pub mod files;
 pub mod gpu;
 pub mod ink;
 pub mod plan;

@@ -18,7 +18,7 @@ fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let talk = arguments.talk();
     let handled = ctrlc::set_handler(|| {
-        hachure::ink::discard_all();
+        hachure::files::discard_all();
         // SAFETY: it ends the process and touches nothing. Destructors of drivers would run while their threads draw.
         unsafe { libc::_exit(TRY_AGAIN) }
     });

@@ -7,10 +7,10 @@ use std::thread::sleep;
 use std::time::Duration;
 
 use glam::DVec3;
+use hachure::cache::Cache;
 use hachure::dem::{ReadOptions, read, write::write};
 use hachure::plan::{Border, Detail, Method, Plan};
 use hachure::render::Renderer;
-use hachure::report::cache::Cache;
 use hachure::surface::{Level, Surface};
 use hachure::view::Camera;
 

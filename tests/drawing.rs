@@ -4,9 +4,10 @@ use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
 use hachure::error::Error;
+use hachure::files::Output;
 use hachure::ink::{
-    Chain, Cover, Drawing, InkRaster, Kind, Layer, Line, Marks, Output, Pen, Pixel, Recession, Stroke, StrokePoint,
-    Style, project_polyline, stroke, write_png,
+    Chain, Cover, Drawing, InkRaster, Kind, Layer, Line, Marks, Pen, Pixel, Recession, Stroke, StrokePoint, Style,
+    project_polyline, stroke, write_png,
 };
 use hachure::view::Camera;
 

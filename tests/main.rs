@@ -3,6 +3,7 @@
 mod agreement;
 mod borders;
 mod broken;
+mod cache;
 mod chosen_view;
 mod cli;
 mod closed_forms;
@@ -33,6 +34,7 @@ mod mesh;
 mod mixed;
 mod names;
 mod nothing;
+mod overwritten;
 mod pieces;
 mod pool;
 mod prepared;

@@ -6,10 +6,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
+use hachure::cache::Cache;
 use hachure::dem::{Dem, ReadOptions, read, write::write};
 use hachure::plan::{Border, Detail, Method, Plan};
 use hachure::render::Renderer;
-use hachure::report::cache::Cache;
 use hachure::surface::lattice::CELL_STEPS;
 use hachure::surface::{Chunk, Surface};
 use hachure::view::Camera;
@@ -41,7 +41,11 @@ fn write_hills(path: &Path, height: f64, voids: bool) {
 }
 
 fn dem(path: &Path, memory: u64) -> Dem {
-    let dem = read(path, &ReadOptions { memory, exaggeration: 1.5, ..Default::default() }).expect("a DEM");
+    exaggerated(path, memory, 1.0)
+}
+
+fn exaggerated(path: &Path, memory: u64, exaggeration: f64) -> Dem {
+    let dem = read(path, &ReadOptions { memory, exaggeration, ..Default::default() }).expect("a DEM");
     assert_eq!(dem.is_filed(), memory <= MODERATE);
     dem
 }
@@ -78,7 +82,12 @@ impl Place {
 
     /// The DEM in its file, as another process would prepare it; and what was warned of.
     fn prepared(&self, memory: u64) -> (Surface, Vec<String>) {
-        let surface = Surface::new(dem(&self.dem(), memory));
+        self.prepared_times(memory, 1.0)
+    }
+
+    /// The same with every height multiplied.
+    fn prepared_times(&self, memory: u64, exaggeration: f64) -> (Surface, Vec<String>) {
+        let surface = Surface::new(exaggerated(&self.dem(), memory, exaggeration));
         let warn = |words: &str| self.said.borrow_mut().push(words.to_owned());
         self.cache().prepare(&surface, &warn, &|_| ()).expect("samples");
         (surface, self.said.take())
@@ -159,6 +168,12 @@ fn spaced_samples_are_exact_subsets() {
     }
 }
 
+/// Bytes of an artefact in a file of the cache: before a text of so many bytes, and a tail of 40.
+fn content(whole: &[u8]) -> usize {
+    let text = whole[whole.len() - 24..].first_chunk().map(|text| u64::from_le_bytes(*text)).expect("a tail");
+    whole.len() - 40 - text as usize
+}
+
 /// The bytes of a file with one of them changed.
 fn changed(mut bytes: Vec<u8>, at: usize) -> Vec<u8> {
     bytes[at] ^= 1;
@@ -172,14 +187,16 @@ fn what_is_damaged_is_made_anew() {
     let expected = frames(&surface);
     let kept = place.kept().remove(0);
     let whole = fs::read(&kept).expect("a file");
-    let end = whole.len();
+    let end = content(&whole);
     let header = u64::from_le_bytes(*whole[..end - 8].last_chunk().expect("a footer")) as usize;
-    // The header, the last of the pyramid, where the header begins, the hash, an end cut off, and nothing at all.
-    let damages: Vec<_> = [header, end - 20, end - 16, end - 1].map(|at| changed(whole.clone(), at)).into();
+    // The header, the last of the pyramid, where the header begins, the hash, of what it was made, its name, an end cut off,
+    // and nothing at all.
+    let tail = whole.len() - 40;
+    let damages: Vec<_> = [header, end - 20, end - 16, end - 1, end, tail].map(|at| changed(whole.clone(), at)).into();
     for damaged in damages.into_iter().chain([whole[..end - 1000].to_vec(), Vec::new()]) {
         fs::write(&kept, damaged).expect("a file");
         let (surface, said) = place.prepared(SMALL);
-        assert_eq!(said, ["what was kept of the DEM is damaged: it is made anew"]);
+        assert_eq!(said, [format!("what was kept of {} is damaged: it is made anew", place.dem().display())]);
         assert!(frames(&surface) == expected);
         assert!(fs::read(&kept).expect("a file") == whole, "not what it was");
     }
@@ -192,7 +209,8 @@ fn what_is_damaged_is_made_anew() {
     assert!(frames(&surface) == expected, "damaged samples are drawn");
     assert!(surface.dem().has_damaged_overviews(), "frames do not look at them");
     place.cache().discard_damaged(surface.dem(), &|words| place.said.borrow_mut().push(words.to_owned()));
-    assert_eq!(place.said.take(), ["what was kept of the DEM is damaged: it is made anew next time"]);
+    let expected_words = format!("what was kept of {} is damaged: it is made anew next time", place.dem().display());
+    assert_eq!(place.said.take(), [expected_words]);
     assert_eq!(place.kept(), Vec::<PathBuf>::new());
     let (surface, said) = place.prepared(SMALL);
     assert!(said.is_empty() && fs::read(&kept).expect("a file") == whole);
@@ -218,6 +236,31 @@ fn a_folder_that_cannot_be_written_costs_a_warning() {
     let place = Place::new(false);
     fs::write(place.folder.path().join("cache"), "a file where a folder should be").expect("a file");
     let (surface, said) = place.prepared(SMALL);
-    assert!(said.len() == 1 && said[0].starts_with("what was made of the DEM is not cached"), "{said:?}");
+    assert!(said.len() == 1 && said[0].contains("hills.tif is not cached"), "{said:?}");
     assert!(frames(&surface) == frames(&Surface::new(dem(&place.dem(), 1 << 30))));
+}
+
+#[test]
+fn an_exaggeration_needs_no_other_look_and_changes_nothing_else() {
+    let place = Place::new(true);
+    place.prepared_times(SMALL, 2.5);
+    let made = fs::metadata(&place.kept()[0]).expect("a file").len();
+    for exaggeration in [2.5, 1.0, 0.4] {
+        let plain = Surface::new(exaggerated(&place.dem(), SMALL, exaggeration));
+        let held = exaggerated(&place.dem(), 1 << 30, exaggeration);
+        let expected = frames(&plain);
+        let (surface, said) = place.prepared_times(SMALL, exaggeration);
+        assert_eq!(said, Vec::<String>::new());
+        assert!(frames(&surface) == expected, "{exaggeration}: another picture than without a cache");
+        let figures = |dem: &Dem| (dem.range(), dem.voids(), dem.patches());
+        assert_eq!(figures(surface.dem()), figures(&held), "{exaggeration}");
+        for spacing in [2, 16, 64] {
+            let [first, size] = [[spacing * 3, spacing * 2], [20, 15]];
+            let bits =
+                |dem: &Dem| dem.spaced(first, spacing, size).expect("samples").into_iter().map(f32::to_bits).collect();
+            let [kept, held]: [Vec<u32>; 2] = [bits(surface.dem()), bits(&held)];
+            assert!(kept == held, "{exaggeration}: every {spacing}th");
+        }
+    }
+    assert_eq!((place.kept().len(), fs::metadata(&place.kept()[0]).expect("a file").len()), (1, made));
 }

@@ -5,6 +5,7 @@ use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::thread::available_parallelism;
 
+use super::cache::CacheArguments;
 use super::device::DeviceArguments;
 use super::talk::Talk;
 use super::terrain::TerrainArguments;
@@ -12,12 +13,14 @@ use super::values::{self, LevelChoice, Size};
 use super::viewpoint::{View, ViewArguments};
 use super::views::{self, NamedView};
 use super::{blank, cells};
+use crate::cache::Cache;
+use crate::dem::Reading;
 use crate::error::{Error, Result, shown};
+use crate::files::Taken;
 use crate::gpu::sizes::page_fits;
 use crate::gpu::{Gpu, depth_draw};
 use crate::plan::detail::ERROR_PX;
 use crate::plan::{Border, Method};
-use crate::report::cache::Cache;
 use crate::report::compare::{Compared, Comparison, Hearing, METHODS};
 use crate::report::folder::{Contents, Folder};
 use crate::report::pictures::Picture;
@@ -93,11 +96,13 @@ pub struct CompareArguments {
     #[arg(long, help_heading = "Measure")]
     floor: bool,
     /// Find truth anew and keep it nowhere
-    #[arg(long, help_heading = "Measure")]
+    #[arg(long, conflicts_with_all = ["cache", "cache_size"], help_heading = "Measure")]
     no_cache: bool,
 
     #[command(flatten)]
     device: DeviceArguments,
+    #[command(flatten)]
+    cache: CacheArguments,
 }
 
 /// Views of one DEM.
@@ -121,7 +126,12 @@ pub fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
     let comparison = arguments.comparison();
     let views = || jobs.iter().flat_map(|job| &job.views);
     let names = views().flat_map(|view| sizes.iter().map(|size| scene_name(&view.name, *size, &sizes)));
-    let folder = Folder::open(&arguments.output, names.flat_map(|name| comparison.picture_names(&name)))?;
+    // Before anything is written: a report may replace none of the files that it is made of.
+    let open = |job: &Job| arguments.terrain.open(&job.files, arguments.exaggeration);
+    let readings = jobs.iter().map(open).collect::<Result<Vec<_>>>()?;
+    let inputs = readings.iter().flat_map(Reading::files).chain(arguments.views.as_deref());
+    let pictures = names.flat_map(|name| comparison.picture_names(&name));
+    let folder = Folder::open(&arguments.output, pictures, Taken::inputs(inputs))?;
     let scenes_asked = (views().count() * sizes.len()) as f64;
     let extra = if arguments.floor { depth_draw::FEATURE } else { wgpu::Features::empty() };
     let (done, gpu) = (Cell::new(0.0), arguments.device.open_with(extra, talk)?);
@@ -132,8 +142,8 @@ pub fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
         detail: &|line| talk.detail(line),
     };
     let (mut scenes, mut runs, mut pictures) = (Vec::new(), Vec::new(), Vec::new());
-    for job in &jobs {
-        let dem = arguments.terrain.read(&job.files, arguments.exaggeration, talk)?;
+    for (job, reading) in jobs.iter().zip(readings) {
+        let dem = arguments.terrain.read(reading, talk)?;
         // Truth looks at every sample again and again.
         dem.held()?;
         dem.check_patches()?;
@@ -183,7 +193,7 @@ impl CompareArguments {
             floor: self.floor,
             border: self.border,
             truth_level: self.truth_level,
-            cache: if self.no_cache { Cache::none() } else { Cache::of_user() },
+            cache: if self.no_cache { Cache::none() } else { self.cache.cache() },
         }
     }
 

@@ -8,6 +8,7 @@ use std::time::Instant;
 use clap::ValueEnum;
 use serde::Serialize;
 
+use super::cache::CacheArguments;
 use super::device::DeviceArguments;
 use super::flat_earth::FlatEarth;
 use super::outputs::OutputArguments;
@@ -18,13 +19,13 @@ use super::viewpoint::{View, ViewArguments, ViewReport};
 use super::{blank, cells};
 use crate::dem::Dem;
 use crate::error::{Error, Result, shown};
+use crate::files::Taken;
 use crate::gpu::Gpu;
 use crate::ink::{self, Style};
 use crate::plan::detail::ERROR_PX;
 use crate::plan::left_out::{LeftOut, levels};
 use crate::plan::{Border, Detail, Method, Plan, Share};
 use crate::render::{Page, PassTime, Renderer};
-use crate::report::cache::Cache;
 use crate::report::results::DrawnLevel;
 use crate::surface::Surface;
 
@@ -91,6 +92,8 @@ pub struct DrawArguments {
     explain: bool,
     #[command(flatten)]
     device: DeviceArguments,
+    #[command(flatten)]
+    cache: CacheArguments,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -153,16 +156,18 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     arguments.detail()?;
     let size = [arguments.view.size.width, arguments.view.size.height];
     arguments.view.check()?;
-    let mut outputs = arguments.outputs.open(&arguments.terrain.dems)?;
+    arguments.outputs.check()?;
     let started = Instant::now();
-    let dem = arguments.terrain.read(&arguments.terrain.dems, arguments.exaggeration, talk)?;
+    let reading = arguments.terrain.open(&arguments.terrain.dems, arguments.exaggeration)?;
+    let mut outputs = arguments.outputs.open(Taken::inputs(reading.files()))?;
+    let dem = arguments.terrain.read(reading, talk)?;
     // The renderer holds all samples on the device.
     talk.progress("computing normals", 0.1);
     if !dem.is_filed() {
         dem.check_patches()?;
     }
     let surface = Surface::new(dem);
-    let cache = Cache::of_user();
+    let cache = arguments.cache.cache();
     let prepare = || {
         cache.prepare(&surface, &|words| talk.warn(words), &|done| {
             talk.progress("looking at every sample, once for this file", 0.1 + 0.1 * done);

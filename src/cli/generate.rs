@@ -11,7 +11,7 @@ use super::talk::Talk;
 use super::{Arguments, values};
 use crate::dem::{fractal, write};
 use crate::error::Result;
-use crate::ink::Output;
+use crate::files::Output;
 
 /// Flags of `hachure generate`.
 #[derive(Debug, clap::Args)]

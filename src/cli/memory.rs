@@ -12,7 +12,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::error::copes_without;
-use crate::ink::output;
+use crate::files::output;
 
 /// The system's allocator, which says so when memory ends.
 pub struct Allocator;

@@ -1,6 +1,7 @@
 //! The command line, one file a subcommand: flags as typed become options checked.
 
 pub mod blank;
+pub mod cache;
 pub mod cells;
 pub mod compare;
 pub mod device;
@@ -47,6 +48,8 @@ enum Command {
     Draw(Box<draw::DrawArguments>),
     /// Compare silhouette methods: their errors and their times, as a report
     Compare(Box<compare::CompareArguments>),
+    /// List, clear or make what is kept for later runs
+    Cache(Box<cache::CacheCommand>),
     /// Say what a DEM holds
     Info(info::InfoArguments),
     /// Make completions, man pages, and terrain to test with
@@ -72,6 +75,7 @@ impl Arguments {
         match &self.command {
             Command::Draw(arguments) => draw::run(arguments, talk),
             Command::Compare(arguments) => compare::run(arguments, talk),
+            Command::Cache(arguments) => cache::run(arguments, talk),
             Command::Info(arguments) => info::run(arguments, talk),
             Command::Generate(arguments) => generate::run(arguments, talk),
         }

@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use crate::error::{Error, Result, shown};
-use crate::ink::{self, Output};
+use crate::files::{Output, Taken};
+use crate::ink;
 use crate::render::Page;
 
 /// Flags that name files; `-` is standard output, for one of them.
@@ -41,34 +42,38 @@ impl OutputArguments {
         [Some(&self.output), self.mask.as_ref(), self.json.as_ref()].into_iter().flatten().any(|path| is_stdout(path))
     }
 
-    /// Opens them all. None may be one of the `inputs`, or another output.
+    /// Checks what can be known of the names alone.
     ///
     /// # Errors
-    /// [`Error::Flag`] for a name that cannot be meant, [`Error::Output`] where a file cannot be written.
-    pub fn open(&self, inputs: &[PathBuf]) -> Result<Outputs> {
+    /// [`Error::Flag`] for a name that cannot be meant.
+    pub fn check(&self) -> Result<()> {
         wants_png("--output", &self.output)?;
-        if let Some(mask) = &self.mask {
-            wants_png("--mask", mask)?;
-        }
-        // `None` is standard output.
-        let mut taken: Vec<Option<PathBuf>> = inputs.iter().filter_map(|p| p.canonicalize().ok()).map(Some).collect();
-        let mut open = |flag, path: &Path| {
-            let output = if is_stdout(path) { Output::stdout() } else { Output::create(path)? };
-            let target = output.target().map(|t| std::path::absolute(t).unwrap_or_else(|_| t.to_owned()));
-            if taken.contains(&target) {
-                let what = match target {
-                    Some(_) => format!("{} is the DEM or another output", shown(path)),
-                    None => "standard output is another output already".into(),
-                };
-                return Err(Error::flag(flag, what, "give each file a name of its own"));
+        self.mask.as_ref().map_or(Ok(()), |mask| wants_png("--mask", mask))
+    }
+
+    /// Opens them all. None may be one of the files `taken`, or another output.
+    ///
+    /// # Errors
+    /// [`Error::Flag`] for a name that is taken, [`Error::Output`] where a file cannot be written.
+    pub fn open(&self, mut taken: Taken) -> Result<Outputs> {
+        let named = [("--output", Some(&self.output)), ("--mask", self.mask.as_ref()), ("--json", self.json.as_ref())];
+        let mut has_stdout = false;
+        // All names are compared before any file is opened.
+        for (flag, path) in named.into_iter().filter_map(|(flag, path)| Some((flag, path?))) {
+            match is_stdout(path) {
+                true if has_stdout => {
+                    let what = "standard output is another output already";
+                    return Err(Error::flag(flag, what, "give each file a name of its own"));
+                }
+                true => has_stdout = true,
+                false => taken.take(flag, path)?,
             }
-            taken.push(target);
-            Ok(output)
-        };
+        }
+        let open = |path: &Path| if is_stdout(path) { Ok(Output::stdout()) } else { Output::create(path) };
         Ok(Outputs {
-            drawing: open("--output", &self.output)?,
-            mask: self.mask.as_deref().map(|path| open("--mask", path)).transpose()?,
-            json: self.json.as_deref().map(|path| open("--json", path)).transpose()?,
+            drawing: open(&self.output)?,
+            mask: self.mask.as_deref().map(open).transpose()?,
+            json: self.json.as_deref().map(open).transpose()?,
         })
     }
 }

@@ -20,7 +20,7 @@ use clap::builder::Styles;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::error::{Error, Result, plain};
-use crate::ink::Output;
+use crate::files::Output;
 
 /// Work that lasts no longer shows no progress.
 const PATIENCE: Duration = Duration::from_secs(1);

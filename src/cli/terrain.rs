@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::talk::Talk;
 use super::values;
-use crate::dem::{self, Dem, ElevationUnit, Encoding, Nodata, ReadOptions, Stage};
+use crate::dem::{Dem, ElevationUnit, Encoding, Nodata, ReadOptions, Reading, Stage};
 use crate::error::Result;
 
 /// Which files, and what of them.
@@ -66,13 +66,20 @@ impl TerrainArguments {
         }
     }
 
-    /// Reads `files` as one DEM, with progress, and says what was converted and assumed.
+    /// Opens `files` as one DEM: before any output is opened, which may be none of its files.
     ///
     /// # Errors
-    /// As [`dem::read_all`].
-    pub fn read(&self, files: &[PathBuf], exaggeration: f64, talk: &Talk) -> Result<Dem> {
-        let progress = |stage, share| talk.progress(words(stage), share);
-        let dem = dem::read_all(files, &self.options(exaggeration), &progress)?;
+    /// As [`Reading::new`].
+    pub fn open(&self, files: &[PathBuf], exaggeration: f64) -> Result<Reading> {
+        Reading::new(files, &self.options(exaggeration))
+    }
+
+    /// Reads a DEM that was opened, with progress, and says what was converted and assumed.
+    ///
+    /// # Errors
+    /// As [`Reading::finish`].
+    pub fn read(&self, reading: Reading, talk: &Talk) -> Result<Dem> {
+        let dem = reading.finish(&|stage, share| talk.progress(words(stage), share))?;
         dem.history().assumed().iter().for_each(|clause| talk.warn(&format!("assumed that {clause}")));
         dem.history().converted().iter().try_for_each(|clause| talk.say(&format!("converted: {clause}")))?;
         dem.history().usual().iter().try_for_each(|clause| talk.detail(&format!("assumed: {clause}")))?;

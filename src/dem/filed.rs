@@ -10,7 +10,7 @@ use std::fmt::{self, Debug, Formatter};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
-use xxhash_rust::xxh3::xxh3_128;
+use xxhash_rust::xxh3::Xxh3;
 
 use super::grid::Window;
 use super::mosaic::Mosaic;
@@ -22,13 +22,13 @@ use crate::error::{Error, Result};
 
 /// A window of a mosaic whose samples are read on demand.
 pub(super) struct Filed {
-    mosaic: Mosaic,
+    mosaic: Arc<Mosaic>,
     window: Window,
     exaggeration: f64,
     tiling: Tiling,
     /// Bytes of memory that all work with the samples may take.
     budget: usize,
-    stamp: Option<u128>,
+    stamp: OnceLock<Option<u128>>,
     kept: Mutex<Kept>,
     counted: Mutex<Counted>,
     overviews: OnceLock<Overviews>,
@@ -58,15 +58,23 @@ struct Counted {
 impl Filed {
     /// `window` of `mosaic`, with up to half of `budget` bytes of tiles kept.
     pub fn new(mosaic: Mosaic, window: Window, exaggeration: f64, budget: usize) -> Self {
+        Self::of(Arc::new(mosaic), window, exaggeration, budget)
+    }
+
+    /// The same samples of the same files without exaggeration, nothing read yet.
+    pub fn plain(&self) -> Self {
+        Self::of(self.mosaic.clone(), self.window, 1.0, self.budget)
+    }
+
+    fn of(mosaic: Arc<Mosaic>, window: Window, exaggeration: f64, budget: usize) -> Self {
         let tiling = mosaic.tiling(window);
-        let stamp = mosaic.stamp().map(|files| xxh3_128(format!("{files} {window:?} {exaggeration}").as_bytes()));
         Self {
             mosaic,
             window,
             exaggeration,
             tiling,
             budget,
-            stamp,
+            stamp: OnceLock::new(),
             kept: Mutex::default(),
             counted: Mutex::default(),
             overviews: OnceLock::new(),
@@ -90,9 +98,19 @@ impl Filed {
         self.budget
     }
 
-    /// What tells one state of the files and one way of reading them from another; `None` where one is not on the disk.
+    /// Factor on every elevation.
+    pub fn exaggeration(&self) -> f64 {
+        self.exaggeration
+    }
+
+    /// What tells one state of the files, one way of reading them and one window from any other, whatever the exaggeration;
+    /// `None` where a part is not on the disk. Cost: the first time, a look into each file.
     pub fn stamp(&self) -> Option<u128> {
-        self.stamp
+        *self.stamp.get_or_init(|| {
+            let mut hash = Xxh3::new();
+            hash.update(format!("{:?}", self.window).as_bytes());
+            self.mosaic.hash(&mut hash).map(|()| hash.digest128())
+        })
     }
 
     /// All samples, metres, and a tally of the files' numbers. `progress` hears the share done.
@@ -118,11 +136,17 @@ impl Filed {
     }
 
     /// Exaggerated metres of `window` of every `spacing`-th sample and row, NaN at voids; `None` where no overviews have
-    /// them, or damaged ones.
+    /// them, or damaged ones. Overviews themselves are not exaggerated.
     pub fn overview(&self, spacing: usize, window: Window) -> Option<Vec<f32>> {
         let overviews = self.overviews()?;
         let tiles = overviews.tiling(spacing)?.tiles(window);
-        let load = |tile: Window| self.kept(spacing, tile, || overviews.read(spacing, tile));
+        let load = |tile: Window| {
+            self.kept(spacing, tile, || {
+                let mut metres = overviews.read(spacing, tile)?;
+                exaggerate(&mut metres, self.exaggeration);
+                Ok(metres.into())
+            })
+        };
         gather(window, &tiles, false, load, &|_| ()).ok()
     }
 
@@ -158,7 +182,7 @@ impl Filed {
 
     /// The first error of those who could not return it, and whether the files are still those that were opened.
     pub fn check(&self) -> Result<()> {
-        let noticed = self.failure.get().cloned().map_or_else(|| self.mosaic.check_unchanged(), Err);
+        let noticed = self.failure.get().cloned().map_or_else(|| self.mosaic.check(), Err);
         noticed.inspect_err(|error| self.fail(error.clone()))
     }
 

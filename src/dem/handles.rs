@@ -9,8 +9,8 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::formats;
+use super::listed::{Folders, Listed};
 use super::source::Source;
-use super::watch::Watch;
 use crate::error::{Error, Result, shown};
 
 /// Most handles that wait.
@@ -23,12 +23,19 @@ const FILES: usize = 4;
 /// Handles of all files of a DEM that no thread uses at the moment, each with the number of its file; the one used last
 /// is the last.
 #[derive(Default)]
-pub(super) struct Pool(Mutex<Spare>);
+struct Pool(Mutex<Spare>);
 
 #[derive(Default)]
 struct Spare {
     files: usize,
     sources: VecDeque<(usize, Source)>,
+}
+
+/// What the files of one DEM share as they are opened.
+#[derive(Default)]
+pub(super) struct Opening {
+    pool: Arc<Pool>,
+    folders: Folders,
 }
 
 /// A file and where its handles wait.
@@ -37,10 +44,9 @@ pub(super) struct Handles {
     exact: PathBuf,
     band: usize,
     allow_remote: bool,
-    /// Size of the raster and stamp of its files as they were first opened.
+    /// Size of the raster and its files as they were first opened.
     size: [usize; 2],
-    stamp: Option<u64>,
-    watch: Watch,
+    listed: Listed,
     file: usize,
     pool: Arc<Pool>,
 }
@@ -74,13 +80,13 @@ impl Pool {
 }
 
 impl Handles {
-    /// Of a file opened with this `allow_remote`, waiting in `pool`.
-    pub fn new(first: Source, allow_remote: bool, pool: &Arc<Pool>) -> Self {
-        let (size, stamp, file) = ([first.columns, first.rows], first.stamp, pool.add());
-        let watch = Watch::over(&first.dataset);
-        let (path, exact, band, pool) = (first.path.clone(), first.exact.clone(), first.band, pool.clone());
+    /// Of a file opened with this `allow_remote`.
+    pub fn new(first: Source, allow_remote: bool, opening: &mut Opening) -> Self {
+        let (size, pool) = ([first.columns, first.rows], opening.pool.clone());
+        let (file, listed) = (pool.add(), Listed::new(&first.dataset, &first.rasters, &mut opening.folders));
+        let (path, exact, band) = (first.path.clone(), first.exact.clone(), first.band);
         pool.put(file, first);
-        Self { path, exact, band, allow_remote, size, stamp, watch, file, pool }
+        Self { path, exact, band, allow_remote, size, listed, file, pool }
     }
 
     /// The file as the user named it.
@@ -88,9 +94,25 @@ impl Handles {
         &self.path
     }
 
-    /// What tells one state of the file and those it names from another, see [`Source::stamp`].
-    pub fn stamp(&self) -> Option<u64> {
-        self.stamp
+    /// The band that is read, from 1.
+    pub fn band(&self) -> usize {
+        self.band
+    }
+
+    /// Every file on the disk that it is made of.
+    pub fn listed(&self) -> &Listed {
+        &self.listed
+    }
+
+    /// The error where one of its files is another than when it was opened, or gone: a look at each, none inside.
+    pub fn check(&self) -> Result<()> {
+        let Some(changed) = self.listed.changed() else { return Ok(()) };
+        let which = match changed.file_name() == self.path.file_name() {
+            true => String::new(),
+            false => format!(" ({})", shown(changed)),
+        };
+        let what = format!("has changed since it was opened{which}");
+        Err(Error::input(&self.path, what, "run again when nothing writes to it"))
     }
 
     /// Lets `work` read from a handle that is its own meanwhile. One that failed is not used again: GDAL says once, not
@@ -104,20 +126,10 @@ impl Handles {
         Ok(done)
     }
 
-    /// Fails where the file, or one that it names, is no longer what was opened.
-    pub fn check_unchanged(&self) -> Result<()> {
-        let Some(changed) = self.watch.changed() else { return Ok(()) };
-        let which = match changed.file_name() == self.path.file_name() {
-            true => String::new(),
-            false => format!(" ({})", shown(changed)),
-        };
-        let what = format!("has changed since it was opened{which}");
-        Err(Error::input(&self.path, what, "run again when nothing writes to it"))
-    }
-
     fn open(&self) -> Result<Source> {
         let source = Source::open(&self.exact, self.band, self.allow_remote)?;
-        if source.stamp != self.stamp || [source.columns, source.rows] != self.size {
+        self.check()?;
+        if [source.columns, source.rows] != self.size {
             return Err(source.error("has changed since it was opened", "run again when nothing writes to it"));
         }
         Ok(Source { path: self.path.clone(), ..source })

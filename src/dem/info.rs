@@ -65,7 +65,7 @@ pub fn info(paths: &[PathBuf], options: &ReadOptions, progress: &dyn Fn(Stage, f
             cell.y
         )
     });
-    let dem = reading.finish(options, progress)?;
+    let dem = reading.finish(progress)?;
     let survey = dem.survey(&|done| progress(Stage::Read, done))?;
     let mut history = dem.history().clone();
     survey.assumed.iter().for_each(|clause| history.assume(clause.clone()));

@@ -22,6 +22,7 @@ pub mod info;
 mod inscribed;
 mod labels;
 mod limits;
+mod listed;
 mod lossless;
 mod mistaken;
 mod mosaic;
@@ -41,7 +42,6 @@ mod tiling;
 mod validity;
 mod vrt;
 mod vsi;
-mod watch;
 pub mod write;
 mod xml;
 mod zip;
@@ -64,7 +64,7 @@ pub use info::{Info, info};
 pub use limits::{LARGEST_SIDE, MAX_SAMPLES};
 pub use nodata::Nodata;
 pub use overviews::{Entry, OverviewBuilder, Overviews};
-pub use read::{ReadOptions, Stage, read, read_all};
+pub use read::{ReadOptions, Reading, Stage, read, read_all};
 pub use samples::Samples;
 pub use survey::{Survey, SurveyBuilder};
 pub use validity::{BLOCK_SIDE, Validity};
@@ -87,6 +87,8 @@ pub struct Dem {
     survey: OnceLock<Survey>,
     georeference: Georeference,
     history: History,
+    /// What it was read from, for people.
+    label: String,
 }
 
 #[derive(Debug, Clone)]
@@ -111,12 +113,32 @@ impl Dem {
 
     fn new([columns, rows]: [usize; 2], cell: DVec2, origin: DVec2, store: Store) -> Self {
         let (georeference, history) = (Georeference::unknown(), History::default());
-        Self { columns, rows, cell, origin, store, survey: OnceLock::new(), georeference, history }
+        Self {
+            columns,
+            rows,
+            cell,
+            origin,
+            store,
+            survey: OnceLock::new(),
+            georeference,
+            history,
+            label: String::new(),
+        }
     }
 
     /// The same grid with where it lies on Earth and how it came about.
     fn with_source(self, georeference: Georeference, history: History) -> Self {
         Self { georeference, history, ..self }
+    }
+
+    /// The same, read from this.
+    fn with_label(self, label: String) -> Self {
+        Self { label, ..self }
+    }
+
+    /// What it was read from, as the user named it; empty for a DEM that was not.
+    pub fn label(&self) -> String {
+        self.label.clone()
     }
 
     /// Samples from west to east, at least 2.
@@ -213,7 +235,7 @@ impl Dem {
     /// were opened: where they are not, what was read of them may not belong together.
     ///
     /// # Errors
-    /// [`Error::Input`]; always the same.
+    /// [`Error::Input`]; the first of samples that could not be read is kept.
     pub fn check(&self) -> Result<()> {
         match &self.store {
             Store::Held(_) => Ok(()),
@@ -233,8 +255,9 @@ impl Dem {
         }
     }
 
-    /// A stamp of a filed DEM: as long as it stays the same, so do the samples, as far as names, sizes and times of the
-    /// files and the way of reading them tell. `None` for held DEMs and for files that are not on the disk.
+    /// A stamp of a filed DEM: as long as it stays the same, so do the samples but for their exaggeration, as far as names,
+    /// sizes, times and both ends of all its files and the way of reading them tell. `None` for held DEMs and for files that
+    /// are not on the disk.
     pub fn stamp(&self) -> Option<u128> {
         match &self.store {
             Store::Held(_) => None,
@@ -248,6 +271,17 @@ impl Dem {
             Store::Held(_) => 0,
             Store::Filed(filed) => filed.samples_read(),
         }
+    }
+
+    /// The same samples of a filed DEM without exaggeration, and the factor that they lack; `None` for a held DEM, and where
+    /// that is 1.
+    pub fn plain(&self) -> Option<(Self, f64)> {
+        let Store::Filed(filed) = &self.store else { return None };
+        let (georeference, history) = (self.georeference.clone(), self.history.clone());
+        let store = Store::Filed(Arc::new(filed.plain()));
+        let plain = Self::new([self.columns, self.rows], self.cell, self.origin, store);
+        let plain = plain.with_source(georeference, history).with_label(self.label());
+        (filed.exaggeration() != 1.0).then(|| (plain, filed.exaggeration()))
     }
 
     /// World position of sample (c, r): easting, northing, exaggerated height, metres. Height 0 where there is none.

@@ -6,10 +6,10 @@
 //! read, on the thread that asks; several may ask at once.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use gdal::raster::{GdalType, RasterBand};
 use glam::DVec2;
+use xxhash_rust::xxh3::Xxh3;
 
 use super::crop;
 use super::crs::Way;
@@ -17,7 +17,7 @@ use super::doubt::{doubts, other_units, sentinels};
 use super::elevation::{Elevation, Reading};
 use super::encoding::Encoding;
 use super::grid::{Grid, Window, span};
-use super::handles::{Handles, Pool};
+use super::handles::{Handles, Opening};
 use super::raster::Raster;
 use super::source::{Source, heard};
 use super::tally::{Tallies, Tally};
@@ -73,14 +73,14 @@ impl Mosaic {
     /// Opens `paths`, at least one, and checks all that can be checked without reading samples.
     pub fn open(paths: &[PathBuf], options: &ReadOptions, history: &mut History) -> Result<Self> {
         let mut sources: Vec<Placed> = Vec::with_capacity(paths.len());
-        let pool = Arc::new(Pool::default());
+        let mut opening = Opening::default();
         for path in paths {
             let base = sources.first().map(|first| (first.handles.path(), first.grid.north_up()));
-            let placed = Placed::open(path, options, base, paths.len() == 1, &pool, history)?;
+            let placed = Placed::open(path, options, base, paths.len() == 1, &mut opening, history)?;
             sources.push(placed);
         }
         if let [path] = paths {
-            let twin = Placed::beside_itself(path, options, &sources[0], &pool)?;
+            let twin = Placed::beside_itself(path, options, &sources[0], &mut opening)?;
             sources.extend(twin);
         }
         let Some(first) = sources.first() else {
@@ -128,16 +128,34 @@ impl Mosaic {
         Tiling::of(*stored, [0, 1].map(|i| window.first[i] as i64 - first[i]), window.size)
     }
 
-    /// Fails where a file is no longer what was opened.
-    pub fn check_unchanged(&self) -> Result<()> {
-        self.sources.iter().try_for_each(|placed| placed.handles.check_unchanged())
+    /// What it was opened from, in a few words.
+    pub fn label(&self) -> String {
+        let first = shown(self.path());
+        match self.sources.len() {
+            1 => first,
+            more => format!("{first} and {} more", more - 1),
+        }
     }
 
-    /// What tells one state of the files from another, and how they are read; `None` where one is not on the disk.
-    pub fn stamp(&self) -> Option<String> {
-        let of =
-            |placed: &Placed| Some(format!("{:?} {:?} {:?}", placed.handles.stamp()?, placed.elevation, placed.lie));
-        self.sources.iter().map(of).collect()
+    /// Every file on the disk that it is made of.
+    pub fn files(&self) -> impl Iterator<Item = &Path> {
+        self.sources.iter().flat_map(|placed| placed.handles.listed().paths())
+    }
+
+    /// The error where one of its files is another than when it was opened: a look at each, none inside.
+    pub fn check(&self) -> Result<()> {
+        self.sources.iter().try_for_each(|placed| placed.handles.check())
+    }
+
+    /// Takes what tells one state of the files from any other, and how they are read and laid, into a hash; `None` where a
+    /// part is not on the disk.
+    pub fn hash(&self, hash: &mut Xxh3) -> Option<()> {
+        hash.update(format!("{:?}", self.grid).as_bytes());
+        for Placed { handles, elevation, lie, grid, .. } in &self.sources {
+            hash.update(format!("band {} {elevation:?} {lie:?} {grid:?}\n", handles.band()).as_bytes());
+            handles.listed().hash(hash)?;
+        }
+        Some(())
     }
 
     /// Samples to be read of each file that is warped, for `window` of the mosaic.
@@ -201,7 +219,7 @@ impl Mosaic {
         let doubted: Vec<_> = tallies.iter().filter_map(of).filter(|(_, doubts)| !doubts.is_empty()).collect();
         let named = |placed: &Placed, clause: &String| match self.sources.len() {
             1 => clause.clone(),
-            _ => format!("{}: {clause}", placed.handles.path().display()),
+            _ => format!("{}: {clause}", shown(placed.handles.path())),
         };
         let first = doubted.iter().take(DOUBTED_FILES);
         let mut told: Vec<_> =
@@ -223,7 +241,7 @@ impl Placed {
         options: &ReadOptions,
         base: Option<(&Path, Grid)>,
         alone: bool,
-        pool: &Arc<Pool>,
+        opening: &mut Opening,
         history: &mut History,
     ) -> Result<Self> {
         let mut own = History::default();
@@ -244,16 +262,16 @@ impl Placed {
         let (width, height) = source.band()?.block_size();
         let driver = source.dataset.driver();
         let (parallel, format) = (PARALLEL.contains(&driver.short_name().as_str()), driver.long_name());
-        let handles = Handles::new(source, options.allow_remote, pool);
+        let handles = Handles::new(source, options.allow_remote, opening);
         Ok(Self { handles, elevation, grid, lie, stored: [width, height], parallel, format })
     }
 
     /// The only file a second time, a turn farther, where it runs round the globe and the crop crosses its outer edges.
-    fn beside_itself(path: &Path, options: &ReadOptions, first: &Self, pool: &Arc<Pool>) -> Result<Option<Self>> {
+    fn beside_itself(path: &Path, options: &ReadOptions, first: &Self, opening: &mut Opening) -> Result<Option<Self>> {
         let (grid, flipped) = (first.grid.north_up(), first.lie.bounds(&first.grid));
         let crop = crop::on(&grid, options.crop)?;
         let Some(columns) = crop::round_the_globe(&grid, crop) else { return Ok(None) };
-        let mut twin = Self::open(path, options, Some((path, grid)), true, pool, &mut History::default())?;
+        let mut twin = Self::open(path, options, Some((path, grid)), true, opening, &mut History::default())?;
         twin.lie = first.lie.moved([flipped.0[0] - columns, 0]);
         Ok(Some(twin))
     }

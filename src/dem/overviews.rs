@@ -2,7 +2,7 @@
 //! than the grid need, without a look at the samples between them.
 //!
 //! Overviews in GDAL's sense, but exact subsets: nothing is averaged. The file holds blocks of 256 x 256 samples of one
-//! spacing, exaggerated metres as in memory, NaN at voids; an index says where each lies, with a hash of its bytes, and a
+//! spacing, metres without exaggeration, NaN at voids; an index says where each lies, with a hash of its bytes, and a
 //! block is checked when it is read. Size: 4/3 bytes a sample of the DEM. Memory: the index; while they are made, the
 //! rows of a row of blocks.
 
@@ -11,7 +11,7 @@ use std::io::{self, Read, Seek, SeekFrom};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 
 use bytemuck::{Pod, Zeroable};
 use rayon::prelude::*;
@@ -94,15 +94,15 @@ impl Overviews {
         (!self.is_damaged()).then(|| Tiling::whole([SIDE; 2], self.grid.size(k)))
     }
 
-    /// Reads a block.
-    pub(super) fn read(&self, spacing: usize, block: Window) -> Result<Arc<[f32]>> {
+    /// Reads a block, metres without exaggeration.
+    pub(super) fn read(&self, spacing: usize, block: Window) -> Result<Vec<f32>> {
         self.try_read(spacing, block).map_err(|error| {
             self.damaged.store(true, Ordering::Relaxed);
             Error::input(&self.path, format!("is damaged ({error})"), "remove it, it is made anew")
         })
     }
 
-    fn try_read(&self, spacing: usize, block: Window) -> io::Result<Arc<[f32]>> {
+    fn try_read(&self, spacing: usize, block: Window) -> io::Result<Vec<f32>> {
         let k = SPACINGS.iter().position(|known| *known == spacing).ok_or(io::ErrorKind::NotFound)?;
         let [x, y] = block.first.map(|at| at / SIDE);
         let place = self.grid.before(k) + y * self.grid.size(k)[0].div_ceil(SIDE) + x;
@@ -113,7 +113,7 @@ impl Overviews {
         file.seek(SeekFrom::Start(offset))?;
         file.read_exact(bytes)?;
         drop(file);
-        if xxh3_64(bytes) == hash { Ok(samples.into()) } else { Err(io::ErrorKind::InvalidData.into()) }
+        if xxh3_64(bytes) == hash { Ok(samples) } else { Err(io::ErrorKind::InvalidData.into()) }
     }
 
     fn is_damaged(&self) -> bool {

@@ -110,35 +110,49 @@ pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Dem> {
 /// [`Error::Flag`] for options that make no sense, [`Error::Limit`] for more samples than fit, [`Error::Input`] for a
 /// file that is missing, damaged, no raster, nowhere, without elevations, not to be trusted, or outside the crop.
 pub fn read_all(paths: &[PathBuf], options: &ReadOptions, progress: &dyn Fn(Stage, f64)) -> Result<Dem> {
-    Reading::new(paths, options)?.finish(options, progress)
+    Reading::new(paths, options)?.finish(progress)
 }
 
 /// Files opened and understood: what can be known without reading samples.
-pub(super) struct Reading {
-    pub mosaic: Mosaic,
-    pub target: Target,
-    pub history: History,
+pub struct Reading {
+    pub(super) mosaic: Mosaic,
+    pub(super) target: Target,
+    history: History,
+    options: ReadOptions,
     held: bool,
 }
 
 impl Reading {
     /// Opens the files.
+    ///
+    /// # Errors
+    /// Those of [`read_all`] that need no sample.
     pub fn new(paths: &[PathBuf], options: &ReadOptions) -> Result<Self> {
         check_options(options)?;
         let mut history = History::default();
         let mosaic = Mosaic::open(paths, options, &mut history)?;
         let target = Target::of(&mosaic.grid, mosaic.path(), options, &mut history)?;
         let held = are_held(&mosaic, &target, options)?;
-        Ok(Self { mosaic, target, history, held })
+        Ok(Self { mosaic, target, history, options: options.clone(), held })
     }
 
-    /// Reads the samples, if they are to be held.
-    pub fn finish(self, options: &ReadOptions, progress: &dyn Fn(Stage, f64)) -> Result<Dem> {
-        let Self { mosaic, target: Target { grid, window, warps }, mut history, held } = self;
+    /// Every file on the disk that the DEM is made of: those named, what they name in turn, archives and containers around
+    /// them, and what stands beside each and may be read with it. No output may replace one of them.
+    pub fn files(&self) -> impl Iterator<Item = &Path> {
+        self.mosaic.files()
+    }
+
+    /// Reads the samples, if they are to be held. `progress`: see [`read_all`].
+    ///
+    /// # Errors
+    /// Those of [`read_all`].
+    pub fn finish(self, progress: &dyn Fn(Stage, f64)) -> Result<Dem> {
+        let Self { mosaic, target: Target { grid, window, warps }, mut history, options, held } = self;
+        let label = mosaic.label();
         let georeference = Georeference::new(mosaic.grid.crs.clone(), grid.crs.clone());
         let store = if held {
             let warped = warps.then_some(&grid);
-            Store::Held(hold(Filed::new(mosaic, window, 1.0, 0), warped, options, &mut history, progress)?)
+            Store::Held(hold(Filed::new(mosaic, window, 1.0, 0), warped, &options, &mut history, progress)?)
         } else {
             let budget = usize::try_from(options.memory).unwrap_or(usize::MAX);
             Store::Filed(Arc::new(Filed::new(mosaic, window, options.exaggeration, budget)))
@@ -148,7 +162,9 @@ impl Reading {
             history.convert(format!("coordinates x {metres} to metres ({})", grid.crs.units()));
         }
         let (cell, origin) = (grid.cell() * metres, grid.sample(0.0, 0.0) * metres);
-        Ok(Dem::new([grid.columns, grid.rows], cell, origin, store).with_source(georeference, history))
+        Ok(Dem::new([grid.columns, grid.rows], cell, origin, store)
+            .with_source(georeference, history)
+            .with_label(label))
     }
 }
 

@@ -46,8 +46,8 @@ pub(super) struct Source {
     pub rows: usize,
     /// The band of elevations, from 1.
     pub band: usize,
-    /// Hash of names, lengths and times of the file and of all that it names; `None` where one is not on the disk.
-    pub stamp: Option<u64>,
+    /// It and all rasters that VRTs name, as GDAL calls them.
+    pub rasters: Vec<(PathBuf, Place)>,
 }
 
 impl Source {
@@ -57,7 +57,7 @@ impl Source {
     pub fn open(path: &Path, band: usize, allow_remote: bool) -> Result<Self> {
         formats::restrict(allow_remote);
         let Connection { name, place, exact, member } = connection(path, allow_remote)?;
-        let vrt::Inspected { is_vrt, stamp } = vrt::inspect(path, &name, &place, allow_remote)?;
+        let vrt::Inspected { is_vrt, rasters } = vrt::inspect(path, &name, &place, allow_remote)?;
         // What was not inspected as a VRT is not opened as one.
         let drivers = if is_vrt { ["VRT"].as_slice() } else { &FORMATS };
         let flags =
@@ -65,7 +65,7 @@ impl Source {
         let (opened, complaint) = vsi::open(&name, flags, drivers);
         let dataset = opened.ok_or_else(|| cannot_open(path, &name, &place, complaint))?;
         let (columns, rows) = dataset.raster_size();
-        let source = Self { path: path.to_owned(), exact, member, dataset, columns, rows, band, stamp };
+        let source = Self { path: path.to_owned(), exact, member, dataset, columns, rows, band, rasters };
         source.check_band(&name)?;
         source.check_length()?;
         Ok(source)

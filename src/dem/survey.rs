@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
+use super::filed::exaggerate;
 use super::grid::Window;
 use super::validity::{Validity, ValidityBuilder};
 use super::{Band, Dem, Samples, Store, limits};
@@ -120,8 +121,14 @@ impl Dem {
         Ok(self.survey.get_or_init(|| survey))
     }
 
-    /// Takes a survey made before of the same samples, as [`Dem::stamp`] tells, in the place of one of its own.
-    pub fn remember(&self, survey: Survey) {
+    /// Takes a survey made before of the same samples without exaggeration, as [`Dem::stamp`] tells, in the place of one of
+    /// its own.
+    pub fn remember(&self, mut survey: Survey) {
+        if let Store::Filed(filed) = &self.store {
+            survey.range.iter_mut().for_each(|range| exaggerate(range, filed.exaggeration()));
+            exaggerate(&mut survey.thinned, filed.exaggeration());
+        }
+
         // One that is there already says the same.
         let _ = self.survey.set(survey);
     }

@@ -8,10 +8,7 @@
 //! (`VRTProcessedDataset`), options for drivers: they are refused; and VRTs beside a file on a network.
 
 use std::collections::HashSet;
-use std::fs;
 use std::path::{Component, Path, PathBuf};
-
-use xxhash_rust::xxh3::Xxh3;
 
 use super::archive;
 use super::name::{Name, Place, names_remote};
@@ -50,8 +47,8 @@ const DISTRUSTED: &str = "download it first, or add `--allow-remote` if you trus
 pub(super) struct Inspected {
     /// Whether the first file is a VRT.
     pub is_vrt: bool,
-    /// Hash of names, lengths and times of all rasters; `None` where one is not on the disk.
-    pub stamp: Option<u64>,
+    /// It and all rasters that VRTs name, as GDAL calls them; some more than once.
+    pub rasters: Vec<(PathBuf, Place)>,
 }
 
 /// Looks into what GDAL would open for `connection`. `path` is what the user calls it.
@@ -61,17 +58,10 @@ pub(super) fn inspect(path: &Path, connection: &Path, place: &Place, allow_remot
         Place::Archive(file) => (connection.to_owned(), followed(file).parent().map(Path::to_owned)),
         Place::Remote => (connection.to_owned(), None),
     };
-    let mut inspection = Inspection {
-        path,
-        first,
-        folder,
-        allow_remote,
-        open: Vec::new(),
-        seen: HashSet::new(),
-        hash: Some(Xxh3::new()),
-    };
+    let mut inspection =
+        Inspection { path, first, folder, allow_remote, open: Vec::new(), seen: HashSet::new(), rasters: Vec::new() };
     inspection.raster(connection, place)?;
-    Ok(Inspected { is_vrt: xml::is_vrt(connection), stamp: inspection.hash.map(|hash| hash.digest()) })
+    Ok(Inspected { is_vrt: xml::is_vrt(connection), rasters: inspection.rasters })
 }
 
 struct Inspection<'a> {
@@ -85,14 +75,14 @@ struct Inspection<'a> {
     open: Vec<PathBuf>,
     /// The VRTs that need not be looked into again.
     seen: HashSet<PathBuf>,
-    /// Of the rasters so far, while all are on the disk.
-    hash: Option<Xxh3>,
+    /// The rasters so far.
+    rasters: Vec<(PathBuf, Place)>,
 }
 
 impl Inspection<'_> {
     /// A raster and what stands beside it.
     fn raster(&mut self, connection: &Path, place: &Place) -> Result<()> {
-        self.note(connection, place);
+        self.rasters.push((connection.to_owned(), place.clone()));
         self.vrt(connection, place)?;
         let (beside, archive) = match place {
             Place::File(file) => (file.as_path(), false),
@@ -109,20 +99,6 @@ impl Inspection<'_> {
         // None there, or none that GDAL can parse either, is no danger.
         let entries = xml::entries(&auxiliary).unwrap_or_default();
         entries.iter().filter(|entry| entry.metadata).try_for_each(|entry| self.stays_here(entry, &auxiliary))
-    }
-
-    /// Takes a raster into the hash.
-    fn note(&mut self, connection: &Path, place: &Place) {
-        let state = match place {
-            Place::File(file) | Place::Archive(file) => {
-                fs::metadata(file).and_then(|m| Ok((m.len(), m.modified()?))).ok()
-            }
-            Place::Remote => None,
-        };
-        self.hash = self.hash.take().zip(state).map(|(mut hash, state)| {
-            hash.update(format!("{connection:?} {state:?}").as_bytes());
-            hash
-        });
     }
 
     /// What a VRT names, and what that names; nothing for other files.

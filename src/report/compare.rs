@@ -8,10 +8,11 @@ use std::cell::Cell;
 
 use glam::DVec2;
 
-use super::cache::{Cache, Kept};
 use super::pictures::{Picture, truth_picture};
 use super::results::{Convergence, DrawnLevel, LevelOffset, Run, TruthReport};
 use super::trial::{Trial, line, moved, picture_names};
+use super::truths::Kept;
+use crate::cache::Cache;
 use crate::error::{Error, Result};
 use crate::gpu::Gpu;
 use crate::plan::{Border, Detail, Method, Plan, Share};

@@ -8,7 +8,10 @@ use std::path::{Path, PathBuf};
 
 use super::pictures::Picture;
 use crate::error::{Error, Result};
-use crate::ink::{Output, output};
+use crate::files::{Output, Taken, output};
+
+/// The page, the results as JSON and as CSV, the plot.
+const FILES: [&str; 4] = ["report.html", "results.json", "results.csv", "error-time.svg"];
 
 /// A folder for a report.
 #[derive(Debug)]
@@ -41,15 +44,20 @@ pub struct Contents {
 }
 
 impl Folder {
-    /// Makes the folder where there is none, opens the files in it, and looks whether `pictures` can be written there.
+    /// Makes the folder where there is none, opens the files in it, and looks whether `pictures` can be written there. None
+    /// of them may be a file that is `taken`.
     ///
     /// # Errors
+    /// [`Error::Flag`] where one is taken;
     /// [`Error::Output`] where it is a file or something cannot be written.
-    pub fn open(path: &Path, mut pictures: impl Iterator<Item = String>) -> Result<Self> {
+    pub fn open(path: &Path, pictures: impl Iterator<Item = String>, mut taken: Taken) -> Result<Self> {
         let failed = |what: String| Error::Output { path: path.to_owned(), what };
         if path.exists() && !path.is_dir() {
             return Err(failed("it is a file, and a report is a folder".into()));
         }
+        let pictures: Vec<String> = pictures.collect();
+        let mut names = FILES.into_iter().chain(pictures.iter().map(String::as_str));
+        names.try_for_each(|name| taken.take("--output", &path.join(name)))?;
         let missing = path.ancestors().take_while(|folder| !folder.as_os_str().is_empty() && !folder.exists());
         let mut missing: Vec<PathBuf> = missing.map(Path::to_owned).collect();
         missing.reverse();
@@ -60,19 +68,15 @@ impl Folder {
             folder.made.push(missing);
         }
         let open = |name: &str| Output::create(&path.join(name));
-        folder.files = Some(Files {
-            page: open("report.html")?,
-            json: open("results.json")?,
-            csv: open("results.csv")?,
-            plot: open("error-time.svg")?,
-        });
-        pictures.try_for_each(|name| open(&name).map(drop))?;
+        folder.files =
+            Some(Files { page: open(FILES[0])?, json: open(FILES[1])?, csv: open(FILES[2])?, plot: open(FILES[3])? });
+        pictures.iter().try_for_each(|name| open(name).map(drop))?;
         Ok(folder)
     }
 
     /// Where the page will be.
     pub fn page(&self) -> PathBuf {
-        self.path.join("report.html")
+        self.path.join(FILES[0])
     }
 
     /// Writes everything, then gives it its names.

@@ -3,7 +3,6 @@
 //! [`Comparison`] compares, [`Results`] is what it found; the writers turn that into text and know nothing else.
 //! [`Growth`] is time against size, judged by what was promised, with its plot.
 
-pub mod cache;
 mod chart;
 pub mod compare;
 pub mod csv;
@@ -18,6 +17,7 @@ pub mod plot;
 mod prepared;
 pub mod results;
 mod trial;
+pub mod truths;
 mod words;
 
 pub use compare::Comparison;

@@ -1,42 +1,23 @@
-//! Truths kept on disk: a truth depends on the DEM, the camera, the level and the code that finds it, nothing else.
+//! Truths kept on disk: a truth depends on the DEM, the camera and the level, and on the code that finds it, of which a number
+//! stands for the state.
 //!
-//! A file is named by a hash of all four and ends with a hash of its bytes. One that is damaged is noticed and made
-//! anew. Nothing is ever deleted: the folder may be emptied at any time. 56 bytes a piece of a quarter pixel.
+//! 56 bytes a piece of a quarter pixel, and a hash of all. One that is damaged is noticed and made anew.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::io::{self, ErrorKind, Read};
 use std::time::Instant;
 
 use bytemuck::{Pod, Zeroable};
 use glam::DVec2;
 use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
-use crate::error::Result;
-use crate::ink::Output;
+use crate::cache::{Cache, Hearing, Key, Kind, Sheet, not_kept};
 use crate::surface::{Level, Surface};
 use crate::truth::{Line, Piece, Terrain, Truth};
 use crate::view::Camera;
 
-/// The code that a truth depends on: when it changes, older truths are no longer found.
-const CODE: &str = concat!(
-    include_str!("cache.rs"),
-    include_str!("../surface/lattice.rs"),
-    include_str!("../surface/normals.rs"),
-    include_str!("../surface/patch.rs"),
-    include_str!("../truth/cell.rs"),
-    include_str!("../truth/contour.rs"),
-    include_str!("../truth/facing.rs"),
-    include_str!("../truth/page.rs"),
-    include_str!("../truth/sight.rs"),
-    include_str!("../truth/terrain.rs"),
-    include_str!("../view/camera.rs"),
-);
-
-/// A folder of truths, or none.
-#[derive(Debug, Clone)]
-pub struct Cache {
-    folder: Option<PathBuf>,
-}
+/// Raise it when a truth comes out otherwise for the same samples, camera and level (anything in `truth`, normals, patches,
+/// the camera's projection), or when the bytes below mean something else.
+const FORMAT: u32 = 1;
 
 /// A truth with what it took to make it, now or when it was kept.
 #[derive(Debug, Clone, PartialEq)]
@@ -70,68 +51,39 @@ struct Row {
 }
 
 impl Cache {
-    /// The user's own, where the system has a place for it.
-    pub fn of_user() -> Self {
-        Self { folder: dirs::cache_dir().map(|folder| folder.join("hachure")) }
-    }
-
-    /// In a folder, which is made when something is kept.
-    pub fn in_folder(folder: PathBuf) -> Self {
-        Self { folder: Some(folder) }
-    }
-
-    /// Keeps nothing and finds nothing.
-    pub fn none() -> Self {
-        Self { folder: None }
-    }
-
-    /// A file of the folder.
-    pub(super) fn path(&self, name: &str) -> Option<PathBuf> {
-        self.folder.as_ref().map(|folder| folder.join(name))
-    }
-
     /// The truth of a view, from the folder or made and kept. `warn` hears of a damaged file and of a folder that cannot
     /// be written; both cost time, nothing else.
     pub fn truth(&self, terrain: &Terrain<'_>, camera: &Camera, level: Level, warn: &dyn Fn(&str)) -> Kept {
-        let name = || name(terrain.surface, camera, level);
-        let path = self.folder.as_ref().and_then(|_| self.path(&name()?));
-        if let Some(bytes) = path.as_ref().and_then(|path| fs::read(path).ok()) {
-            match from_bytes(&bytes) {
-                Some(kept) => return kept,
-                None => warn("a cached truth is damaged: it is made anew"),
+        let make = || {
+            let start = Instant::now();
+            let truth = terrain.truth(camera, level);
+            Kept { truth, ms: start.elapsed().as_secs_f64() * 1e3 }
+        };
+        let Some(key) = self.folder().and_then(|_| key(terrain.surface, camera, level)) else { return make() };
+        let recall = |mut kept: crate::cache::Kept| {
+            let mut bytes = Vec::new();
+            kept.file.by_ref().take(kept.bytes).read_to_end(&mut bytes)?;
+            from_bytes(&bytes).ok_or(io::Error::from(ErrorKind::InvalidData))
+        };
+        let make_and_keep = |sheet: Option<Sheet>, _: &dyn Fn(f64)| {
+            let made = make();
+            if let Some(mut sheet) = sheet {
+                sheet.write(&to_bytes(&made));
+                let published = sheet.publish();
+                published.err().into_iter().for_each(|error| warn(&not_kept(&key, &error)));
             }
-        }
-        let start = Instant::now();
-        let truth = terrain.truth(camera, level);
-        let kept = Kept { truth, ms: start.elapsed().as_secs_f64() * 1e3 };
-        if let Some(Err(error)) = path.map(|path| write_file(&path, &to_bytes(&kept))) {
-            warn(&format!("truth is not cached: {error}"));
-        }
-        kept
+            Ok(made)
+        };
+        // Making it cannot fail.
+        self.get(&key, Hearing { warn, progress: &|_| () }, recall, make_and_keep).unwrap_or_else(|_| make())
     }
 }
 
-/// Begins a file of the cache.
-pub(super) fn create(path: &Path) -> Result<Output> {
-    // A folder that cannot be made shows when the file is opened in it.
-    let _ = path.parent().map(fs::create_dir_all);
-    Output::create(path)
-}
-
-/// Writes a file of the cache, whole or not at all.
-fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
-    let mut output = create(path)?;
-    output.write(|file| file.write_all(bytes))?;
-    output.publish()
-}
-
-/// The file of a truth; none where the samples it depends on are not in memory.
-fn name(surface: &Surface, camera: &Camera, level: Level) -> Option<String> {
+/// What a truth depends on; none where the samples are not in memory.
+fn key(surface: &Surface, camera: &Camera, level: Level) -> Option<Key> {
     let dem = surface.dem();
     let samples = dem.held().ok()?;
     let mut hash = Xxh3::new();
-    hash.update(env!("CARGO_PKG_VERSION").as_bytes());
-    hash.update(CODE.as_bytes());
     hash.update(bytemuck::cast_slice(samples.heights()));
     hash.update(bytemuck::cast_slice(samples.valid()));
     let corner = dem.position(0, 0);
@@ -140,7 +92,7 @@ fn name(surface: &Surface, camera: &Camera, level: Level) -> Option<String> {
     hash.update(bytemuck::cast_slice(&[camera.azimuth, camera.altitude, camera.fov]));
     let counts = [dem.columns() as u64, u64::from(camera.width), u64::from(camera.height), level.subdivisions().into()];
     hash.update(bytemuck::cast_slice(&counts));
-    Some(format!("truth-{:032x}", hash.digest128()))
+    Some(Key { kind: Kind { name: "truth", format: FORMAT }, hash: hash.digest128(), of: dem.label() })
 }
 
 fn to_bytes(kept: &Kept) -> Vec<u8> {

@@ -109,6 +109,17 @@ impl Output {
         written.map_err(|e| Error::Output { path: self.path.clone(), what: e.to_string() })
     }
 
+    /// Another handle on the file being made, for reading it when it has its name.
+    ///
+    /// # Errors
+    /// The system's, and where it is closed or standard output.
+    pub fn duplicate(&self) -> io::Result<File> {
+        match &self.place {
+            Place::File { file: Some(file), .. } => file.try_clone(),
+            Place::File { .. } | Place::Stdout(_) => Err(io::Error::other("it is closed")),
+        }
+    }
+
     /// Closes the file: for many outputs that wait for each other, of which a system lets only so many be open.
     pub fn close(&mut self) {
         if let Place::File { file, .. } = &mut self.place {
@@ -158,6 +169,14 @@ pub fn make_folder(path: &Path) -> io::Result<()> {
     fs::create_dir(path)?;
     under_way.push(path.to_owned());
     Ok(())
+}
+
+/// Makes an empty file, where there is none, that goes if the process is ended by a signal before [`forget`].
+pub fn make_file(path: &Path) -> io::Result<File> {
+    let mut under_way = UNDER_WAY.lock().unwrap_or_else(PoisonError::into_inner);
+    let file = File::create_new(path)?;
+    under_way.push(path.to_owned());
+    Ok(file)
 }
 
 /// From here on a signal leaves it alone.

@@ -1,0 +1,178 @@
+//! A folder for what takes long to make and depends on its inputs alone.
+//!
+//! Each artefact is a file named by its kind and by a hash of all that it depends on, the number of its format included.
+//! Files are whole or not there, say inside what they are, and are made by one process while others wait ([`lock`]). Beyond
+//! a size the one that was used longest ago goes, never one that is open in some process ([`shelf`]). Whatever is wrong with
+//! the folder costs time and a warning, never the work. Not handled: folders on a network whose clocks are minutes apart: two
+//! processes may make the same then.
+
+mod entry;
+mod lock;
+pub mod shelf;
+
+use std::fmt::Display;
+use std::path::{Path, PathBuf};
+
+use crate::error::{Error, Result, shown};
+
+pub use entry::{Kept, Sheet};
+pub use shelf::{Cleared, Shown};
+
+/// Bytes that a cache may take unless told otherwise.
+pub const SIZE: u64 = 2 << 30;
+
+/// A kind of artefact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Kind {
+    /// Begins the names of its files.
+    pub name: &'static str,
+    /// Number of what its bytes mean and how they are found: raised when either changes, older files are no longer found then.
+    pub format: u32,
+}
+
+/// What an artefact is, of what, and by a hash of all that it depends on.
+#[derive(Debug, Clone)]
+pub struct Key {
+    /// Its kind.
+    pub kind: Kind,
+    /// Hash of what it depends on.
+    pub hash: u128,
+    /// What it was made of, for people.
+    pub of: String,
+}
+
+/// A folder of artefacts, or none.
+#[derive(Debug, Clone)]
+pub struct Cache {
+    folder: Option<PathBuf>,
+    size: u64,
+}
+
+/// Who hears of the work.
+#[derive(Clone, Copy)]
+pub struct Hearing<'a> {
+    /// Something the user should know: a damaged file, a folder that cannot be written. They cost time, nothing else.
+    pub warn: &'a dyn Fn(&str),
+    /// The share of the making that is done, here or by another process.
+    pub progress: &'a dyn Fn(f64),
+}
+
+impl Cache {
+    /// The user's own, where the system has a place for it.
+    pub fn of_user() -> Self {
+        Self { folder: dirs::cache_dir().map(|folder| folder.join("hachure")), size: SIZE }
+    }
+
+    /// In a folder, which is made when something is kept.
+    pub fn in_folder(folder: PathBuf) -> Self {
+        Self { folder: Some(folder), size: SIZE }
+    }
+
+    /// Keeps nothing and finds nothing.
+    pub fn none() -> Self {
+        Self { folder: None, size: SIZE }
+    }
+
+    /// The same, of at most so many bytes: what is in use or was just made stays, whatever its size.
+    pub fn with_size(self, size: u64) -> Self {
+        Self { size, ..self }
+    }
+
+    /// Where it is.
+    pub fn folder(&self) -> Option<&Path> {
+        self.folder.as_deref()
+    }
+
+    /// How many bytes it may take.
+    pub fn size(&self) -> u64 {
+        self.size
+    }
+
+    fn path(&self, key: &Key) -> Option<PathBuf> {
+        self.folder.as_ref().map(|folder| folder.join(key.file_name()))
+    }
+
+    /// An artefact: found and read by `recall`, which fails where the bytes are not those that were written; else made by
+    /// `make`, which gets a file to write it to, where it can be kept. One process makes, others wait and recall.
+    ///
+    /// # Errors
+    /// Those of `make`.
+    pub fn get<T>(
+        &self,
+        key: &Key,
+        hearing: Hearing<'_>,
+        recall: impl Fn(Kept) -> std::io::Result<T>,
+        make: impl FnOnce(Option<Sheet>, &dyn Fn(f64)) -> Result<T>,
+    ) -> Result<T> {
+        let Some(path) = self.path(key) else { return make(None, hearing.progress) };
+        let mut damaged = false;
+        let find = || match entry::open(&path, key) {
+            Ok(None) => Ok(None),
+            Ok(Some(kept)) => match recall(kept) {
+                Ok(found) => Ok(Some(found)),
+                Err(_) => Err(None),
+            },
+            Err(entry::Fault::Damaged) => Err(None),
+            Err(entry::Fault::Strange(what)) => Err(Some(what)),
+        };
+        loop {
+            match find() {
+                Ok(Some(found)) => {
+                    self.trim(Some(&path));
+                    return Ok(found);
+                }
+                Ok(None) => {}
+                Err(None) if damaged => {}
+                Err(None) => {
+                    (hearing.warn)(&format!("what was kept of {} is damaged: it is made anew", key.of));
+                    damaged = true;
+                }
+                Err(Some(what)) => {
+                    (hearing.warn)(&strange(&path, what));
+                    return make(None, hearing.progress);
+                }
+            }
+            match lock::Lock::take(&path) {
+                Ok(lock) => {
+                    // Another may have made it between the look and the lock.
+                    if !damaged && let Ok(Some(found)) = find() {
+                        return Ok(found);
+                    }
+                    let sheet = Sheet::create(&path, key);
+                    if let Err(error) = &sheet {
+                        (hearing.warn)(&not_kept(key, error));
+                    }
+                    let made = make(sheet.ok(), &|share| {
+                        lock.tell(share);
+                        (hearing.progress)(share);
+                    });
+                    self.trim(Some(&path));
+                    return made;
+                }
+                Err(lock::Refused::Held(held)) => held.wait(hearing.progress),
+                Err(lock::Refused::Impossible(error)) => {
+                    (hearing.warn)(&not_kept(key, &Error::Output { path, what: error }));
+                    return make(None, hearing.progress);
+                }
+            }
+        }
+    }
+
+    /// Removes an artefact that turned out damaged.
+    pub fn remove(&self, key: &Key) {
+        // One that cannot be removed is found damaged again.
+        let _ = self.path(key).map(std::fs::remove_file);
+    }
+}
+
+/// That something was made and could not be kept.
+pub fn not_kept(key: &Key, why: &dyn Display) -> String {
+    format!("what was made of {} is not cached: {why}", key.of)
+}
+
+fn strange(path: &Path, what: &str) -> String {
+    format!(
+        "{}: {what} stands in the place of a cached file and is not used; remove it, or give --cache DIR",
+        shown(path)
+    )
+}
