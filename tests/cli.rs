@@ -209,7 +209,7 @@ fn wrong_usage_exits_with_2() {
         (&["--eye", "1e300,2,3"], "out of range"),
         (&["--exaggeration", "0"], "above 0"),
         (&["--exaggeration", "-1"], "above 0"),
-        (&["--crop", "10,10,5,20"], "west,south,east,north"),
+        (&["--crop", "10,10,5,20"], "west beyond its east"),
         (&["--wide"], "--method toward-away"),
         (&["--share", "edge"], "--method adjacency"),
         (&["--eye", "0,0,+10"], "no ground"),

@@ -1,10 +1,14 @@
 //! Reading of DEMs: values, places, voids, crops, formats.
 
+mod archives;
 mod converted;
 mod filed;
 mod large;
 mod mosaics;
+mod opened;
+mod process;
 mod refused;
+mod remedies;
 mod shared;
 mod trusted;
 

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 use gdal::{GdalOpenFlags, Metadata};
 
-use super::formats::{FORMATS, VECTORS};
+use super::formats::FORMATS;
 use super::hgt::{self, quoted};
 use super::mistaken;
 use super::name::Place;
@@ -69,10 +69,10 @@ pub(super) fn member(
         true => joined(path, file),
         false => joined(&before_of(before, path), file),
     };
-    if let Some((file, what, remedy)) = found.unreadable.filter(|_| found.rasters.len() < 2) {
-        return Err(Error::input(path, format!("its member {file} {what}"), remedy));
+    if let Some((file, what, remedy)) = found.unreadable.as_ref().filter(|_| found.rasters.len() < 2) {
+        return Err(Error::input(path, format!("its member {file} {what}"), remedy.clone()));
     }
-    match found.rasters.as_slice() {
+    match found.alone(path) {
         [(inner, _)] => {
             Ok(Some(Member { connection: joined(folder, inner), typed: typed(inner), inner: inner.clone() }))
         }
@@ -93,17 +93,17 @@ pub(super) fn member(
 pub(super) fn check(connection: &Path, place: &Place) -> std::result::Result<(), (String, String)> {
     let packed = match place {
         Place::Archive(archive) => {
-            let inner = connection.as_os_str().as_encoded_bytes();
-            let length = archive.as_os_str().len();
-            // The way into archives of a kind, the archive, a slash, the way in it.
-            let after = inner.windows(length.max(1)).position(|part| part == archive.as_os_str().as_encoded_bytes());
-            after.and_then(|at| packing(archive, inner.get(at + length + 1..)?))
+            parts(connection, archive).and_then(|[_, inner]| packing(archive, inner.as_os_str().as_encoded_bytes()))
         }
         Place::File(_) | Place::Remote => None,
     };
     let unpack = |command: &str| format!("unpack it first: `{command}`");
     match packed {
-        Some(packed) if packed.encrypted => Err((format!("is {}", packed.words()), unpack("7z x IN"))),
+        Some(packed) if packed.encrypted => {
+            // Passwords of the old kind are known to every program, the others are method 99.
+            let command = if packed.method == 99 { "7z x IN" } else { "unzip -P PASSWORD IN" };
+            Err((format!("is {}", packed.words()), unpack(command)))
+        }
         _ if vsi::head(connection).is_some() => Ok(()),
         Some(packed) if ![0, 8].contains(&packed.method) => {
             let command = if [9, 12].contains(&packed.method) { "unzip IN" } else { "python3 -m zipfile -e IN FOLDER" };
@@ -111,6 +111,28 @@ pub(super) fn check(connection: &Path, place: &Place) -> std::result::Result<(),
         }
         _ => Err(("is empty, or damaged or cut short".into(), "copy or download it again".into())),
     }
+}
+
+/// The error for a member that is not in its archive; `None` where it is, or nothing is known.
+pub(super) fn missing(path: &Path, connection: &Path, place: &Place) -> Option<Error> {
+    let Place::Archive(archive) = place else { return None };
+    let [before, after] = parts(connection, archive)?;
+    let files: Vec<_> = vsi::files_below(&before)?.iter().map(|file| lossless::text(file)).collect();
+    let after = lossless::text(after.as_os_str());
+    let first = files.iter().find(|file| !is_hidden(file))?;
+    let there = after.is_empty() || files.iter().any(|file| *file == after);
+    let typed = || lossless::text(path.as_os_str()).strip_suffix(&after).map(|archive| format!("{archive}{first}"));
+    let first = typed().unwrap_or_else(|| first.clone());
+    let remedy = format!("name a file that it holds, such as `{}`", quoted(&first));
+    (!there).then(|| Error::input(path, "there is no such file in that archive", remedy))
+}
+
+/// The archive and the way in it of a file in one, without the slash between them.
+fn parts(connection: &Path, archive: &Path) -> Option<[PathBuf; 2]> {
+    let (name, archive) = (connection.as_os_str().as_encoded_bytes(), archive.as_os_str().as_encoded_bytes());
+    let end = name.windows(archive.len().max(1)).position(|part| part == archive)? + archive.len();
+    let part = |bytes: &[u8]| PathBuf::from(lossless::name(&lossless::text_of(bytes)));
+    Some([part(&name[..end]), part(name.get(end + 1..)?)])
 }
 
 /// Fails where `file`, opened by the driver of .hgt files as an archive, has a member that cannot be read.
@@ -164,6 +186,19 @@ impl Found {
         found
     }
 
+    /// The rasters, of a `N45E006.hgt.zip` the tile of that name alone.
+    fn alone(&self, path: &Path) -> &[(String, Vec<PathBuf>)] {
+        let corner =
+            path.file_name().map(lossless::text).filter(|name| is_tile(name)).and_then(|name| hgt::corner(&name));
+        let named = |(file, _): &(String, Vec<PathBuf>)| corner.is_some() && hgt::corner(file) == corner;
+        match self.rasters.iter().position(named) {
+            Some(place) if self.rasters.iter().filter(|raster| named(raster)).count() == 1 => {
+                &self.rasters[place..=place]
+            }
+            _ => &self.rasters,
+        }
+    }
+
     /// Leaves out what belongs to another raster; of several that name one another the first stays.
     fn drop_parts(&mut self, folder: &Path) {
         let mut kept: Vec<(String, Vec<PathBuf>)> = Vec::new();
@@ -196,11 +231,7 @@ fn holds_none(path: &Path, before: &str, folder: &Path, files: &[String]) -> Err
         let what = format!("holds another archive ({file}), and archives in archives are not read");
         return told(what, format!("unpack it, and name what comes out: `{unpack}`"));
     }
-    let is_vector = |file: &&String| {
-        VECTOR.contains(&ending(file).as_str())
-            && vsi::open(&joined(folder, file), GdalOpenFlags::GDAL_OF_VECTOR, &VECTORS).0.is_some()
-    };
-    if let Some(file) = files.iter().find(is_vector) {
+    if let Some(file) = with(&VECTOR) {
         let what = format!("holds points, lines or areas ({file}), not a raster of elevations");
         return told(what, "give a DEM raster; contours and points become one with `gdal_grid`".into());
     }

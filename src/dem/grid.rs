@@ -292,14 +292,15 @@ fn has_no_place(source: &Source) -> Error {
 fn has_no_place_beside(source: &Source) -> Error {
     source.error(
         "does not say where it lies (no geotransform), so it cannot be laid beside others",
-        "draw it alone with --cell M, or place it: `gdal_translate -a_ullr WEST NORTH EAST SOUTH IN OUT.tif`",
+        "draw it alone with --cell M, or place it: \
+         `gdal_translate -a_srs EPSG:CODE -a_ullr WEST NORTH EAST SOUTH IN OUT.tif`",
     )
 }
 
 fn no_map(source: &Source, name: &str) -> Error {
     source.error(
         format!("its coordinate system \"{name}\" is no map projection"),
-        "project it first: `gdalwarp -t_srs EPSG:CODE -r cubic IN OUT.tif` with the code of a CRS in metres",
+        "name the map that its coordinates are of: `gdal_translate -a_srs EPSG:CODE IN OUT.tif`",
     )
 }
 

@@ -35,7 +35,7 @@ fn check_angles(grid: &Grid, turn: f64, source: &Source) -> Result<()> {
             "its samples reach latitude {}, and there is none beyond {pole}",
             if north > pole { north } else { south }
         )
-    } else if east - west > turn + cell.x || west > turn || east < -turn {
+    } else if east - west > turn + cell.x || west > 1.5 * turn || east < -1.5 * turn {
         format!("its samples reach from longitude {west} to {east}, and a turn is {turn}")
     } else {
         return Ok(());

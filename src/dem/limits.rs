@@ -145,8 +145,9 @@ fn check_read(path: &Path, read: u64, held: u64) -> Result<()> {
     if read > MAX_READ {
         return Err(Error::Limit {
             what: format!("{}: {read} samples would be read to be warped, at most {MAX_READ} fit", shown(path)),
-            remedy: "use --crop to take a part, or make it coarser with `gdalwarp -tr M M -r average IN OUT.tif`"
-                .into(),
+            remedy:
+                "use --crop to take a part, or make it coarser: `gdal_translate -outsize 10% 10% -r average IN OUT.tif`"
+                    .into(),
         });
     }
     check_memory(path, (read + held) * READ_BYTES, available_memory())

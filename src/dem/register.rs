@@ -29,7 +29,7 @@ pub(super) fn error(words: Option<String>) -> Error {
         ),
         (None, Some(file)) => {
             format!(
-                "PROJ finds no register of coordinate systems where {} points: {} is not there",
+                "PROJ cannot find its register of coordinate systems where {} points: {} is not there",
                 set[0],
                 shown(file)
             )

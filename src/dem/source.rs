@@ -133,6 +133,11 @@ impl Source {
         let grids = listed.iter().filter_map(|line| line.split_once("_NAME=").map(|(_, grid)| grid));
         let shown = shown(&self.path);
         let grids: Vec<_> = grids.map(|g| g.replace(&*absolute, &shown).replace('"', "")).collect();
+        let unpack = [("/vsizip/", "unzip IN"), ("/vsitar/", "tar -xf IN"), ("/vsigzip/", "gunzip -k IN")];
+        if let Some((_, command)) = unpack.iter().find(|(way, _)| absolute.starts_with(way) && !grids.is_empty()) {
+            let what = format!("holds {} grids, which cannot be named inside an archive", grids.len());
+            return self.error(what, format!("unpack it first, and name one of what comes out: `{command}`"));
+        }
         match grids.first() {
             Some(first) => self.error(
                 format!("holds {} grids, and which one is meant is not said", grids.len()),
@@ -223,15 +228,21 @@ fn connection(path: &Path, allow_remote: bool) -> Result<Connection> {
         }
         None => Connection { name, place, exact: path.to_owned(), member: None },
     };
-    let is_tile = archive::is_tile(&lossless::text(connection.name.as_os_str()));
-    if is_tile && connection.member.is_none() && !matches!(connection.place, Place::File(_)) {
-        // Not even looked at by GDAL's driver of .hgt files, which would look for a tile in it.
+    let unnamed = connection.member.is_none() && !matches!(connection.place, Place::File(_));
+    let whole = |archive: &Path| {
+        connection.name.as_os_str().as_encoded_bytes().ends_with(archive.as_os_str().as_encoded_bytes())
+    };
+    let whole = in_archive && matches!(&connection.place, Place::Archive(archive) if whole(archive));
+    if unnamed && (whole || archive::is_tile(&lossless::text(connection.name.as_os_str()))) {
+        // GDAL's driver of .hgt files would look for a tile in it, and end the process where it cannot be read.
         return Err(damaged_archive(path, &connection.place));
     }
     if !way.is_empty()
         && let Err((what, remedy)) = archive::check(&connection.name, &connection.place)
     {
-        return Err(told_of_archive(path, &connection.place).unwrap_or_else(|| Error::input(path, what, remedy)));
+        let missing = || archive::missing(path, &connection.name, &connection.place);
+        let told = told_of_archive(path, &connection.place).or_else(missing);
+        return Err(told.unwrap_or_else(|| Error::input(path, what, remedy)));
     }
     Ok(connection)
 }
@@ -250,7 +261,7 @@ fn remote(name: PathBuf) -> (PathBuf, Place, String) {
 fn told_of_archive(path: &Path, place: &Place) -> Option<Error> {
     let Place::Archive(archive) = place else { return None };
     let head = vsi::head(archive)?;
-    let packed = head.starts_with(b"PK") || head.starts_with(b"\x1f\x8b") || mistaken::is_tar(&head);
+    let packed = head.starts_with(b"PK\x03") || head.starts_with(b"\x1f\x8b") || mistaken::is_tar(&head);
     let told = if packed { None } else { mistaken::what(&head, "") };
     told.map(|(what, remedy)| Error::input(path, what, remedy))
 }
@@ -317,6 +328,11 @@ fn cannot_open(path: &Path, name: &Path, place: &Place, complaint: Option<String
         return Error::input(path, what, remedy);
     }
     match complaint.filter(|words| !words.contains("not recognized as a supported file format")) {
+        Some(words) if words.contains("header file") => Error::input(
+            path,
+            format!("cannot be opened as a raster ({})", one_line(&words, path)),
+            "name the file with the samples beside it (`gdalinfo IN` says whether that is one)",
+        ),
         Some(words) => Error::input(
             path,
             format!("cannot be opened as a raster ({})", one_line(&words, path)),

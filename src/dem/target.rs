@@ -106,7 +106,7 @@ impl Target {
         let inside =
             |at: &[[usize; 2]]| region.holds(at.iter().map(|[c, r]| all.sample(*c as f64, *r as f64)).collect());
         check_extent(&all, cell * unit, path)?;
-        let part = largest(all.columns, all.rows, inside).ok_or_else(|| too_small(files, path, cell * unit))?;
+        let part = largest(all.columns, all.rows, inside).ok_or_else(|| too_small(files, path, cell * unit, &crs))?;
         let grid = all.part(part);
         let window = reach(&grid, files).ok_or_else(|| lost(path))?;
         history.convert(format!(
@@ -169,10 +169,24 @@ fn zone(files: &Grid, window: Window, path: &Path) -> Result<Crs> {
         return Err(Error::input(
             path,
             format!("spans {width:.0} x {height:.0} degrees, too much of the globe for one map in metres"),
-            format!("take at most {WIDEST} x {HIGHEST} degrees with --crop WEST,SOUTH,EAST,NORTH"),
+            format!(
+                "take at most {WIDEST} x {HIGHEST} degrees, for instance `--crop {}`",
+                middle_part(files, &part, degrees)
+            ),
         ));
     }
     Crs::from_epsg(metric_epsg(middle))
+}
+
+/// A crop in the middle of `part` that one map shows, in the units of the files.
+fn middle_part(files: &Grid, part: &Grid, degrees: f64) -> String {
+    let ([west, south, east, north], centre) = (part.extent(), files.centre(files.whole()));
+    let middle = part.centre(part.whole());
+    let half = DVec2::new(WIDEST, HIGHEST) / degrees / 2.0;
+    let [low, high] = [(middle - half).max(DVec2::new(west, south)), (middle + half).min(DVec2::new(east, north))];
+    let round = |value: f64| rounded(value, 6);
+    let west = files.crs.near(low.x, centre.x);
+    format!("{},{},{},{}", round(west), round(low.y), round(west + high.x - low.x), round(high.y))
 }
 
 /// EPSG code of the UTM zone (WGS 84) of a place in degrees, beyond UTM of polar stereographic.
@@ -246,10 +260,11 @@ fn check_extent(all: &Grid, metres: f64, path: &Path) -> Result<()> {
 
 fn lost(path: &Path) -> Error {
     let what = "its place cannot be put on a map in metres";
-    Error::input(path, what, "check its coordinate system and extent with `gdalinfo`")
+    let remedy = "name the system that its coordinates are in: `gdal_translate -a_srs EPSG:CODE IN OUT.tif`";
+    Error::input(path, what, remedy)
 }
 
-fn too_small(files: &Grid, path: &Path, metres: f64) -> Error {
+fn too_small(files: &Grid, path: &Path, metres: f64, crs: &Crs) -> Error {
     if files.columns < WARPED_SIDE || files.rows < WARPED_SIDE {
         let what =
             format!("is {} x {} samples; to be warped to metres it needs at least 5 x 5", files.columns, files.rows);
@@ -258,7 +273,11 @@ fn too_small(files: &Grid, path: &Path, metres: f64) -> Error {
     Error::input(
         path,
         format!("no 2 x 2 cells of {metres} m lie inside the data"),
-        "give smaller cells with --resample M, or more of the DEM",
+        format!(
+            "give smaller cells with --resample M, more of the DEM, or warp it yourself with voids beside it: \
+             `gdalwarp -t_srs EPSG:{} -r cubic -dstnodata -32768 IN OUT.tif`",
+            crs.epsg().map_or("CODE".to_owned(), |code| code.to_string())
+        ),
     )
 }
 

@@ -39,6 +39,8 @@ const KINDS: [&str; 7] = [
 ];
 
 const PLAIN: &str = "make a plain raster of it where you trust it, with `gdal_translate IN OUT.tif`";
+const RUN: &str = "make a plain raster of it where you trust that code, with \
+                   `gdal_translate --config GDAL_VRT_ENABLE_PYTHON YES IN OUT.tif`";
 const OUTSIDE: &str = "which lies outside its folder";
 const TOGETHER: &str = "move both into one folder, or add `--allow-remote` if you trust the file";
 const DISTRUSTED: &str = "download it first, or add `--allow-remote` if you trust it";
@@ -142,12 +144,12 @@ impl Inspection<'_> {
                 (name, _) if !entry.raw && !xml::is_raster(&name) => Err(self.refused(
                     vrt,
                     format!("names {text:?}, which is in no raster format that hachure reads"),
-                    "convert that with `gdal_translate` and name the result",
+                    "convert that with `gdal_translate IN OUT.tif` and name the result",
                 )),
                 (name, place) => self.raster(&name, &place),
             },
             "pixelfunctionlanguage" if !text.trim().eq_ignore_ascii_case("c") => {
-                Err(self.refused(vrt, format!("holds code ({}), which is never run", text.escape_debug()), PLAIN))
+                Err(self.refused(vrt, format!("holds code ({}), which is never run", text.escape_debug()), RUN))
             }
             "subclass" if !KINDS.contains(&text.as_str()) => {
                 Err(self.refused(vrt, format!("is a VRT of a kind that is not read ({})", text.escape_debug()), PLAIN))
