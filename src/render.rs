@@ -77,7 +77,7 @@ struct Loaded {
 }
 
 /// Chunks, nodes and tiles for which there is room before the first frame of an adaptive lattice.
-const FIRST_ROOM: Room = Room { chunks: 512, nodes: 2048, tiles: 512 };
+const FIRST_ROOM: Room = Room { chunks: 512, nodes: 2048, tiles: 512, patched: 256 };
 
 impl<'a> Renderer<'a> {
     /// Compiles what the plan needs, for a page of so many pixels across and down, or for one that is cut in a way of its

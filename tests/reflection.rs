@@ -236,6 +236,7 @@ fn every_binding_fits_at_every_level() {
         let room = Room::of(&lattice);
         // Cells of 450 x 450 samples in tiles of 16 x 16.
         assert_eq!((room.chunks as usize, room.tiles), (lattice.chunks().len(), 29 * 29));
+        assert_eq!(room.patched, if n == 1 { 0 } else { 29 * 29 }, "facets of level 1 are planes between samples");
         let sizes = written(room, [16_384, 1024]).expect("a page of this size");
         for (name, size) in &sizes {
             assert!(fits(name, *size).is_ok(), "level {n}: {name} takes {size} bytes");
@@ -249,5 +250,5 @@ fn every_binding_fits_at_every_level() {
     assert!(fits("heights", LARGEST_BINDING).is_ok());
     let line = fits("heights", LARGEST_BINDING + 1).expect_err("a byte too many").to_string();
     assert!(line.contains("129 MiB of heights, a device binds 128; use --level auto or a --crop"), "{line}");
-    assert!(written(Room { chunks: 1, nodes: 1, tiles: 1 }, [16_384, 1025]).is_err());
+    assert!(written(Room { chunks: 1, nodes: 1, tiles: 1, patched: 0 }, [16_384, 1025]).is_err());
 }

@@ -20,6 +20,9 @@ use super::tally::{Tallies, merge};
 use super::tiling::{Tiling, gather};
 use crate::error::{Error, Result};
 
+/// Most bytes of tiles that are kept: frames ask for samples place by place.
+const MOST_KEPT: usize = 128 << 20;
+
 /// A window of a mosaic whose samples are read on demand.
 pub(super) struct Filed {
     mosaic: Arc<Mosaic>,
@@ -56,7 +59,7 @@ struct Counted {
 }
 
 impl Filed {
-    /// `window` of `mosaic`, with up to half of `budget` bytes of tiles kept.
+    /// `window` of `mosaic`, with up to half of `budget` bytes of tiles kept, [`MOST_KEPT`] at most.
     pub fn new(mosaic: Mosaic, window: Window, exaggeration: f64, budget: usize) -> Self {
         Self::of(Arc::new(mosaic), window, exaggeration, budget)
     }
@@ -219,7 +222,7 @@ impl Filed {
 
     /// The tile over `window` of every `spacing`-th sample, read unless it is kept.
     fn kept(&self, spacing: usize, window: Window, read: impl FnOnce() -> Result<Arc<[f32]>>) -> Result<Arc<[f32]>> {
-        let tile = lock(&self.kept).tile(spacing, window, self.budget / 2);
+        let tile = lock(&self.kept).tile(spacing, window, (self.budget / 2).min(MOST_KEPT));
         let mut samples = lock(&tile);
         match &*samples {
             Some(samples) => Ok(samples.clone()),

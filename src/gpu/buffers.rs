@@ -34,7 +34,8 @@ pub struct Buffers {
     batches: wgpu::Buffer,
     rounds: u32,
     room: Room,
-    tiles: Pool<Tile>,
+    /// Those with gradients, which have the first places, and the others.
+    tiles: [Pool<Tile>; 2],
     blocks: Pool<Chunk>,
     /// Whether a lattice is on its way: after an error nobody knows what lies in which place.
     is_loading: bool,
@@ -55,13 +56,17 @@ pub struct Room {
     pub nodes: usize,
     /// Tiles of samples.
     pub tiles: usize,
+    /// Of them those with gradients.
+    pub patched: usize,
 }
 
 impl Room {
     /// What a lattice takes.
     pub fn of(lattice: &Lattice) -> Self {
         let tiles: HashSet<Tile> = lattice.chunks().iter().map(Tile::of).collect();
-        Self { chunks: lattice.chunks().len() as u32, nodes: lattice.tree().nodes().len(), tiles: tiles.len() }
+        let patched = tiles.iter().filter(|tile| tile.has_gradients()).count();
+        let (chunks, nodes) = (lattice.chunks().len() as u32, lattice.tree().nodes().len());
+        Self { chunks, nodes, tiles: tiles.len(), patched }
     }
 
     /// Whether the vertices of all chunks fit in one batch, and so stay from frame to frame.
@@ -77,11 +82,24 @@ impl Room {
         };
         let binding = |bytes: usize| LARGEST_BINDING as usize / bytes;
         let chunks = if least.keeps_vertices() { BATCH_CHUNKS as usize } else { binding(size_of::<ChunkUniform>()) };
+        let tiles = binding(4 * TILE_SAMPLES as usize);
+        let patched = grow(self.patched, least.patched, tiles.saturating_sub(least.bare()));
         Self {
             chunks: grow(self.chunks as usize, least.chunks as usize, chunks) as u32,
             nodes: grow(self.nodes, least.nodes, binding(4)),
-            tiles: grow(self.tiles, least.tiles, binding(4 * TILE_SAMPLES as usize)),
+            tiles: patched + grow(self.bare(), least.bare(), tiles.saturating_sub(patched)),
+            patched,
         }
+    }
+
+    /// Tiles without gradients.
+    fn bare(self) -> usize {
+        self.tiles - self.patched
+    }
+
+    /// Nothing in any place of tiles.
+    fn no_tiles(self) -> [Pool<Tile>; 2] {
+        [self.patched, self.bare()].map(Pool::new)
     }
 }
 
@@ -104,7 +122,7 @@ impl Buffers {
             batches: upload_uniforms(gpu, &batch_uniforms(&batches(room.chunks), visibility.rounds())),
             rounds: visibility.rounds(),
             room,
-            tiles: Pool::new(room.tiles),
+            tiles: room.no_tiles(),
             blocks: Pool::new(room.chunks as usize),
             is_loading: false,
             fresh: Vec::new(),
@@ -136,10 +154,10 @@ impl Buffers {
         let tiles: Vec<Tile> = lattice.chunks().iter().map(Tile::of).collect();
         let fits = tiles.len() <= self.room.chunks as usize && lattice.tree().nodes().len() <= self.room.nodes;
         if std::mem::replace(&mut self.is_loading, true) {
-            self.tiles = Pool::new(self.room.tiles);
+            self.tiles = self.room.no_tiles();
             self.blocks = Pool::new(self.room.chunks as usize);
         }
-        let Some(Placed { places, missing }) = self.tiles.place(&tiles).filter(|_| fits) else {
+        let Some(Placed { places, missing }) = self.place_tiles(&tiles).filter(|_| fits) else {
             return Ok(Some(self.room.grown(Room::of(lattice))));
         };
         for batch in missing.chunks(TILES_AT_ONCE) {
@@ -168,6 +186,22 @@ impl Buffers {
         gpu.check()?;
         self.is_loading = false;
         Ok(None)
+    }
+
+    /// Where each tile is to be, and those that are not there yet; `None` where there is no room.
+    fn place_tiles(&mut self, tiles: &[Tile]) -> Option<Placed<Tile>> {
+        let (patched, bare): (Vec<Tile>, Vec<Tile>) = tiles.iter().partition(|tile| tile.has_gradients());
+        let first_bare = self.room.patched as u32;
+        let of_patched = self.tiles[0].place(&patched)?;
+        let of_bare = self.tiles[1].place(&bare)?;
+        let behind = of_bare.missing.into_iter().map(|(place, tile)| (first_bare + place, tile));
+        let missing = of_patched.missing.into_iter().chain(behind).collect();
+        let mut places = [of_patched.places.into_iter(), of_bare.places.into_iter()];
+        let place = |tile: &Tile| match tile.has_gradients() {
+            true => places[0].next(),
+            false => places[1].next().map(|place| first_bare + place),
+        };
+        Some(Placed { places: tiles.iter().filter_map(place).collect(), missing })
     }
 
     /// Of each chunk the block of its vertices; and the slots of those whose vertices are not there yet.
@@ -206,10 +240,15 @@ impl Buffers {
 
     /// Writes the samples of tiles into their places: those of a run of places at once.
     fn write_tiles(&self, gpu: &Gpu, placed: &[(u32, Tile)], mut tiles: &[TileSamples]) -> Result<()> {
-        for run in placed.chunk_by(|(place, _), (next, _)| place + 1 == *next) {
+        let follows = |(place, tile): &(u32, Tile), (next, other): &(u32, Tile)| {
+            place + 1 == *next && tile.has_gradients() == other.has_gradients()
+        };
+        for run in placed.chunk_by(follows) {
             let (of_run, rest) = tiles.split_at(run.len());
             let offset = u64::from(run[0].0) * u64::from(TILE_SAMPLES) * 4;
-            for (k, name) in ["heights", "gradients_east", "gradients_north"].into_iter().enumerate() {
+            let names = ["heights", "gradients_east", "gradients_north"];
+            let written = if run[0].1.has_gradients() { names.len() } else { 1 };
+            for (k, name) in names.into_iter().enumerate().take(written) {
                 let mut samples = Vec::with_capacity(run.len() * TILE_SAMPLES as usize);
                 for TileSamples { heights, gradients: [east, north] } in of_run {
                     samples.extend_from_slice([heights, east, north][k]);

@@ -45,7 +45,7 @@ pub fn written(room: Room, [width, height]: [u32; 2]) -> Result<Vec<(&'static st
     let pixels = u64::from(width) * u64::from(height);
     let chunks = u64::from(room.chunks);
     let batch = chunks.min(u64::from(BATCH_CHUNKS));
-    let tiles = room.tiles as u64 * u64::from(TILE_SAMPLES) * 4;
+    let [tiles, patched] = [room.tiles, room.patched].map(|tiles| tiles as u64 * u64::from(TILE_SAMPLES) * 4);
     let part = u64::from(PART_CHUNKS);
     let facing = (0..).map(|i| chunks.saturating_sub(i * part).min(part) * u64::from(CHUNK_WORDS) * 4);
     let mut sizes: Vec<_> = FACING.into_iter().zip(facing).collect();
@@ -53,8 +53,8 @@ pub fn written(room: Room, [width, height]: [u32; 2]) -> Result<Vec<(&'static st
         ("chunks", chunks * size_of::<ChunkUniform>() as u64),
         ("nodes", room.nodes as u64 * 4),
         ("heights", tiles),
-        ("gradients_east", tiles),
-        ("gradients_north", tiles),
+        ("gradients_east", patched),
+        ("gradients_north", patched),
         ("summaries", chunks * 4),
         ("fresh", chunks * WORD_BYTES),
         ("places", batch * u64::from(CHUNK_VERTICES) * VERTEX_BYTES),

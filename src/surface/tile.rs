@@ -1,7 +1,7 @@
 //! Tiles: the samples below a chunk, 17 x 17, as the device holds them.
 //!
-//! A chunk coarser than the grid has a tile of its own vertices. Finer chunks share the tile of the chunk of level 1 that
-//! they lie in, for their patches need its samples with their gradients.
+//! A chunk of level 1 or coarser than the grid has a tile of its own vertices, heights alone. Finer chunks share the tile of
+//! the chunk of level 1 that they lie in, for their patches need its samples with their gradients.
 
 use std::borrow::Cow;
 
@@ -21,6 +21,8 @@ pub struct Tile {
     first: [u32; 2],
     /// Columns between its samples.
     spacing: u32,
+    /// Whether patches are made of it.
+    has_gradients: bool,
 }
 
 /// The samples of a tile, row by row; where the DEM has none, and at voids, all are 0.
@@ -28,7 +30,7 @@ pub struct Tile {
 pub struct TileSamples {
     /// Exaggerated metres.
     pub heights: Vec<f32>,
-    /// dz/d east and dz/d north; 0 where samples are not neighbours.
+    /// dz/d east and dz/d north; empty where facets are planes between samples.
     pub gradients: [Vec<f32>; 2],
 }
 
@@ -37,7 +39,13 @@ impl Tile {
     pub fn of(chunk: &Chunk) -> Self {
         let spacing = chunk.step.div_ceil(CELL_STEPS);
         let size = CHUNK_QUADS * spacing;
-        Self { first: chunk.origin.map(|at| at / CELL_STEPS / size * size), spacing }
+        let first = chunk.origin.map(|at| at / CELL_STEPS / size * size);
+        Self { first, spacing, has_gradients: chunk.step < CELL_STEPS }
+    }
+
+    /// Whether the gradients of its samples are needed too: by patches, which chunks finer than the grid have.
+    pub fn has_gradients(&self) -> bool {
+        self.has_gradients
     }
 
     /// Reads its samples.
@@ -46,12 +54,10 @@ impl Tile {
     /// As [`Surface::part`] and [`Dem::spaced`](crate::dem::Dem::spaced).
     pub fn read(&self, surface: &Surface) -> Result<TileSamples> {
         let (first, spacing) = (self.first.map(|at| at as usize), self.spacing as usize);
-        let none = || vec![0.0; TILE_SAMPLES as usize];
-        if spacing > 1 {
-            // Coarser facets are planes between samples.
+        if !self.has_gradients {
             let mut heights = surface.dem().spaced(first, spacing, [TILE_SIDE as usize; 2])?;
             heights.iter_mut().filter(|height| height.is_nan()).for_each(|height| *height = 0.0);
-            return Ok(TileSamples { heights, gradients: [none(), none()] });
+            return Ok(TileSamples { heights, gradients: [Vec::new(), Vec::new()] });
         }
         let part = if surface.dem().is_filed() {
             Cow::Owned(surface.part(first, [TILE_SIDE as usize; 2])?)
@@ -59,6 +65,7 @@ impl Tile {
             Cow::Borrowed(surface)
         };
         let dem = part.dem();
+        let none = || vec![0.0; TILE_SAMPLES as usize];
         let [mut heights, mut east, mut north] = [none(), none(), none()];
         let places = (0..TILE_SAMPLES as usize).map(|i| [i % TILE_SIDE as usize, i / TILE_SIDE as usize]);
         for (i, [c, r]) in places.map(|at| [first[0] + at[0], first[1] + at[1]]).enumerate() {
