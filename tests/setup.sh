@@ -1,4 +1,5 @@
-# Sourced by tests/run.sh behind examples/setup.sh: a browser, in which the tests look at a report.
+# Sourced by tests/run.sh behind examples/setup.sh: a browser, in which the tests look at a report, and GDAL's tools, which
+# errors name as remedies and the tests run.
 browse() {
     for browser in chromium chromium-browser google-chrome; do
         command -v "$browser" >/dev/null 2>&1 && return 0
@@ -7,4 +8,11 @@ browse() {
         echo "no browser: tests of the report's page are skipped; install Chromium to run them"
     fi
 }
+remedies() {
+    command -v gdalwarp >/dev/null 2>&1 && command -v gdal_fillnodata.py >/dev/null 2>&1 && return 0
+    if ! command -v apt-get >/dev/null 2>&1 || ! install_packages gdal-bin; then
+        echo "no gdalwarp or gdal_fillnodata.py: tests of remedies are skipped; install GDAL's tools to run them"
+    fi
+}
 browse
+remedies
