@@ -134,27 +134,22 @@ pub fn copes_without() -> bool {
 pub fn shown(path: &Path) -> String {
     let mut text = String::new();
     for part in path.as_os_str().as_encoded_bytes().utf8_chunks() {
-        text += &plain(part.valid().to_owned());
+        for c in part.valid().chars() {
+            match c {
+                '\n' | '\r' | '\t' => text.extend(c.escape_default()),
+                '\0'..='\x1f' | '\x7f' => text += &format!("\\x{:02x}", u32::from(c)),
+                _ if is_unprintable(c) => text.extend(c.escape_unicode()),
+                _ => text.push(c),
+            }
+        }
         part.invalid().iter().for_each(|byte| text += &format!("\\x{byte:02x}"));
     }
     text
 }
 
-/// One line that moves nothing on a terminal, with the escapes of [`shown`]: files may hold such names too.
+/// One line that moves nothing on a terminal, with spaces in the place of what would: files may hold such words.
 pub(crate) fn plain(text: String) -> String {
-    if !text.contains(is_unprintable) {
-        return text;
-    }
-    let mut plain = String::with_capacity(text.len() + 8);
-    for c in text.chars() {
-        match c {
-            '\n' | '\r' | '\t' => plain.extend(c.escape_default()),
-            '\0'..='\x1f' | '\x7f' => plain += &format!("\\x{:02x}", u32::from(c)),
-            _ if is_unprintable(c) => plain.extend(c.escape_unicode()),
-            _ => plain.push(c),
-        }
-    }
-    plain
+    if text.contains(is_unprintable) { text.replace(is_unprintable, " ") } else { text }
 }
 
 /// Control characters (C0, DEL, C1), separators of lines and paragraphs, and marks that turn the direction of writing.
