@@ -8,14 +8,15 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::ffi::{CStr, OsString};
-use std::fs::{self, File, Metadata};
+use std::fs::{self, File};
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
-use std::time::SystemTime;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, SystemTime};
 
 use gdal::{Dataset, DatasetOptions, GdalOpenFlags};
 use rayon::prelude::*;
-use xxhash_rust::xxh3::Xxh3;
+use xxhash_rust::xxh3::{Xxh3, xxh3_128};
 
 use super::formats::FORMATS;
 use super::name::{Name, Place};
@@ -57,6 +58,8 @@ const BESIDE: [&str; 33] = [
     "ovr.msk",
     "msk.aux.xml",
 ];
+/// A folder that has not changed for so long has another time when it changes again.
+const SETTLED: Duration = Duration::from_secs(2);
 /// Bytes at each end of a file that are hashed.
 const END: u64 = 1 << 16;
 
@@ -73,36 +76,25 @@ pub(super) struct Listed {
 struct State {
     bytes: u64,
     modified: Option<SystemTime>,
-    node: (u64, u64),
 }
 
 impl State {
-    fn of(found: &Metadata) -> Self {
-        #[cfg(unix)]
-        let node = {
-            use std::os::unix::fs::MetadataExt;
-            (found.dev(), found.ino())
-        };
-        #[cfg(not(unix))]
-        let node = (0, 0);
-        Self { bytes: found.len(), modified: found.modified().ok(), node }
-    }
-
     fn now(path: &Path) -> Option<Self> {
-        fs::metadata(path).ok().map(|found| Self::of(&found))
+        let found = fs::metadata(path).ok()?;
+        Some(Self { bytes: found.len(), modified: found.modified().ok() })
     }
 }
 
 impl Listed {
     /// Of an open dataset, and of the `rasters` that an inspection found: it and those that VRTs name, as GDAL calls them.
     pub fn new(dataset: &Dataset, rasters: &[(PathBuf, Place)]) -> Self {
-        let mut files: BTreeSet<PathBuf> = file_list(dataset).iter().filter_map(|name| on_disk(name)).collect();
+        let mut files: BTreeSet<PathBuf> = file_list(dataset).iter().filter_map(on_disk).collect();
         // The first raster is the dataset; its parts are opened for their lists alone.
         for (name, _) in rasters.iter().skip(1).filter(|(_, place)| !matches!(place, Place::Remote)) {
             let open_flags = GdalOpenFlags::GDAL_OF_RASTER | GdalOpenFlags::GDAL_OF_READONLY;
             let options = DatasetOptions { open_flags, allowed_drivers: Some(&FORMATS), ..Default::default() };
             if let (Ok(part), _) = heard(|| Dataset::open_ex(name, options)) {
-                files.extend(file_list(&part).iter().filter_map(|name| on_disk(name)));
+                files.extend(file_list(&part).iter().filter_map(on_disk));
             }
         }
         let of_rasters = rasters.iter().filter_map(|(_, place)| match place {
@@ -111,6 +103,8 @@ impl Listed {
         });
         files.extend(of_rasters);
         files.extend(beside(&files));
+        // The time of a folder changes with whatever is written there.
+        files.retain(|file| !file.is_dir());
         let remote = rasters.iter().any(|(_, place)| matches!(place, Place::Remote));
         Self { files: files.into_iter().map(|file| (file.clone(), State::now(&file))).collect(), remote }
     }
@@ -141,20 +135,15 @@ impl Listed {
     }
 }
 
-/// Hash of the first and the last bytes of a file; of a folder none.
+/// Hash of the first and the last bytes of a file.
 fn ends(path: &Path) -> io::Result<u128> {
-    let mut hash = Xxh3::new();
-    let found = fs::metadata(path)?;
-    if !found.is_file() {
-        return Ok(hash.digest128());
-    }
     let mut file = File::open(path)?;
+    let length = file.metadata()?.len();
     let mut bytes = Vec::new();
     file.by_ref().take(END).read_to_end(&mut bytes)?;
-    file.seek(SeekFrom::Start(found.len().saturating_sub(END).max(END.min(found.len()))))?;
+    file.seek(SeekFrom::Start(length.saturating_sub(END).max(END.min(length))))?;
     file.take(END).read_to_end(&mut bytes)?;
-    hash.update(&bytes);
-    Ok(hash.digest128())
+    Ok(xxh3_128(&bytes))
 }
 
 /// The file, container or archive on the disk that GDAL means by `name`.
@@ -198,7 +187,7 @@ fn os_string(name: &CStr) -> OsString {
 
 /// What stands beside files by their names, links of both the file and its folder followed and not.
 fn beside(files: &BTreeSet<PathBuf>) -> Vec<PathBuf> {
-    let mut folders: HashMap<PathBuf, BTreeMap<String, Vec<OsString>>> = HashMap::new();
+    let mut folders: HashMap<PathBuf, Arc<Names>> = HashMap::new();
     let mut found = Vec::new();
     let followed = files.iter().filter_map(|file| file.canonicalize().ok());
     for file in files.iter().cloned().chain(followed) {
@@ -216,8 +205,25 @@ fn beside(files: &BTreeSet<PathBuf>) -> Vec<PathBuf> {
 }
 
 /// The names in a folder by what they are in lower case.
-fn names_in(folder: &Path) -> BTreeMap<String, Vec<OsString>> {
-    let mut names: BTreeMap<String, Vec<OsString>> = BTreeMap::new();
+type Names = BTreeMap<String, Vec<OsString>>;
+
+/// The names in a folder. Many files of one folder are opened one after the other: the last listing serves while the
+/// folder has not changed, nor had just changed then, for its time has coarse steps.
+fn names_in(folder: &Path) -> Arc<Names> {
+    static LAST: Mutex<Option<(PathBuf, SystemTime, Arc<Names>)>> = Mutex::new(None);
+    let changed = fs::metadata(folder).and_then(|found| found.modified()).ok();
+    let mut last = LAST.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((_, _, names)) = last.as_ref().filter(|(of, then, _)| of == folder && Some(*then) == changed) {
+        return names.clone();
+    }
+    let names = Arc::new(listing(folder));
+    let settled = changed.filter(|changed| changed.elapsed().is_ok_and(|since| since > SETTLED));
+    *last = settled.map(|changed| (folder.to_owned(), changed, names.clone()));
+    names
+}
+
+fn listing(folder: &Path) -> Names {
+    let mut names = Names::new();
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let name = entry.file_name();
         names.entry(name.to_string_lossy().to_lowercase()).or_default().push(name);
