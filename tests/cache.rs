@@ -91,7 +91,11 @@ impl Place {
 
 /// What is kept of something by number.
 fn key(number: u128) -> Key {
-    Key { kind: Kind { name: "truth", format: 7 }, hash: number, of: format!("number {number}") }
+    Key {
+        kind: Kind { name: "truth", format: 7, words: ["a number", "a kept number"] },
+        hash: number,
+        of: format!("number {number}"),
+    }
 }
 
 /// Gets `number` with 1000 bytes of it, and what was warned of; `made` counts how often they are made.
@@ -267,7 +271,7 @@ fn what_is_another_artefact_or_damaged_is_made_anew() {
         let before = made.load(Ordering::Relaxed);
         let (bytes, said) = get(&cache, 1, &made, Duration::ZERO);
         assert_eq!((bytes, made.load(Ordering::Relaxed)), (vec![1; 1000], before + 1));
-        assert_eq!(said, ["what was kept of number 1 is damaged: it is made anew"]);
+        assert_eq!(said, ["a kept number is damaged: it is made anew"]);
         assert!(fs::read(file(1)).expect("a file") == whole);
     }
 }

@@ -74,7 +74,7 @@ impl Key {
     }
 
     fn name(&self) -> u128 {
-        let Kind { name, format } = self.kind;
+        let Kind { name, format, .. } = self.kind;
         xxh3_128(format!("{name} {format} {:032x}", self.hash).as_bytes())
     }
 

@@ -1,7 +1,7 @@
 //! A folder for what takes long to make and depends on its inputs alone.
 //!
 //! Each artefact is a file named by its kind and by a hash of all that it depends on, the number of its format included.
-//! Files are whole or not there, say inside what they are, and are made by one process while others wait ([`lock`]). Beyond
+//! Files are whole or not there, say inside what they are, and are made by one process while others wait (`lock`). Beyond
 //! a size the one that was used longest ago goes, never one that is open in some process ([`shelf`]). Whatever is wrong with
 //! the folder costs time and a warning, never the work. Not handled: folders on a network whose clocks are minutes apart: two
 //! processes may make the same then.
@@ -28,6 +28,8 @@ pub struct Kind {
     pub name: &'static str,
     /// Number of what its bytes mean and how they are found: raised when either changes, older files are no longer found then.
     pub format: u32,
+    /// What it is in messages: just made, and kept.
+    pub words: [&'static str; 2],
 }
 
 /// What an artefact is, of what, and by a hash of all that it depends on.
@@ -124,7 +126,7 @@ impl Cache {
                 Ok(None) => {}
                 Err(None) if damaged => {}
                 Err(None) => {
-                    (hearing.warn)(&format!("what was kept of {} is damaged: it is made anew", key.of));
+                    (hearing.warn)(&format!("{} is damaged: it is made anew", key.kind.words[1]));
                     damaged = true;
                 }
                 Err(Some(what)) => {
@@ -167,7 +169,7 @@ impl Cache {
 
 /// That something was made and could not be kept.
 pub fn not_kept(key: &Key, why: &dyn Display) -> String {
-    format!("what was made of {} is not cached: {why}", key.of)
+    format!("{} is not cached: {why}", key.kind.words[0])
 }
 
 fn strange(path: &Path, what: &str) -> String {

@@ -121,6 +121,8 @@ impl Listed {
         });
         files.extend(of_rasters);
         files.extend(folders.beside(&files));
+        // The time of a folder changes with whatever is written there.
+        files.retain(|file| !file.is_dir());
         let remote = rasters.iter().any(|(_, place)| matches!(place, Place::Remote));
         Self { files: files.into_iter().map(|file| (file.clone(), State::now(&file))).collect(), remote }
     }

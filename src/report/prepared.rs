@@ -25,6 +25,8 @@ use crate::surface::{Pyramid, PyramidBuilder, Surface, SurfaceBand};
 /// Raise it when the survey, the pyramid or the overviews of the same samples come out otherwise, or when the bytes below
 /// mean something else.
 const FORMAT: u32 = 1;
+const KIND: Kind =
+    Kind { name: "prepared", format: FORMAT, words: ["what was made of the DEM", "what was kept of the DEM"] };
 
 /// What stands before the thinned samples.
 #[repr(C)]
@@ -88,14 +90,14 @@ impl Cache {
     /// with what was drawn: it took the samples themselves. `warn` hears of it.
     pub fn discard_damaged(&self, dem: &Dem, warn: &dyn Fn(&str)) {
         if let Some(key) = key(dem).filter(|_| self.folder().is_some() && dem.has_damaged_overviews()) {
-            warn(&format!("what was kept of {} is damaged: it is made anew next time", key.of));
+            warn(&format!("{} is damaged: it is made anew next time", KIND.words[1]));
             self.remove(&key);
         }
     }
 }
 
 fn key(dem: &Dem) -> Option<Key> {
-    dem.stamp().map(|hash| Key { kind: Kind { name: "prepared", format: FORMAT }, hash, of: dem.label() })
+    dem.stamp().map(|hash| Key { kind: KIND, hash, of: dem.label() })
 }
 
 /// Makes survey, pyramid and overviews of a surface and writes them where they are kept; without that there are no

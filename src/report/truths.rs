@@ -18,6 +18,7 @@ use crate::view::Camera;
 /// Raise it when a truth comes out otherwise for the same samples, camera and level (anything in `truth`, normals, patches,
 /// the camera's projection), or when the bytes below mean something else.
 const FORMAT: u32 = 1;
+const KIND: Kind = Kind { name: "truth", format: FORMAT, words: ["truth", "a cached truth"] };
 
 /// A truth with what it took to make it, now or when it was kept.
 #[derive(Debug, Clone, PartialEq)]
@@ -92,7 +93,7 @@ fn key(surface: &Surface, camera: &Camera, level: Level) -> Option<Key> {
     hash.update(bytemuck::cast_slice(&[camera.azimuth, camera.altitude, camera.fov]));
     let counts = [dem.columns() as u64, u64::from(camera.width), u64::from(camera.height), level.subdivisions().into()];
     hash.update(bytemuck::cast_slice(&counts));
-    Some(Key { kind: Kind { name: "truth", format: FORMAT }, hash: hash.digest128(), of: dem.label() })
+    Some(Key { kind: KIND, hash: hash.digest128(), of: dem.label() })
 }
 
 fn to_bytes(kept: &Kept) -> Vec<u8> {
