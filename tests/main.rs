@@ -21,6 +21,7 @@ mod forms;
 mod gpu_errors;
 mod growth;
 mod hardware;
+mod heights;
 mod house;
 mod ink;
 mod judged;

@@ -261,7 +261,8 @@ impl Placed {
     ) -> Result<()> {
         let band = source.band()?;
         let masked = band.mask_flags().is_ok_and(|flags| flags.is_per_dataset());
-        let mask = if masked { band.open_mask_band().ok() } else { None };
+        // GDAL takes no transparency for a mask that is not of whole numbers.
+        let mask = if masked { band.open_mask_band().ok() } else { source.alpha() };
         let (own, there) = ([self.grid.columns, self.grid.rows], [raster.grid.columns, raster.grid.rows]);
         let low = [0, 1].map(|i| first[i].max(0));
         let end = [0, 1].map(|i| (first[i] + own[i] as i64).min(there[i] as i64));
@@ -314,8 +315,8 @@ fn numbers(
         None => block::<f64>(source, band, from, size)?,
     };
     if let Some(mask) = mask {
-        let seen = block::<u8>(source, mask, from, size)?;
-        raw.iter_mut().zip(seen).filter(|(_, seen)| *seen == 0).for_each(|(raw, _)| *raw = f64::NAN);
+        let seen = block::<f32>(source, mask, from, size)?;
+        raw.iter_mut().zip(seen).filter(|(_, seen)| *seen == 0.0).for_each(|(raw, _)| *raw = f64::NAN);
     }
     Ok(raw)
 }
