@@ -23,6 +23,7 @@ mod forms;
 mod gpu_errors;
 mod growth;
 mod hardware;
+mod heights;
 mod hostile;
 mod house;
 mod ink;

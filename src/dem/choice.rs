@@ -4,7 +4,7 @@
 //! is a mask is passed over. Not handled: names in other languages than English.
 
 use gdal::Metadata;
-use gdal::raster::{ColorInterpretation, GdalDataType};
+use gdal::raster::{ColorInterpretation, GdalDataType, RasterBand};
 
 use super::encoding::Encoding;
 use super::source::Source;
@@ -29,8 +29,9 @@ impl Source {
         }
         let chosen = if options.band.is_some() { self } else { self.by_name(history)? };
         chosen.check_type()?;
-        let kind = chosen.band()?.band_type();
-        if kind == GdalDataType::UInt8 && options.elevation_unit.is_none() {
+        let band = chosen.band()?;
+        let plain = band.scale().unwrap_or(1.0) == 1.0 && band.offset().unwrap_or(0.0) == 0.0;
+        if band.band_type() == GdalDataType::UInt8 && plain && options.elevation_unit.is_none() {
             history.assume(
                 "its 8-bit numbers, 0 to 255, are heights in whole metres (a picture or a hillshade has such numbers: \
                  then give the DEM it was made from; for heights say --elevation-unit m)"
@@ -38,6 +39,13 @@ impl Source {
             );
         }
         Ok(chosen)
+    }
+
+    /// The band of transparency beside the chosen one, if there is any.
+    pub fn alpha(&self) -> Option<RasterBand<'_>> {
+        let alpha = |band: &usize| self.colour(*band) == ColorInterpretation::AlphaBand;
+        let found = (1..=self.dataset.raster_count()).find(alpha).filter(|band| *band != self.band);
+        found.and_then(|band| self.dataset.rasterband(band).ok())
     }
 
     fn by_name(self, history: &mut History) -> Result<Self> {

@@ -55,7 +55,7 @@ pub(super) fn doubts(tally: &Tally, elevation: &Elevation) -> Vec<String> {
 pub(super) fn other_units(tally: &Tally, elevation: &Elevation) -> Option<String> {
     let trial = Trial::new(tally, elevation);
     let huge = trial.huge();
-    if huge > 0 { trial.units(huge) } else { None }
+    if huge == [0; 2] { None } else { trial.units(huge) }
 }
 
 /// The numbers that are voids by their impossible value alone, for `--nodata`; `None` where they are too many.
@@ -175,7 +175,7 @@ impl<'a> Trial<'a> {
     /// What is left outside all land of the Earth.
     fn outside(&self) -> Option<String> {
         let huge = self.huge();
-        let sides = [self.beyond(0, 0), self.beyond(1, huge)];
+        let sides = [self.beyond(0, huge), self.beyond(1, huge)];
         let (mut clauses, mut ranges, mut all) = (Vec::new(), Vec::new(), 0);
         for (side, (count, numbers)) in sides.iter().enumerate() {
             let (Some((least, _)), Some((greatest, _))) = (numbers.first(), numbers.last()) else { continue };
@@ -193,12 +193,12 @@ impl<'a> Trial<'a> {
             return None;
         }
         let units = self.units(huge);
-        let nodata = format!("if they are none, add --nodata {}", self.nodata(&ranges));
+        let nodata = format!("if they are no heights, add --nodata {}", self.nodata(&ranges));
         // A few may be spikes, whatever the unit.
         let few = (all as f64) < FEW * self.tally.samples as f64;
         let remedy = match units {
-            Some(units) if few => format!("in other units add {units}; {nodata}"),
-            Some(units) => format!("in other units add {units}"),
+            Some(units) if few => format!("if it is another, add {units}; {nodata}"),
+            Some(units) => format!("if it is another, add {units}"),
             None => nodata,
         };
         Some(format!("{} are heights in the right unit ({remedy})", clauses.join(" and ")))
@@ -206,7 +206,7 @@ impl<'a> Trial<'a> {
 
     /// How many numbers lie below (0) or above (1) all land on Earth, marks left out, and the outermost of them from the
     /// least on, each with its count where that is known. `huge` are those that pass for marks by their size alone.
-    fn beyond(&self, side: usize, huge: u64) -> (u64, Vec<(f64, u64)>) {
+    fn beyond(&self, side: usize, huge: [u64; 2]) -> (u64, Vec<(f64, u64)>) {
         let metres = |number: f64| match self.elevation.reading(number) {
             Reading::Metres(metres) => metres,
             _ => f64::NAN,
@@ -222,8 +222,9 @@ impl<'a> Trial<'a> {
         if count > 0 {
             further.extend([of.least, of.greatest]);
         }
-        if huge > 0 {
-            further.extend([self.tally.huge.least, self.tally.huge.greatest]);
+        let sign = if self.elevation.is_depth() { 1 - side } else { side };
+        if huge[sign] > 0 {
+            further.extend([self.tally.huge[sign].least, self.tally.huge[sign].greatest]);
         }
         further.retain(|number| !numbers.iter().chain(&self.marks).any(|(known, _)| known == number));
         if self.wrapped {
@@ -232,31 +233,45 @@ impl<'a> Trial<'a> {
         numbers.extend(further.into_iter().map(|number| (number, 0)));
         numbers.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
         numbers.dedup();
-        (count + huge, numbers)
+        (count + huge[sign], numbers)
     }
 
-    /// How many numbers that pass for marks by their size alone are many different ones, as heights in a small unit are.
-    fn huge(&self) -> u64 {
-        let huge = self.tally.huge;
-        let distinct = self.tally.high.iter().filter(|(number, _)| *number >= huge.least).count();
-        let fits = huge.greatest * UNITS[2].1 <= EARTH[1] && self.elevation.is_plain_metres();
-        if fits && distinct > OTHERS { huge.count } else { 0 }
+    /// How many numbers below and above zero that pass for marks by their size alone are many different ones, as heights
+    /// in a small unit are.
+    fn huge(&self) -> [u64; 2] {
+        let Tally { huge, low, high, .. } = self.tally;
+        let distinct = [
+            low.iter().filter(|(number, _)| *number <= huge[0].greatest).count(),
+            high.iter().filter(|(number, _)| *number >= huge[1].least).count(),
+        ];
+        let smallest = UNITS[UNITS.len() - 1].1;
+        let fits = self.is_on_earth(huge[0].least, huge[1].greatest, smallest) && self.elevation.is_plain_metres();
+        [0, 1].map(|side| if fits && distinct[side] > OTHERS { huge[side].count } else { 0 })
     }
 
-    /// Units in which all that is left is on Earth, each with the highest.
-    fn units(&self, huge: u64) -> Option<String> {
-        let greatest = self.high.first().map_or(f64::NEG_INFINITY, |end| end.0);
-        let greatest = if huge > 0 { self.tally.huge.greatest.max(greatest) } else { greatest };
-        let least = self.low.first().map_or(greatest, |end| end.0);
+    /// Whether numbers from `least` to `greatest` of a unit of so many metres are on Earth; beyond them is nothing.
+    fn is_on_earth(&self, least: f64, greatest: f64, metres: f64) -> bool {
+        let (least, greatest) = (least.min(0.0) * metres, greatest.max(0.0) * metres);
+        let [low, high] = if self.elevation.is_depth() { [-greatest, -least] } else { [least, greatest] };
+        low >= EARTH[0] && high <= EARTH[1]
+    }
+
+    /// Units in which all that is left is on Earth, each with how far it reaches.
+    fn units(&self, huge: [u64; 2]) -> Option<String> {
         if !self.elevation.is_plain_metres() {
             return None;
         }
-        let on_earth = |metres: f64| least * metres >= EARTH[0] && greatest * metres <= EARTH[1];
-        let likely = |metres: f64| on_earth(metres) && greatest.max(-least) * metres > LOWEST_TOP;
+        let greatest = self.high.first().map_or(f64::NEG_INFINITY, |end| end.0);
+        let greatest = if huge[1] > 0 { self.tally.huge[1].greatest } else { greatest };
+        let least = self.low.first().map_or(f64::INFINITY, |end| end.0);
+        let least = if huge[0] > 0 { self.tally.huge[0].least } else { least };
+        let farthest = greatest.max(-least);
+        let likely = |metres: f64| self.is_on_earth(least, greatest, metres) && farthest * metres > LOWEST_TOP;
         let units = UNITS.into_iter().chain([("ft", FOOT)]).filter(|(_, metres)| likely(*metres));
+        let far = if greatest >= -least { greatest } else { least };
         let told: Vec<_> =
-            units.map(|(unit, metres)| format!("--elevation-unit {unit}: up to {:.1} m", greatest * metres)).collect();
-        (!told.is_empty()).then(|| told.join(", "))
+            units.map(|(unit, metres)| format!("--elevation-unit {unit}: up to {:.1} m", far * metres)).collect();
+        (!told.is_empty()).then(|| told.join(", or "))
     }
 
     /// What to type for `--nodata`: what was said before, the marks, and `more`.

@@ -176,6 +176,11 @@ impl Elevation {
         self.encoding == Some(Encoding::Signed)
     }
 
+    /// Whether greater numbers lie deeper.
+    pub fn is_depth(&self) -> bool {
+        self.depth
+    }
+
     /// Whether the numbers are taken for metres as they stand.
     pub fn is_plain_metres(&self) -> bool {
         self.factor == 1.0 && self.scale == 1.0 && self.offset == 0.0

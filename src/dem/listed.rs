@@ -15,7 +15,7 @@ use std::time::SystemTime;
 
 use gdal::{Dataset, GdalOpenFlags};
 use rayon::prelude::*;
-use xxhash_rust::xxh3::Xxh3;
+use xxhash_rust::xxh3::{Xxh3, xxh3_128};
 
 use super::formats::FORMATS;
 use super::name::{Name, Place};
@@ -157,20 +157,15 @@ impl Listed {
     }
 }
 
-/// Hash of the first and the last bytes of a file; of a folder none.
+/// Hash of the first and the last bytes of a file.
 fn ends(path: &Path) -> io::Result<u128> {
-    let mut hash = Xxh3::new();
-    let found = fs::metadata(path)?;
-    if !found.is_file() {
-        return Ok(hash.digest128());
-    }
     let mut file = File::open(path)?;
+    let length = file.metadata()?.len();
     let mut bytes = Vec::new();
     file.by_ref().take(END).read_to_end(&mut bytes)?;
-    file.seek(SeekFrom::Start(found.len().saturating_sub(END).max(END.min(found.len()))))?;
+    file.seek(SeekFrom::Start(length.saturating_sub(END).max(END.min(length))))?;
     file.take(END).read_to_end(&mut bytes)?;
-    hash.update(&bytes);
-    Ok(hash.digest128())
+    Ok(xxh3_128(&bytes))
 }
 
 /// The file, container or archive on the disk that GDAL means by `name`.

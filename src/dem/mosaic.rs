@@ -313,7 +313,8 @@ impl Placed {
         let band = source.band()?;
         let (mask, words) = heard(|| match band.mask_flags()?.is_per_dataset() {
             true => band.open_mask_band().map(Some),
-            false => Ok(None),
+            // GDAL takes no transparency for a mask that is not of whole numbers.
+            false => Ok(source.alpha()),
         });
         // Without it what is masked would pass for land.
         let mask = mask.map_err(|_| source.unreadable(words.as_deref()))?;
@@ -366,8 +367,8 @@ fn numbers(
         None => block::<f64>(source, band, from, size)?,
     };
     if let Some(mask) = mask {
-        let seen = block::<u8>(source, mask, from, size)?;
-        raw.iter_mut().zip(seen).filter(|(_, seen)| *seen == 0).for_each(|(raw, _)| *raw = f64::NAN);
+        let seen = block::<f32>(source, mask, from, size)?;
+        raw.iter_mut().zip(seen).filter(|(_, seen)| *seen == 0.0).for_each(|(raw, _)| *raw = f64::NAN);
     }
     Ok(raw)
 }

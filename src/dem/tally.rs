@@ -26,8 +26,8 @@ pub(super) struct Tally {
     pub high: Vec<(f64, u64)>,
     /// Numbers whose metres are below and above all land of the planet.
     pub outside: [Beyond; 2],
-    /// Numbers above all that can be an elevation anywhere, which are among the marks.
-    pub huge: Beyond,
+    /// Of the marks, those below and those above zero.
+    pub huge: [Beyond; 2],
     /// Numbers in the upper half of the unsigned type that wraps round.
     pub upper: Beyond,
     /// The greatest number in its lower half.
@@ -66,7 +66,7 @@ impl Tally {
             low: Vec::with_capacity(KEPT + 1),
             high: Vec::with_capacity(KEPT + 1),
             outside: [Beyond::NONE; 2],
-            huge: Beyond::NONE,
+            huge: [Beyond::NONE; 2],
             upper: Beyond::NONE,
             below: f64::NEG_INFINITY,
             half: elevation.modulus() / 2.0,
@@ -84,9 +84,7 @@ impl Tally {
             Reading::Metres(_) => {}
             Reading::Sentinel => {
                 self.marks += 1;
-                if number > 0.0 {
-                    self.huge.add(number);
-                }
+                self.huge[usize::from(number > 0.0)].add(number);
             }
         }
         if number >= self.half {
@@ -105,7 +103,9 @@ impl Tally {
         for (mine, theirs) in self.outside.iter_mut().zip(other.outside) {
             *mine = mine.with(theirs);
         }
-        self.huge = self.huge.with(other.huge);
+        for (mine, theirs) in self.huge.iter_mut().zip(other.huge) {
+            *mine = mine.with(theirs);
+        }
         self.upper = self.upper.with(other.upper);
         self.below = self.below.max(other.below);
         other.low.iter().for_each(|entry| add(&mut self.low, *entry, |a, b| a < b));
