@@ -120,7 +120,7 @@ pub(super) fn missing(path: &Path, connection: &Path, place: &Place) -> Option<E
     let files: Vec<_> = vsi::files_below(&before)?.iter().map(|file| lossless::text(file)).collect();
     let after = lossless::text(after.as_os_str());
     let first = files.iter().find(|file| !is_hidden(file))?;
-    let there = after.is_empty() || files.iter().any(|file| *file == after);
+    let there = after.is_empty() || files.contains(&after);
     let typed = || lossless::text(path.as_os_str()).strip_suffix(&after).map(|archive| format!("{archive}{first}"));
     let first = typed().unwrap_or_else(|| first.clone());
     let remedy = format!("name a file that it holds, such as `{}`", quoted(&first));

@@ -101,7 +101,7 @@ pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Dem> {
 /// data that the file forgot to declare: at or below -32767, above 100 000 m. Of files that overlap the last wins; those
 /// on another grid than the first are warped to it. Degrees and turned grids are warped to square cells in metres.
 /// What was converted and what had to be assumed stands in [`Dem::history`]. A path may name one grid of a container as
-/// `NETCDF:file:grid`; `.gz` and `.zip` are read through. `progress` hears what is being done and the share done, 0 to 1.
+/// `NETCDF:file:grid`; `.gz`, `.zip` and `.tar` are read through. `progress` hears what is being done and the share done, 0 to 1.
 ///
 /// The first call changes GDAL for the whole process: an error handler that prints nothing, no drivers of rasters off
 /// the list of formats, no Python in VRTs, a small cache. No other thread should be inside GDAL at that moment.

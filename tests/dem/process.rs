@@ -100,15 +100,18 @@ fn libraries_under_gdal_are_silent() {
     }
     copy(&tif, "GTiff", &at("keys.tif"));
     let bytes = fs::read(at("keys.tif")).unwrap();
-    // The unit of length 9001 becomes one that nobody knows, key by key.
-    let unit = 9001u16.to_le_bytes();
-    let places = (0..bytes.len() - 1).filter(|place| bytes[*place..*place + 2] == unit).collect::<Vec<_>>();
-    assert!(!places.is_empty(), "a unit of length among the keys");
-    for (i, value) in [9999u16, 0, 40_000, 32_767].into_iter().enumerate() {
-        let mut bytes = bytes.clone();
-        places.iter().for_each(|place| bytes[*place..*place + 2].copy_from_slice(&value.to_le_bytes()));
-        fs::write(at(&format!("keys{i}.tif")), bytes).unwrap();
-        cases.push(format!("keys{i}.tif"));
+    // A system of its own with a unit of length that nobody knows, as libgeotiff asks PROJ behind GDAL's back.
+    let keys = |bytes: &[u8], from: u16, to: u16| {
+        let places = (0..bytes.len() - 1).filter(|place| bytes[*place..*place + 2] == from.to_le_bytes());
+        let places: Vec<_> = places.collect();
+        assert!(!places.is_empty(), "{from} among the keys");
+        let mut bytes = bytes.to_vec();
+        places.iter().for_each(|place| bytes[*place..*place + 2].copy_from_slice(&to.to_le_bytes()));
+        bytes
+    };
+    for (name, unit) in [("keys0.tif", 9999), ("keys1.tif", 40_000)] {
+        fs::write(at(name), keys(&keys(&bytes, 9001, unit), 32610, 32767)).unwrap();
+        cases.push(name.to_owned());
     }
     let mut failed = 0;
     for case in &cases {
