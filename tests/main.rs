@@ -49,4 +49,5 @@ mod truth;
 mod validity;
 mod vertices;
 mod viewpoints;
+mod voids_filed;
 mod watertight;
