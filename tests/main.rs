@@ -57,4 +57,5 @@ mod truth;
 mod validity;
 mod vertices;
 mod viewpoints;
+mod voids_filed;
 mod watertight;
