@@ -4,7 +4,7 @@
 use glam::DVec3;
 use hachure::plan::{Border, Detail, Method, Plan};
 use hachure::render::Renderer;
-use hachure::report::cache::Cache;
+use hachure::cache::Cache;
 use hachure::surface::Surface;
 use hachure::view::Camera;
 
