@@ -1,5 +1,6 @@
 //! The elevation grid: what every later stage reads. GDAL is known in this folder alone.
 
+mod assumed;
 mod bands;
 mod choice;
 mod crs;
