@@ -1,7 +1,7 @@
 //! Which band of a raster holds the elevations, and whether it can: colours and transparency are none.
 //!
-//! Without `--band` the first band in reading order is taken, or the one whose name says that it is the elevation; what
-//! is a mask is passed over. Not handled: names in other languages than English.
+//! Without `--band` the one is taken whose name says that it is the elevation, else the first, and transparency is
+//! passed over. Not handled: names in other languages than English.
 
 use gdal::Metadata;
 use gdal::raster::{ColorInterpretation, GdalDataType, RasterBand};

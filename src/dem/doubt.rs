@@ -24,11 +24,11 @@ const USUAL: f64 = -9999.0;
 const NAMED: usize = 4;
 /// Share of samples up to which those outside all land may be spikes.
 const FEW: f64 = 0.01;
-/// Units smaller than the metre: words, metres, least height in metres at which a DEM of mountains would end.
+/// Units smaller than the metre: names for `--elevation-unit`, and metres.
 const UNITS: [(&str, f64); 3] = [("dm", 0.1), ("cm", 0.01), ("mm", 0.001)];
 /// Metres of a foot.
 const FOOT: f64 = 0.3048;
-/// What is no higher is land too low for the unit to be likely.
+/// Metres that a DEM must reach for a unit to be likely.
 const LOWEST_TOP: f64 = 30.0;
 
 /// One file's numbers on trial.

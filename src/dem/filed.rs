@@ -12,6 +12,7 @@ use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 use xxhash_rust::xxh3::Xxh3;
 
+use super::assumed::{assumed, units};
 use super::grid::Window;
 use super::mosaic::Mosaic;
 use super::overviews::Overviews;
@@ -175,7 +176,7 @@ impl Filed {
 
     /// What had to be assumed of the numbers tallied, in words as those of a history.
     pub fn assumed(&self, tallies: &Tallies) -> Vec<String> {
-        self.mosaic.assumed(tallies)
+        assumed(&self.mosaic.tallied(tallies), self.mosaic.is_of_several())
     }
 
     /// Keeps the first error of those who could not return it.
@@ -194,7 +195,7 @@ impl Filed {
     pub fn all_void(&self, samples: usize, tallies: &Tallies) -> Error {
         let inside = if self.window == self.mosaic.grid.whole() { "" } else { " inside the crop" };
         let what = format!("holds no elevation{inside}, all {samples} samples are void");
-        match self.mosaic.other_units(tallies) {
+        match units(&self.mosaic.tallied(tallies)) {
             Some(units) => Error::input(
                 self.mosaic.path(),
                 format!("{what} or above 100000 m"),

@@ -1,6 +1,7 @@
 //! The elevation grid: what every later stage reads. GDAL is known in this folder alone.
 
 mod archive;
+mod assumed;
 mod bands;
 mod choice;
 mod crop;

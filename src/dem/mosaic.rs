@@ -11,9 +11,9 @@ use gdal::raster::{GdalType, RasterBand};
 use glam::DVec2;
 use xxhash_rust::xxh3::Xxh3;
 
+use super::assumed::Tallied;
 use super::crop;
 use super::crs::Way;
-use super::doubt::{doubts, other_units, sentinels};
 use super::elevation::{Elevation, Reading};
 use super::encoding::Encoding;
 use super::grid::{Grid, Window, span};
@@ -32,8 +32,6 @@ const BLOCK_SAMPLES: usize = 1 << 20;
 /// Formats whose blocks are unpacked one by one and cost time: there, threads gain by reading at once. Others are read
 /// as fast by one thread, or only in the order in which they are written.
 const PARALLEL: [&str; 3] = ["GTiff", "COG", "VRT"];
-/// Files whose doubtful heights are told one by one.
-const DOUBTED_FILES: usize = 3;
 /// Samples around a window that cubic convolution reaches, and one more.
 const MARGIN: usize = 3;
 
@@ -183,54 +181,18 @@ impl Mosaic {
         Ok((raster, tallies))
     }
 
-    /// What had to be assumed of the numbers tallied: of those that are void by their impossible value alone, and of those
-    /// that hardly are heights.
-    pub fn assumed(&self, tallies: &Tallies) -> Vec<String> {
-        self.marked(tallies).into_iter().chain(self.doubts(tallies)).collect()
-    }
-
-    /// Units in which all numbers would be elevations, where in metres they are too high for any.
-    pub fn other_units(&self, tallies: &Tallies) -> Option<String> {
-        tallies.iter().find_map(|(i, tally)| other_units(tally, &self.sources.get(*i)?.elevation))
-    }
-
-    fn marked(&self, tallies: &Tallies) -> Option<String> {
-        let marks = tallies.values().map(|tally| tally.marks).sum::<usize>();
-        let of = |(i, tally): (&usize, &Tally)| sentinels(tally, &self.sources.get(*i)?.elevation);
-        let mut numbers: Vec<_> =
-            tallies.iter().filter(|(_, tally)| tally.marks > 0).filter_map(of).flatten().collect();
-        numbers.sort_unstable_by(|a, b| a[0].total_cmp(&b[0]));
-        numbers.dedup();
-        let said = self.sources[0].elevation.said();
-        let remedy = if numbers.is_empty() { "N".to_owned() } else { said.with(&numbers).to_string() };
-        (marks > 0).then(|| {
-            format!(
-                "{marks} samples at or below -32767 or above 100000 m are voids (no such nodata is declared; name it with \
-                 --nodata {remedy}, or declare it with `gdal_translate -a_nodata N IN OUT.tif`)"
-            )
-        })
-    }
-
-    /// What of the numbers tallied hardly are heights, file by file, in words as those of a history.
-    fn doubts(&self, tallies: &Tallies) -> Vec<String> {
-        let of = |(i, tally): (&usize, &Tally)| {
-            Some((self.sources.get(*i)?, doubts(tally, &self.sources.get(*i)?.elevation)))
+    /// The files of which numbers are tallied, each with its rules and its tally.
+    pub fn tallied<'a>(&'a self, tallies: &'a Tallies) -> Vec<Tallied<'a>> {
+        let of = |(i, tally): (&usize, &'a Tally)| {
+            let placed = self.sources.get(*i)?;
+            Some(Tallied { path: placed.handles.path(), elevation: &placed.elevation, tally })
         };
-        let doubted: Vec<_> = tallies.iter().filter_map(of).filter(|(_, doubts)| !doubts.is_empty()).collect();
-        let named = |placed: &Placed, clause: &String| match self.sources.len() {
-            1 => clause.clone(),
-            _ => format!("{}: {clause}", shown(placed.handles.path())),
-        };
-        let first = doubted.iter().take(DOUBTED_FILES);
-        let mut told: Vec<_> =
-            first.flat_map(|(placed, doubts)| doubts.iter().map(|clause| named(placed, clause))).collect();
-        if doubted.len() > DOUBTED_FILES {
-            told.push(format!(
-                "numbers of {} more files are heights, of which the like holds",
-                doubted.len() - DOUBTED_FILES
-            ));
-        }
-        told
+        tallies.iter().filter_map(of).collect()
+    }
+
+    /// Whether there is more than one file.
+    pub fn is_of_several(&self) -> bool {
+        self.sources.len() > 1
     }
 }
 
