@@ -2,7 +2,7 @@
 //!
 //! A VRT is recognised and parsed by GDAL's own code, so that no file means one thing to the inspection and another to
 //! GDAL (its parser forgives what every other refuses). The tree is copied out once, names in lower case as GDAL does
-//! not tell them apart. Alone in this crate it speaks to `gdal-sys`: the safe crate has none of these calls. Cost: the
+//! not tell them apart. It speaks to `gdal-sys`: the safe crate has none of these calls. Cost: the
 //! file's length in memory, twice.
 
 use std::ffi::{CStr, CString, c_char};
