@@ -145,7 +145,10 @@ fn completions_and_man_pages_hold_every_flag() {
         assert!(completions.iter().all(|text| text.contains(flag)), "a shell does not know --{flag}");
     }
     generate(&["man", "-o", "."]);
-    assert_eq!(place.written(), ["hachure-cache.1", "hachure-compare.1", "hachure-draw.1", "hachure-info.1", "hachure.1"]);
+    assert_eq!(
+        place.written(),
+        ["hachure-cache.1", "hachure-compare.1", "hachure-draw.1", "hachure-info.1", "hachure.1"]
+    );
     let files = ["hachure.1", "hachure-draw.1", "hachure-compare.1", "hachure-cache.1", "hachure-info.1"];
     let files = files.map(|name| fs::read_to_string(place.path(name)).expect(name)).concat();
     assert_eq!(files.replace("\\-", "-"), pages);
