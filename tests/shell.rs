@@ -133,7 +133,7 @@ fn completions_and_man_pages_hold_every_flag() {
     let generate = |arguments: &[&str]| stdout(&succeeds(place.run(&[&["generate"], arguments].concat())));
     let completions = ["bash", "zsh", "fish", "elvish", "powershell"].map(|shell| generate(&["completions", shell]));
     let pages = generate(&["man"]).replace("\\-", "-");
-    assert_eq!(pages.matches("\n.TH hachure").count(), 4, "one page a subcommand: {pages}");
+    assert_eq!(pages.matches("\n.TH hachure").count(), 5, "one page a subcommand: {pages}");
     let command = Arguments::command();
     let of = |name| command.find_subcommand(name).expect("a subcommand").get_arguments();
     let shown = of("draw").chain(of("compare")).filter(|a| !a.is_hide_set());
@@ -145,8 +145,11 @@ fn completions_and_man_pages_hold_every_flag() {
         assert!(completions.iter().all(|text| text.contains(flag)), "a shell does not know --{flag}");
     }
     generate(&["man", "-o", "."]);
-    assert_eq!(place.written(), ["hachure-compare.1", "hachure-draw.1", "hachure-info.1", "hachure.1"]);
-    let files = ["hachure.1", "hachure-draw.1", "hachure-compare.1", "hachure-info.1"];
+    assert_eq!(
+        place.written(),
+        ["hachure-cache.1", "hachure-compare.1", "hachure-draw.1", "hachure-info.1", "hachure.1"]
+    );
+    let files = ["hachure.1", "hachure-draw.1", "hachure-compare.1", "hachure-cache.1", "hachure-info.1"];
     let files = files.map(|name| fs::read_to_string(place.path(name)).expect(name)).concat();
     assert_eq!(files.replace("\\-", "-"), pages);
     assert!(!stdout(&place.run(&["--help"])).contains("generate"), "it is for packagers, so hidden");

@@ -2,9 +2,9 @@
 //! samples alone.
 
 use glam::DVec3;
+use hachure::cache::Cache;
 use hachure::plan::{Border, Detail, Method, Plan};
 use hachure::render::Renderer;
-use hachure::cache::Cache;
 use hachure::surface::Surface;
 use hachure::view::Camera;
 

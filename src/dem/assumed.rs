@@ -47,7 +47,7 @@ fn marked(files: &[Tallied<'_>]) -> Option<String> {
 /// What hardly is a height, file by file.
 fn doubted(files: &[Tallied<'_>], several: bool) -> Vec<String> {
     let of = |file: &Tallied<'_>| doubts(file.tally, file.elevation);
-    let named = |path: &Path, clause: String| if several { format!("{}: {clause}", path.display()) } else { clause };
+    let named = |path: &Path, clause: String| if several { format!("{}: {clause}", shown(path)) } else { clause };
     let doubted: Vec<_> =
         files.iter().map(|file| (file.path, of(file))).filter(|(_, found)| !found.is_empty()).collect();
     let more = doubted.len().saturating_sub(FILES);
