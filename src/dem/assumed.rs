@@ -5,6 +5,7 @@ use std::path::Path;
 use super::doubt::{doubts, other_units, sentinels};
 use super::elevation::Elevation;
 use super::tally::Tally;
+use crate::error::shown;
 
 /// Files whose doubtful heights are told one by one.
 const FILES: usize = 3;
