@@ -184,7 +184,7 @@ fn pictures_from_a_cache_are_those_without_one() {
         masks.push(without);
     }
     assert!(masks[0] != masks[1] && masks[0] != masks[2], "bands and exaggerations draw the same");
-    assert_eq!(place.kept().len(), 2, "one file a band");
+    assert_eq!(place.kept().len(), 5, "heights of two bands, bounds of three surfaces");
 }
 
 #[test]
@@ -322,17 +322,35 @@ fn a_cache_is_made_listed_and_cleared() {
     assert!(run(&["--make", "two.tif", "--memory", "64KiB", "--band", "2"]).contains("two.tif: ready"));
     assert!(run(&["--make", "two.tif", "--band", "2"]).contains("nothing to keep"));
     let kept = place.kept();
-    let [name] = &kept[..] else { panic!("{kept:?}") };
+    let [bounds, heights] = &kept[..] else { panic!("{kept:?}") };
     let told = run(&["--cache-size", "3MiB"]);
-    let words = [name.as_str(), "  prepared  ", "two.tif", "cache: 1 files", "of 3MiB"];
+    let words = [bounds, heights, "  bounds    ", "  heights   ", "two.tif", "cache: 2 files", "of 3MiB"];
     assert!(words.iter().all(|word| told.contains(word)), "{told}");
-    let time = || fs::metadata(place.path("cache").join(name)).expect("a file").len();
-    let before = time();
+    let bytes = || [bounds, heights].map(|name| fs::metadata(place.path("cache").join(name)).expect("a file").len());
+    let before = bytes();
     place.draw(&["--cache", "cache", "--band", "2"]);
-    assert_eq!((place.kept(), time()), (kept.clone(), before), "what was made is used");
-    assert!(run(&["--clear"]).contains("1 files of"));
+    assert_eq!((place.kept(), bytes()), (kept.clone(), before), "what was made is used");
+    place.draw(&["--cache", "cache", "--band", "2", "--exaggeration", "1.5"]);
+    assert!(run(&[]).contains("two.tif, exaggerated 1.5 times"));
+    assert!(run(&["--clear"]).contains("3 files of"));
     assert_eq!(place.kept(), Vec::<String>::new());
     for wrong in [&["two.tif"][..], &["--make"], &["--make", "--clear", "two.tif"]] {
         assert_eq!(place.run(&[&["cache"], wrong].concat()).status.code(), Some(2), "{wrong:?}");
+    }
+}
+
+#[test]
+fn making_warns_of_numbers_as_drawing_does() {
+    let place = Place::new();
+    let row = |r: usize| {
+        let high = |c: usize| 2000.0 + 50.0 * ((c + 2 * r) as f32 / 9.0).sin();
+        (0..SIDE).map(|c| if c < 20 && r < 20 { -9999.0 } else { high(c) }).collect()
+    };
+    hachure::dem::write::write(&place.path("marked.tif"), [SIDE; 2], 30.0, row, &|_| ()).expect("a file");
+    for sight in ["first", "second"] {
+        let output = place.run(&["cache", "--cache", "cache", "--make", "marked.tif", "--memory", "64KiB"]);
+        let said = stderr(&output);
+        assert!(output.status.success(), "{said}");
+        assert!(said.contains("assumed that") && said.contains("-9999"), "{sight}: {said}");
     }
 }

@@ -4,6 +4,7 @@
 use std::cell::RefCell;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::thread;
 
 use glam::DVec3;
 use hachure::cache::Cache;
@@ -24,6 +25,8 @@ const SAMPLES: [usize; 2] = [1500, 1100];
 /// A budget that holds no tile, and one that holds some.
 const SMALL: u64 = 1 << 18;
 const MODERATE: u64 = 1 << 23;
+/// Factor on every height, unless a test has its own.
+const EXAGGERATION: f64 = 1.5;
 
 /// Hills of 30 m cells with small bumps; voids around (700, 500) and here and there.
 fn write_hills(path: &Path, height: f64, voids: bool) {
@@ -41,7 +44,7 @@ fn write_hills(path: &Path, height: f64, voids: bool) {
 }
 
 fn dem(path: &Path, memory: u64) -> Dem {
-    exaggerated(path, memory, 1.0)
+    exaggerated(path, memory, EXAGGERATION)
 }
 
 fn exaggerated(path: &Path, memory: u64, exaggeration: f64) -> Dem {
@@ -80,12 +83,20 @@ impl Place {
         files
     }
 
-    /// The DEM in its file, as another process would prepare it; and what was warned of.
-    fn prepared(&self, memory: u64) -> (Surface, Vec<String>) {
-        self.prepared_times(memory, 1.0)
+    /// The only file of a kind.
+    fn only(&self, kind: &str) -> PathBuf {
+        let of_kind = |path: &PathBuf| path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(kind));
+        let files: Vec<_> = self.kept().into_iter().filter(of_kind).collect();
+        let [file] = &files[..] else { panic!("{kind}: {files:?}") };
+        file.clone()
     }
 
-    /// The same with every height multiplied.
+    /// The DEM in its file, as another process would prepare it; and what was warned of.
+    fn prepared(&self, memory: u64) -> (Surface, Vec<String>) {
+        self.prepared_times(memory, EXAGGERATION)
+    }
+
+    /// The same with another exaggeration.
     fn prepared_times(&self, memory: u64, exaggeration: f64) -> (Surface, Vec<String>) {
         let surface = Surface::new(exaggerated(&self.dem(), memory, exaggeration));
         let warn = |words: &str| self.said.borrow_mut().push(words.to_owned());
@@ -142,7 +153,7 @@ fn frames_of_a_filed_dem_are_those_of_the_held_one() {
             assert_eq!(surface.dem().survey(&|_| ()).unwrap().patches, held.dem().patches());
             assert!(!surface.dem().has_damaged_overviews());
         }
-        assert_eq!(place.kept().len(), 1);
+        assert_eq!(place.kept(), [place.only("bounds"), place.only("heights")]);
     }
 }
 
@@ -180,28 +191,59 @@ fn changed(mut bytes: Vec<u8>, at: usize) -> Vec<u8> {
     bytes
 }
 
+/// The file with a byte changed at each of these places, in turn; with an end cut off; and empty.
+fn damages(whole: &[u8], places: &[usize]) -> Vec<Vec<u8>> {
+    let changed = places.iter().map(|at| changed(whole.to_vec(), *at));
+    changed.chain([whole[..whole.len() - 1000].to_vec(), Vec::new()]).collect()
+}
+
+/// Where the header of a file of heights begins.
+fn header(whole: &[u8]) -> usize {
+    u64::from_le_bytes(*whole[..content(whole) - 8].last_chunk().expect("a footer")) as usize
+}
+
 #[test]
 fn what_is_damaged_is_made_anew() {
     let place = Place::new(false);
-    let (surface, _) = place.prepared(SMALL);
-    let expected = frames(&surface);
-    let kept = place.kept().remove(0);
-    let whole = fs::read(&kept).expect("a file");
-    let end = content(&whole);
-    let header = u64::from_le_bytes(*whole[..end - 8].last_chunk().expect("a footer")) as usize;
-    // The header, the last of the pyramid, where the header begins, the hash, of what it was made, its name, an end cut off,
-    // and nothing at all.
-    let tail = whole.len() - 40;
-    let damages: Vec<_> = [header, end - 20, end - 16, end - 1, end, tail].map(|at| changed(whole.clone(), at)).into();
-    for damaged in damages.into_iter().chain([whole[..end - 1000].to_vec(), Vec::new()]) {
-        fs::write(&kept, damaged).expect("a file");
+    let expected = frames(&place.prepared(SMALL).0);
+    let (bounds, heights) = (place.only("bounds"), place.only("heights"));
+    let whole = [&bounds, &heights].map(|file| fs::read(file).expect("a file"));
+    let [of_bounds, of_heights] = whole.each_ref().map(|whole| content(whole));
+    let tail = whole.each_ref().map(|whole| whole.len() - 40);
+    // The first and last of the squares, the hash, of what they were made, their name.
+    let places = [0, of_bounds - 9, of_bounds - 1, of_bounds, tail[0]];
+    let mut made_anew = Vec::new();
+    for damaged in damages(&whole[0], &places) {
+        fs::write(&bounds, damaged).expect("a file");
         let (surface, said) = place.prepared(SMALL);
         assert_eq!(said, ["what was kept of the DEM is damaged: it is made anew"]);
-        assert!(frames(&surface) == expected);
-        assert!(fs::read(&kept).expect("a file") == whole, "not what it was");
+        assert!(surface.dem().samples_read() > 0, "bounds are of the surface as drawn");
+        made_anew = vec![surface];
+        assert!(fs::read(&bounds).expect("a file") == whole[0], "not what it was");
     }
+    // The header, the last of the index, where the header begins, the hash, of what they were made, their name.
+    let places = [header(&whole[1]), of_heights - 20, of_heights - 16, of_heights - 1, of_heights, tail[1]];
+    for damaged in damages(&whole[1], &places) {
+        fs::write(&heights, damaged).expect("a file");
+        let (surface, said) = place.prepared(SMALL);
+        assert_eq!(said, ["what was kept of the DEM is damaged: it is made anew"]);
+        assert_eq!(surface.dem().samples_read(), 0, "heights alone are of the DEM without exaggeration");
+        made_anew.truncate(1);
+        made_anew.push(surface);
+        assert!(fs::read(&heights).expect("a file") == whole[1], "not what it was");
+    }
+    assert!(made_anew.iter().all(|surface| frames(surface) == expected), "another picture");
+    assert_eq!(place.kept(), [bounds, heights]);
+}
+
+#[test]
+fn damaged_blocks_are_noticed_when_they_are_read() {
+    let place = Place::new(false);
+    let expected = frames(&place.prepared(SMALL).0);
+    let (bounds, kept) = (place.only("bounds"), place.only("heights"));
+    let whole = fs::read(&kept).expect("a file");
     // All blocks but the hashes that prove them.
-    let damaged = (0..header).step_by(999).fold(whole.clone(), changed);
+    let damaged = (0..header(&whole)).step_by(999).fold(whole.clone(), changed);
     fs::write(&kept, damaged).expect("a file");
     let (surface, said) = place.prepared(SMALL);
     assert_eq!(said, Vec::<String>::new());
@@ -210,7 +252,7 @@ fn what_is_damaged_is_made_anew() {
     assert!(surface.dem().has_damaged_overviews(), "frames do not look at them");
     place.cache().discard_damaged(surface.dem(), &|words| place.said.borrow_mut().push(words.to_owned()));
     assert_eq!(place.said.take(), ["what was kept of the DEM is damaged: it is made anew next time"]);
-    assert_eq!(place.kept(), Vec::<PathBuf>::new());
+    assert_eq!(place.kept(), [bounds]);
     let (surface, said) = place.prepared(SMALL);
     assert!(said.is_empty() && fs::read(&kept).expect("a file") == whole);
     place.cache().discard_damaged(surface.dem(), &|words| panic!("{words}"));
@@ -227,7 +269,7 @@ fn another_dem_of_the_same_name_is_looked_at_anew() {
     let (surface, said) = place.prepared(SMALL);
     assert_eq!(said, Vec::<String>::new());
     assert!(frames(&surface) == expected, "what was kept of the older one is drawn");
-    assert_eq!(place.kept().len(), 2);
+    assert_eq!(place.kept().len(), 4);
 }
 
 #[test]
@@ -240,26 +282,65 @@ fn a_folder_that_cannot_be_written_costs_a_warning() {
 }
 
 #[test]
-fn an_exaggeration_needs_no_other_look_and_changes_nothing_else() {
+fn heights_are_made_once_for_all_exaggerations() {
     let place = Place::new(true);
     place.prepared_times(SMALL, 2.5);
-    let made = fs::metadata(&place.kept()[0]).expect("a file").len();
-    for exaggeration in [2.5, 1.0, 0.4] {
-        let plain = Surface::new(exaggerated(&place.dem(), SMALL, exaggeration));
-        let held = exaggerated(&place.dem(), 1 << 30, exaggeration);
-        let expected = frames(&plain);
-        let (surface, said) = place.prepared_times(SMALL, exaggeration);
-        assert_eq!(said, Vec::<String>::new());
-        assert!(frames(&surface) == expected, "{exaggeration}: another picture than without a cache");
-        let figures = |dem: &Dem| (dem.range(), dem.voids(), dem.patches());
-        assert_eq!(figures(surface.dem()), figures(&held), "{exaggeration}");
-        for spacing in [2, 16, 64] {
-            let [first, size] = [[spacing * 3, spacing * 2], [20, 15]];
-            let bits =
-                |dem: &Dem| dem.spaced(first, spacing, size).expect("samples").into_iter().map(f32::to_bits).collect();
-            let [kept, held]: [Vec<u32>; 2] = [bits(surface.dem()), bits(&held)];
-            assert!(kept == held, "{exaggeration}: every {spacing}th");
+    let made = fs::read(place.only("heights")).expect("a file");
+    for (exaggeration, looks) in [(2.5, false), (1.0, true), (0.4, true)] {
+        let held = Surface::new(exaggerated(&place.dem(), 1 << 30, exaggeration));
+        let expected = frames(&held);
+        for looks in [looks, false] {
+            let (surface, said) = place.prepared_times(SMALL, exaggeration);
+            assert_eq!(said, Vec::<String>::new());
+            assert_eq!(
+                surface.dem().samples_read() > 0,
+                looks,
+                "{exaggeration}: its bounds need a look, and that once"
+            );
+            assert!(frames(&surface) == expected, "{exaggeration}: another picture than of the held DEM");
+            let figures = |dem: &Dem| (dem.range(), dem.voids(), dem.patches());
+            assert_eq!(figures(surface.dem()), figures(held.dem()), "{exaggeration}");
+            for spacing in [2, 16, 64] {
+                let [first, size] = [[spacing * 3, spacing * 2], [20, 15]];
+                let bits = |dem: &Dem| -> Vec<u32> {
+                    dem.spaced(first, spacing, size).expect("samples").into_iter().map(f32::to_bits).collect()
+                };
+                assert!(bits(surface.dem()) == bits(held.dem()), "{exaggeration}: every {spacing}th");
+            }
         }
     }
-    assert_eq!((place.kept().len(), fs::metadata(&place.kept()[0]).expect("a file").len()), (1, made));
+    assert_eq!(place.kept().len(), 4, "one of heights, three of bounds");
+    assert!(fs::read(place.only("heights")).expect("a file") == made, "heights depend on who made them");
+}
+
+#[test]
+fn who_wants_the_same_waits_and_others_wait_for_the_heights() {
+    let place = Place::new(false);
+    let (path, cache) = (place.dem(), place.cache());
+    let looked = thread::scope(|scope| {
+        let prepared = |exaggeration: f64| {
+            let (path, cache) = (path.clone(), cache.clone());
+            scope.spawn(move || {
+                let surface = Surface::new(exaggerated(&path, SMALL, exaggeration));
+                cache.prepare(&surface, &|words| panic!("{words}"), &|_| ()).expect("samples");
+                surface.dem().samples_read() > 0
+            })
+        };
+        [2.5, 2.5, 0.4, 0.4].map(prepared).map(|work| work.join().expect("no panic"))
+    });
+    assert!(looked[0] != looked[1] && looked[2] != looked[3], "{looked:?}: one of two looks at every sample");
+    place.only("heights");
+    assert_eq!(place.kept().len(), 3, "{:?}", place.kept());
+}
+
+#[test]
+fn neither_makes_room_for_the_other() {
+    let place = Place::new(false);
+    let cache = place.cache().with_size(1);
+    for looks in [true, false, false] {
+        let surface = Surface::new(dem(&place.dem(), SMALL));
+        cache.prepare(&surface, &|words| panic!("{words}"), &|_| ()).expect("samples");
+        assert_eq!(surface.dem().samples_read() > 0, looks);
+        assert_eq!(place.kept(), [place.only("bounds"), place.only("heights")]);
+    }
 }

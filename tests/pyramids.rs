@@ -1,8 +1,6 @@
 //! What the pyramid says of the surface, against dense looks at it in f64: how far facets leave it, between which heights
 //! it lies, the fences of samples across each square.
 
-mod exaggerated;
-
 use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
 use hachure::surface::lattice::{CELL_STEPS, CHUNK_QUADS};

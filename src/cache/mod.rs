@@ -160,6 +160,11 @@ impl Cache {
         }
     }
 
+    /// An artefact that is there, safe from removal as long as it is open: who needs several holds all of them first.
+    pub fn hold(&self, key: &Key) -> Option<Kept> {
+        self.path(key).and_then(|path| entry::open(&path, key).ok().flatten())
+    }
+
     /// Removes an artefact that turned out damaged.
     pub fn remove(&self, key: &Key) {
         // One that cannot be removed is found damaged again.

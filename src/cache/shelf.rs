@@ -7,8 +7,8 @@ use std::time::{Duration, SystemTime};
 
 use super::{Cache, entry, lock};
 
-/// Kinds of files by how their names begin.
-const KINDS: [&str; 2] = ["prepared-", "truth-"];
+/// Kinds of files by how their names begin; the last one is of earlier versions, and goes in its turn.
+const KINDS: [&str; 4] = ["bounds-", "heights-", "truth-", "prepared-"];
 /// Letters of a name behind that.
 const DIGITS: usize = 32;
 /// How the names of files in the making begin.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::time::SystemTime;
 
 use super::talk::Talk;
-use super::terrain::TerrainArguments;
+use super::terrain::{TerrainArguments, warn_of_survey};
 use super::values;
 use crate::cache::{Cache, Cleared, SIZE, Shown};
 use crate::error::{Result, shown};
@@ -128,6 +128,7 @@ fn make(terrain: &TerrainArguments, cache: &Cache, talk: &Talk) -> Result<()> {
     }
     cache.prepare(&surface, &|words| talk.warn(words), &|done| talk.progress("looking at every sample", done))?;
     talk.progress("looking at every sample", 1.0);
+    warn_of_survey(surface.dem(), talk)?;
     talk.say(&format!("{label}: ready"))
 }
 

@@ -107,12 +107,12 @@ impl State {
 impl Listed {
     /// Of an open dataset, and of the `rasters` that an inspection found: it and those that VRTs name, as GDAL calls them.
     pub fn new(dataset: &Dataset, rasters: &[(PathBuf, Place)], folders: &mut Folders) -> Self {
-        let mut files: BTreeSet<PathBuf> = vsi::files_of(dataset).iter().filter_map(|name| on_disk(name)).collect();
+        let mut files: BTreeSet<PathBuf> = vsi::files_of(dataset).iter().filter_map(on_disk).collect();
         // The first raster is the dataset; its parts are opened for their lists alone.
         for (name, _) in rasters.iter().skip(1).filter(|(_, place)| !matches!(place, Place::Remote)) {
             let flags = GdalOpenFlags::GDAL_OF_RASTER | GdalOpenFlags::GDAL_OF_READONLY;
             if let (Some(part), _) = vsi::open(name, flags, &FORMATS) {
-                files.extend(vsi::files_of(&part).iter().filter_map(|name| on_disk(name)));
+                files.extend(vsi::files_of(&part).iter().filter_map(on_disk));
             }
         }
         let of_rasters = rasters.iter().filter_map(|(_, place)| match place {

@@ -135,7 +135,7 @@ impl ChunkUniform {
     /// A chunk with its samples in a tile and its vertices in a block.
     pub fn new(chunk: Chunk, pyramid: &Pyramid, tile: u32, block: u32) -> Self {
         let Chunk { origin, step, coarser } = chunk;
-        let Relief { low, high, beyond, .. } = pyramid.relief(origin, step);
+        let Relief { low, high, beyond } = pyramid.relief(origin, step);
         Self { origin, step, coarser, low, high, beyond, tile, block, pad: 0 }
     }
 }

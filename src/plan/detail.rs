@@ -210,7 +210,7 @@ impl<'a> Demand<'a> {
         let Some(horizon) = &mut self.horizon else { return };
         if step <= CELL_STEPS {
             // Between samples land may dip below its fence, and facets below the land.
-            let lowered = deviation * BENDS + f64::from(pyramid.relief(origin, step).below);
+            let lowered = deviation * BENDS + f64::from(pyramid.relief(origin, step).beyond);
             horizon.raise(low, high, pyramid.fences(origin, step), lowered);
         }
     }

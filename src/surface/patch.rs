@@ -68,11 +68,7 @@ impl Surface {
         match self.pyramid.get() {
             Some(pyramid) => Ok(pyramid),
             None => {
-                let pyramid = match self.dem.plain() {
-                    // As one that is kept: with and without a cache a DEM is drawn the same.
-                    Some((plain, exaggeration)) => Pyramid::new(&Self::new(plain))?.exaggerated(exaggeration),
-                    None => Pyramid::new(self)?,
-                };
+                let pyramid = Pyramid::new(self)?;
                 Ok(self.pyramid.get_or_init(|| pyramid))
             }
         }

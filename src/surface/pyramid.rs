@@ -6,8 +6,6 @@
 //! patches a cell, then one look at each sample for every coarser level. Memory: 2.3 bytes a
 //! sample, 0.6 of large DEMs.
 
-mod exaggerated;
-
 use std::ops::Range;
 
 use bytemuck::{Pod, Zeroable};
@@ -36,9 +34,6 @@ pub struct Pyramid {
     layers: Vec<Layer>,
     samples: [usize; 2],
     cell: DVec2,
-    /// How many bulges patches may reach beyond their square, and land with its facets below a fence.
-    beyond: f32,
-    below: f32,
 }
 
 /// A pyramid in the making, from bands of its surface.
@@ -61,8 +56,6 @@ pub struct Relief {
     pub high: f32,
     /// How far it reaches beyond the square on the map.
     pub beyond: f32,
-    /// How far it may lie below the samples around it.
-    pub below: f32,
 }
 
 /// What is known of a square, metres.
@@ -140,13 +133,7 @@ impl Pyramid {
         let needed =
             |size: &usize| *size <= LEVEL_1_CELLS || *size / 2 < longest && *size <= COARSEST_CELLS * LEVEL_1_CELLS;
         let sizes = std::iter::successors(Some(finest), |size| Some(2 * size)).take_while(needed);
-        Self {
-            layers: sizes.map(|size| Layer::new(cells, size)).collect(),
-            samples,
-            cell: dem.cell(),
-            beyond: 1.0,
-            below: 1.0,
-        }
+        Self { layers: sizes.map(|size| Layer::new(cells, size)).collect(), samples, cell: dem.cell() }
     }
 
     /// All that is known, in parts, to be kept with the DEM.
@@ -190,11 +177,10 @@ impl Pyramid {
         if share >= 1.0 { flat } else { (limit + (flat - limit) * share) * share * share }
     }
 
-    /// Between which heights the surface of the chunk at `origin` lies, how far it reaches beyond its
-    /// square, and how far below the samples around it.
+    /// Between which heights the surface of the chunk at `origin` lies, and how far it reaches beyond its square.
     pub fn relief(&self, origin: [u32; 2], step: u32) -> Relief {
         let Square { low, high, bulge, .. } = self.square(origin, step);
-        Relief { low, high, beyond: bulge * self.beyond, below: bulge * self.below }
+        Relief { low, high, beyond: bulge }
     }
 
     /// Lowest and highest slope dz/d east and dz/d north of the sides of facets of the chunk at `origin`.
@@ -214,7 +200,7 @@ impl Pyramid {
         let cells = |lattice: u32, axis: usize| {
             (f64::from(lattice) / f64::from(CELL_STEPS)).min((self.samples[axis] - 1) as f64) * self.cell[axis]
         };
-        let beyond = f64::from(square.bulge * self.beyond);
+        let beyond = f64::from(square.bulge);
         let end = origin.map(|at| at + CHUNK_QUADS * step);
         let low = DVec3::new(cells(origin[0], 0) - beyond, -cells(end[1], 1) - beyond, f64::from(square.low));
         let high = DVec3::new(cells(end[0], 0) + beyond, -cells(origin[1], 1) + beyond, f64::from(square.high));
