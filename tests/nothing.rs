@@ -124,15 +124,17 @@ fn cells_that_cannot_be_metres_are_warned_of() {
     let place = Place::new();
     let hill = |c: usize, r: usize| Some(20.0 + (c as f64 / 3.0).sin() * (r as f64 / 4.0).cos());
     for (name, cell, words) in [
-        ("micro.asc", 1e-6, "its cells are 1.000e-6 m wide"),
-        ("half.asc", 5e-4, "its cells are 5.000e-4 m wide"),
-        ("wide.asc", 1e6, "more than once around the Earth"),
+        ("micro.asc", 1e-6, "cells of 0.000001 x 0.000001 m at 500000,4000000 are no land"),
+        ("half.asc", 5e-4, "cells of 0.0005 x 0.0005 m at 500000,4000000 are no land"),
     ] {
         write_grid(&place, name, 42, cell, hill);
         let output = place.run(&["draw", name, "-o", "out.png", "--size", "64x48"]);
-        let said = stderr(&output);
-        assert!(said.contains(words) && said.contains("m across (W "), "{name}: {said}");
+        assert_eq!(output.status.code(), Some(1));
+        assert!(stderr(&output).contains(words), "{name}: {}", stderr(&output));
     }
+    write_grid(&place, "wide.asc", 42, 1e6, hill);
+    let said = stderr(&place.run(&["draw", "wide.asc", "-o", "out.png", "--size", "64x48"]));
+    assert!(said.contains("more than once around the Earth") && said.contains("m across (W "), "{said}");
     // Heights that f32 knows to a tenth of a cell at best.
     write_grid(&place, "high.asc", 12, 0.002, |c, r| Some(8000.0 + (c * r) as f64));
     let said = stderr(&place.run(&["draw", "high.asc", "-o", "out.png", "--size", "64x48"]));

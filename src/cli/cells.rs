@@ -1,11 +1,10 @@
-//! Cells so small or DEMs so large that a drawing of them cannot be right: said before anything is drawn.
+//! Heights so coarse for their cells, or DEMs so large, that a drawing of them cannot be right: said before anything is
+//! drawn. Cells below a millimetre were refused before.
 
 use super::blank::length;
 use super::talk::Talk;
 use crate::dem::Dem;
 
-/// Eyes are placed to a millimetre: finer cells are a step across for them, metres.
-const LEAST_CELL: f64 = 1e-3;
 /// No land is wider than once around the Earth, metres.
 const AROUND: f64 = 4.01e7;
 /// Share of a cell by which heights may be rounded: beyond, steps of rounding show as slopes.
@@ -17,9 +16,7 @@ pub fn warn(dem: &Dem, exaggeration: f64, talk: &Talk) {
     let wide = (east - west).max(north - south);
     let highest = dem.range().map_or(0.0, |range| range.into_iter().fold(0.0_f32, |most, z| most.max(z.abs())));
     let rounding = f64::from(highest) * f64::from(f32::EPSILON) / 2.0 / exaggeration;
-    let what = if cell < LEAST_CELL {
-        format!("its cells are {} wide, and an eye stands anywhere within a millimetre", length(cell))
-    } else if rounding > ROUGH * cell {
+    let what = if rounding > ROUGH * cell {
         format!("its cells are {} wide, and its heights are known to {}", length(cell), length(rounding))
     } else if wide > AROUND {
         format!("it is {} wide, more than once around the Earth", length(wide))

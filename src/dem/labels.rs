@@ -59,7 +59,7 @@ fn check_lengths(grid: &Grid, source: &Source, history: &mut History) -> Result<
         let cells = format!("cells of {} x {} m", short(metres.x), short(metres.y));
         let wrong = match named {
             true => format!("{cells} at {} cannot be in {} as it says", place(grid), grid.crs.label()),
-            false => format!("{cells} are no land"),
+            false => format!("{cells} at {} are no land", place(grid)),
         };
         let remedy = match like_degrees {
             true => "where they are degrees, say so: `gdal_translate -a_srs EPSG:4326 IN OUT.tif`",

@@ -20,7 +20,7 @@ pub fn refused_with(path: &Path, options: &ReadOptions, words: &[&str]) -> Strin
     let error = read(path, options).expect_err(&format!("{} was read", path.display()));
     let line = error.to_string();
     assert!(!line.contains('\n'), "more than one line: {line}");
-    assert!(line.contains(&path.display().to_string()), "no path: {line}");
+    assert!(line.contains(&hachure::error::shown(path)), "no path: {line}");
     assert!(line.split_once("; ").is_some_and(|(_, remedy)| remedy.len() > 10), "no remedy: {line}");
     words.iter().for_each(|word| assert!(line.contains(word), "no {word:?}: {line}"));
     assert_eq!(error.exit_code(), 1, "{line}");
