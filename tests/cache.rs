@@ -354,3 +354,78 @@ fn making_warns_of_numbers_as_drawing_does() {
         assert!(said.contains("assumed that") && said.contains("-9999"), "{sight}: {said}");
     }
 }
+
+#[test]
+fn grids_of_a_container_and_members_of_an_archive_are_apart() {
+    let place = Place::new();
+    place.write("GTiff", "low.tif", 5.0);
+    let driver = DriverManager::get_driver_by_name("GTiff").expect("a driver");
+    for (name, options) in [("two.tif", vec![]), ("low.tif", vec!["APPEND_SUBDATASET=YES"])] {
+        let source = gdal::Dataset::open(place.path(name)).expect("a raster");
+        let options = gdal::raster::RasterCreationOptions::from_iter(options);
+        source.create_copy(&driver, place.path("pages.tif"), &options).expect("a page").close().expect("a file");
+    }
+    let packed =
+        Command::new("tar").current_dir(place.0.path()).args(["-cf", "both.tar", "two.tif", "low.tif"]).status();
+    assert!(packed.expect("tar runs").success());
+    let at = |name: &str| place.path(name).to_string_lossy().into_owned();
+    let (pages, tar) = (at("pages.tif"), at("both.tar"));
+    for names in [
+        [format!("GTIFF_DIR:1:{pages}"), format!("GTIFF_DIR:2:{pages}")],
+        [format!("/vsitar/{tar}/two.tif"), format!("/vsitar/{tar}/low.tif")],
+    ] {
+        let view =
+            ["--eye", "502250,4194000,260", "--azimuth", "0", "--altitude", "-8", "--size", "160x100", "-o", "o.png"];
+        let draw = |name: &str, flags: &[&str]| {
+            let output = place.run(&[&["draw", name, "--mask", "m.png"], &view[..], flags].concat());
+            assert!(output.status.success(), "{name}: {}", stderr(&output));
+            fs::read(place.path("m.png")).expect("a mask")
+        };
+        let filed = ["--memory", "64KiB", "--cache", "members"];
+        let drawn = names.each_ref().map(|name| [draw(name, &filed), draw(name, &filed), draw(name, &[])]);
+        for [cold, warm, held] in &drawn {
+            assert!(cold == held && warm == held, "{names:?}");
+        }
+        assert!(drawn[0] != drawn[1], "{names:?}: two pictures that are the same prove nothing");
+    }
+}
+
+#[test]
+fn what_cannot_be_kept_is_no_success_of_making() {
+    let place = Place::new();
+    fs::write(place.path("file"), "a file where a folder should be").expect("a file");
+    let output = place.run(&["cache", "--make", "two.tif", "--memory", "64KiB", "--cache", "file"]);
+    let said = stderr(&output);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains("is not kept in file; give a folder that can be written, with --cache DIR"), "{said}");
+    let output = place.run(&["cache", "--make", "two.tif", "--memory", "64KiB", "--cache", "folder"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+}
+
+#[test]
+fn outputs_in_the_folder_of_a_cache_are_not_swept_away() {
+    let place = Place::new();
+    let (cache, old) = (place.cache(), SystemTime::now() - Duration::from_secs(3600));
+    fs::create_dir(place.path("cache")).expect("a folder");
+    let names = [".hachure-a1b2c3", ".hachure-cache-a1b2c3"].map(|name| place.path("cache").join(name));
+    for name in &names {
+        File::create(name).and_then(|file| file.set_modified(old)).expect("an old file");
+    }
+    cache.clear();
+    assert_eq!(names.map(|name| name.exists()), [true, false]);
+}
+
+#[test]
+#[cfg(unix)]
+fn another_mode_or_name_is_no_change() {
+    use std::os::unix::fs::PermissionsExt;
+    let place = Place::new();
+    let dem = place.dem("two.tif", ReadOptions::default());
+    fs::set_permissions(place.path("two.tif"), fs::Permissions::from_mode(0o600)).expect("a mode");
+    fs::hard_link(place.path("two.tif"), place.path("same.tif")).expect("a link");
+    dem.check().expect("the same samples");
+    let mut bytes = fs::read(place.path("two.tif")).expect("bytes");
+    bytes[2000] ^= 1;
+    fs::write(place.path("two.tif"), bytes).expect("other bytes");
+    assert!(dem.check().unwrap_err().to_string().contains("has changed since it was opened"));
+}

@@ -177,3 +177,26 @@ fn a_report_replaces_none_of_the_files_it_is_made_of() {
     let nowhere = [&compare("v_truth.png", "dir/results.json")[..], &["--cell", "30"]].concat();
     place.refuses(&nowhere, "--output", "results.json");
 }
+
+#[test]
+#[cfg(unix)]
+fn standard_output_that_goes_to_a_file_is_that_file() {
+    let place = Place::new();
+    let to = |name: &str| fs::OpenOptions::new().append(true).create(true).open(place.path(name)).expect("a file");
+    for (name, outputs) in [
+        ("both", ["--mask", "-", "--json", "both"]),
+        ("both", ["--mask", "-", "--json", "/dev/stdout"]),
+        ("dem.tif", ["--mask", "mask.png", "--json", "-"]),
+    ] {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_hachure"));
+        command.current_dir(place.0.path()).args(["draw", "dem.tif", "-o", "o.png", "--size", "32x24"]).args(outputs);
+        let before = fs::read(place.path("dem.tif")).expect("the DEM");
+        let output = command.stdout(to(name)).output().expect("hachure runs");
+        assert_eq!(output.status.code(), Some(2), "{outputs:?}: {}", stderr(&output));
+        assert!(stderr(&output).contains("give each file a name of its own"), "{}", stderr(&output));
+        assert!(!place.path("o.png").exists() && fs::read(place.path("dem.tif")).expect("the DEM") == before);
+        if name == "both" {
+            assert_eq!(fs::read(place.path("both")).expect("a file"), b"");
+        }
+    }
+}

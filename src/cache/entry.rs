@@ -13,6 +13,7 @@ use std::time::SystemTime;
 use bytemuck::{Pod, Zeroable};
 use xxhash_rust::xxh3::{Xxh3, xxh3_128};
 
+use super::shelf::TEMPORARY;
 use super::{Key, Kind};
 use crate::error::{Error, Result};
 use crate::files::Output;
@@ -170,7 +171,7 @@ pub(super) fn made_of(path: &Path) -> Option<String> {
 impl Sheet {
     /// Begins the file of a key.
     pub(super) fn create(path: &Path, key: &Key) -> Result<Self> {
-        let output = Output::create(path)?;
+        let output = Output::create_as(path, TEMPORARY)?;
         let failed = |error: io::Error| Error::Output { path: path.to_owned(), what: error.to_string() };
         let file = output.duplicate().map_err(failed)?;
         // From here on nobody takes it for a leftover, nor away when it has its name.

@@ -111,8 +111,9 @@ impl Drop for Lock {
 }
 
 impl Held {
-    /// Waits until the lock is gone or old; `progress` hears how far its holder has come.
-    pub fn wait(mut self, progress: &dyn Fn(f64)) {
+    /// Waits until the lock is gone or old; `progress` hears how far its holder has come. Fails where nobody writes to it
+    /// and it cannot be removed.
+    pub fn wait(mut self, progress: &dyn Fn(f64)) -> std::io::Result<()> {
         let mut since = Instant::now();
         while let Ok(found) = fs::symlink_metadata(&self.path) {
             let modified = found.modified().ok();
@@ -120,18 +121,21 @@ impl Held {
                 (self.modified, since) = (modified, Instant::now());
             }
             if !found.is_file() || is_old(modified) {
-                return;
+                return Ok(());
             }
             if since.elapsed() > AGE {
                 // By the clock of the file it is young, and yet nobody writes to it: clocks differ.
-                let _ = fs::remove_file(&self.path);
-                return;
+                return match fs::remove_file(&self.path) {
+                    Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(error),
+                    _ => Ok(()),
+                };
             }
             if let Some(share) = fs::read_to_string(&self.path).ok().and_then(|text| text.trim().parse::<u32>().ok()) {
                 progress(f64::from(share.min(999)) / 1000.0);
             }
             thread::sleep(LOOK);
         }
+        Ok(())
     }
 }
 

@@ -10,7 +10,6 @@ mod entry;
 mod lock;
 pub mod shelf;
 
-use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Result, shown};
@@ -134,7 +133,15 @@ impl Cache {
                     return make(None, hearing.progress);
                 }
             }
-            match lock::Lock::take(&path) {
+            let taken = match lock::Lock::take(&path) {
+                Err(lock::Refused::Held(held)) => match held.wait(hearing.progress) {
+                    Ok(()) => continue,
+                    Err(error) => Err(error.to_string()),
+                },
+                Err(lock::Refused::Impossible(error)) => Err(error),
+                Ok(lock) => Ok(lock),
+            };
+            match taken {
                 Ok(lock) => {
                     // Another may have made it between the look and the lock.
                     if !damaged && let Ok(Some(found)) = find() {
@@ -151,8 +158,7 @@ impl Cache {
                     self.trim(Some(&path));
                     return made;
                 }
-                Err(lock::Refused::Held(held)) => held.wait(hearing.progress),
-                Err(lock::Refused::Impossible(error)) => {
+                Err(error) => {
                     (hearing.warn)(&not_kept(key, &Error::Output { path, what: error }));
                     return make(None, hearing.progress);
                 }
@@ -173,8 +179,12 @@ impl Cache {
 }
 
 /// That something was made and could not be kept.
-pub fn not_kept(key: &Key, why: &dyn Display) -> String {
-    format!("{} is not cached: {why}", key.kind.words[0])
+pub fn not_kept(key: &Key, why: &Error) -> String {
+    let why = match why {
+        Error::Output { path, what } => format!("{}: {what}", shown(path)),
+        other => other.to_string(),
+    };
+    format!("{} is not cached: {why}; give another folder with --cache DIR", key.kind.words[0])
 }
 
 fn strange(path: &Path, what: &str) -> String {

@@ -11,8 +11,8 @@ use super::{Cache, entry, lock};
 const KINDS: [&str; 4] = ["bounds-", "heights-", "truth-", "prepared-"];
 /// Letters of a name behind that.
 const DIGITS: usize = 32;
-/// How the names of files in the making begin.
-const TEMPORARY: &str = ".hachure-";
+/// How the names of files in the making begin; outputs of other kinds in the same folder are called otherwise.
+pub(super) const TEMPORARY: &str = ".hachure-cache-";
 /// Files in the making that are older and not open were left behind by a process that was killed.
 const LEFT_BEHIND: Duration = Duration::from_secs(60);
 

@@ -8,7 +8,7 @@ use super::talk::Talk;
 use super::terrain::{TerrainArguments, warn_of_survey};
 use super::values;
 use crate::cache::{Cache, Cleared, SIZE, Shown};
-use crate::error::{Result, shown};
+use crate::error::{Error, Result, shown};
 use crate::surface::Surface;
 
 /// The end of `hachure cache --help`.
@@ -129,6 +129,11 @@ fn make(terrain: &TerrainArguments, cache: &Cache, talk: &Talk) -> Result<()> {
     cache.prepare(&surface, &|words| talk.warn(words), &|done| talk.progress("looking at every sample", done))?;
     talk.progress("looking at every sample", 1.0);
     warn_of_survey(surface.dem(), talk)?;
+    if !cache.keeps(surface.dem()) {
+        let folder = cache.folder().map(shown).unwrap_or_default();
+        let what = format!("{label}: what was made is not kept in {folder}");
+        return Err(Error::Limit { what, remedy: "give a folder that can be written, with --cache DIR".into() });
+    }
     talk.say(&format!("{label}: ready"))
 }
 

@@ -65,7 +65,10 @@ impl OutputArguments {
                     let what = "standard output is another output already";
                     return Err(Error::flag(flag, what, "give each file a name of its own"));
                 }
-                true => has_stdout = true,
+                true => {
+                    has_stdout = true;
+                    taken.take_stdout(flag)?;
+                }
                 false => taken.take(flag, path)?,
             }
         }

@@ -20,8 +20,9 @@ pub fn prepare() {
     let enough = threads.len() == wanted;
     drop(open);
     threads.into_iter().for_each(|thread| drop(thread.join()));
-    if !enough {
-        // One that is there already shares out work as it likes.
-        let _ = ThreadPoolBuilder::new().num_threads(1).use_current_thread().build_global();
-    }
+    // At once, before others take their places. One that is there already shares out work as it likes.
+    let _ = match enough {
+        true => ThreadPoolBuilder::new().build_global(),
+        false => ThreadPoolBuilder::new().num_threads(1).use_current_thread().build_global(),
+    };
 }

@@ -8,8 +8,12 @@ use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use xxhash_rust::xxh3::Xxh3;
+
 use super::formats;
 use super::listed::{Folders, Listed};
+use super::lossless;
+use super::name::Place;
 use super::source::Source;
 use crate::error::{Error, Result, shown};
 
@@ -47,6 +51,8 @@ pub(super) struct Handles {
     /// Size of the raster and its files as they were first opened.
     size: [usize; 2],
     listed: Listed,
+    /// What of its name is no file on the disk: the grid of a container, the member of an archive.
+    inner: String,
     file: usize,
     pool: Arc<Pool>,
 }
@@ -85,8 +91,9 @@ impl Handles {
         let (size, pool) = ([first.columns, first.rows], opening.pool.clone());
         let (file, listed) = (pool.add(), Listed::new(&first.dataset, &first.rasters, &mut opening.folders));
         let (path, exact, band) = (first.path.clone(), first.exact.clone(), first.band);
+        let inner = first.rasters.first().map(inner).unwrap_or_default();
         pool.put(file, first);
-        Self { path, exact, band, allow_remote, size, listed, file, pool }
+        Self { path, exact, band, allow_remote, size, listed, inner, file, pool }
     }
 
     /// The file as the user named it.
@@ -94,9 +101,11 @@ impl Handles {
         &self.path
     }
 
-    /// The band that is read, from 1.
-    pub fn band(&self) -> usize {
-        self.band
+    /// Takes what tells this raster in its present state from any other into a hash: the band, what of its name is no file
+    /// on the disk, the files. `None` where a part is not on the disk.
+    pub fn hash(&self, hash: &mut Xxh3) -> Option<()> {
+        hash.update(format!("band {} {:?}\n", self.band, self.inner).as_bytes());
+        self.listed.hash(hash)
     }
 
     /// Every file on the disk that it is made of.
@@ -133,6 +142,15 @@ impl Handles {
             return Err(source.error("has changed since it was opened", "run again when nothing writes to it"));
         }
         Ok(Source { path: self.path.clone(), ..source })
+    }
+}
+
+/// What of a raster's name is no file on the disk, so that all ways to the file are one.
+fn inner((name, place): &(PathBuf, Place)) -> String {
+    let name = lossless::text(name.as_os_str());
+    match place {
+        Place::File(file) | Place::Archive(file) => name.replacen(&lossless::text(file.as_os_str()), "", 1),
+        Place::Remote => name,
     }
 }
 

@@ -135,7 +135,9 @@ pub(super) fn to_fill([columns, rows]: [usize; 2], is_filed: bool) -> String {
     let needed = held_bytes(samples).div_ceil(1 << 20);
     match is_filed {
         false => "add --fill-voids".into(),
-        true if samples <= MAX_SAMPLES as u64 => format!("add --fill-voids --memory {needed}MiB"),
+        true if samples <= MAX_SAMPLES as u64 => {
+            format!("give --fill-voids --memory {needed}MiB, in the place of a smaller --memory")
+        }
         true => "fill them first: `gdal_fillnodata.py IN OUT.tif`".into(),
     }
 }

@@ -75,28 +75,29 @@ struct State {
     modified: Option<SystemTime>,
     /// Device and inode.
     node: [u64; 2],
-    /// Links to it; seconds and nanoseconds of the last change of any kind, which nobody can put back.
-    changed: [i128; 3],
+    /// Links to it, mode, owner and group.
+    about: [u64; 4],
+    /// Seconds and nanoseconds of the last change of any kind, which nobody can put back.
+    changed: [i64; 2],
 }
 
 impl State {
     fn of(found: &Metadata) -> Self {
         #[cfg(unix)]
-        let (node, changed) = {
+        let (node, about, changed) = {
             use std::os::unix::fs::MetadataExt;
-            let changed = [found.nlink().into(), found.ctime().into(), found.ctime_nsec().into()];
-            ([found.dev(), found.ino()], changed)
+            let about = [found.nlink(), found.mode().into(), found.uid().into(), found.gid().into()];
+            ([found.dev(), found.ino()], about, [found.ctime(), found.ctime_nsec()])
         };
         #[cfg(not(unix))]
-        let (node, changed) = ([0; 2], [0; 3]);
-        Self { bytes: found.len(), modified: found.modified().ok(), node, changed }
+        let (node, about, changed) = ([0; 2], [0; 4], [0; 2]);
+        Self { bytes: found.len(), modified: found.modified().ok(), node, about, changed }
     }
 
-    /// Whether it is the state of other bytes than `other`; one more name for a file changes none.
+    /// Whether it is the state of other bytes than `other`; one more name for a file, another owner or mode change none.
     fn is_of_others(&self, other: &Self) -> bool {
-        let linked = self.changed[0] != other.changed[0];
-        let changed = if linked { self.changed } else { other.changed };
-        Self { changed, ..*other } != *self
+        let changed = if self.about == other.about { other.changed } else { self.changed };
+        Self { changed, about: self.about, ..*other } != *self
     }
 
     fn now(path: &Path) -> Option<Self> {
@@ -141,16 +142,18 @@ impl Listed {
         self.files.iter().find(changed).map(|(file, _)| file.as_path())
     }
 
-    /// Takes what tells their state from any other into a hash: real path, size, time and both ends of each. `None` where a
+    /// Takes what tells their state from any other into a hash: real path, size, times and both ends of each. `None` where a
     /// part is not on the disk or cannot be read.
     pub fn hash(&self, hash: &mut Xxh3) -> Option<()> {
         if self.remote {
             return None;
         }
         let of = |(file, state): (&PathBuf, &Option<State>)| -> io::Result<String> {
-            let Some(State { bytes, modified, .. }) = state else { return Ok(format!("{file:?} is not there\n")) };
+            let Some(State { bytes, modified, changed, .. }) = state else {
+                return Ok(format!("{file:?} is not there\n"));
+            };
             let real = file.canonicalize()?;
-            Ok(format!("{real:?} {bytes} {modified:?} {:032x}\n", ends(file)?))
+            Ok(format!("{real:?} {bytes} {modified:?} {changed:?} {:032x}\n", ends(file)?))
         };
         let states: Vec<_> = self.files.par_iter().map(of).collect();
         states.into_iter().try_for_each(|state| state.map(|state| hash.update(state.as_bytes())).ok())

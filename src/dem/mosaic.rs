@@ -150,8 +150,8 @@ impl Mosaic {
     pub fn hash(&self, hash: &mut Xxh3) -> Option<()> {
         hash.update(format!("{:?}", self.grid).as_bytes());
         for Placed { handles, elevation, lie, grid, .. } in &self.sources {
-            hash.update(format!("band {} {elevation:?} {lie:?} {grid:?}\n", handles.band()).as_bytes());
-            handles.listed().hash(hash)?;
+            hash.update(format!("{elevation:?} {lie:?} {grid:?}\n").as_bytes());
+            handles.hash(hash)?;
         }
         Some(())
     }

@@ -40,6 +40,24 @@ impl Identity {
     }
 }
 
+impl Identity {
+    /// Of the file that standard output goes to; `None` where it goes elsewhere.
+    #[cfg(unix)]
+    fn of_stdout() -> Option<Self> {
+        use std::os::fd::AsFd;
+        use std::os::unix::fs::MetadataExt;
+        let file = fs::File::from(io::stdout().as_fd().try_clone_to_owned().ok()?);
+        let found = file.metadata().ok().filter(fs::Metadata::is_file)?;
+        Some(Self::File((found.dev(), found.ino())))
+    }
+
+    /// Nothing is known of it.
+    #[cfg(not(unix))]
+    fn of_stdout() -> Option<Self> {
+        None
+    }
+}
+
 #[cfg(unix)]
 fn node(path: &Path) -> io::Result<Node> {
     use std::os::unix::fs::MetadataExt;
@@ -78,7 +96,18 @@ impl Taken {
     /// # Errors
     /// [`Error::Flag`] where it is a file that is read, or another output.
     pub fn take(&mut self, flag: &'static str, path: &Path) -> Result<()> {
-        let Some(identity) = Identity::of(path) else { return Ok(()) };
+        Identity::of(path).map_or(Ok(()), |identity| self.take_as(flag, path, identity))
+    }
+
+    /// Takes standard output, and the file that it goes to, for the output that `flag` names.
+    ///
+    /// # Errors
+    /// As [`Self::take`].
+    pub fn take_stdout(&mut self, flag: &'static str) -> Result<()> {
+        Identity::of_stdout().map_or(Ok(()), |identity| self.take_as(flag, Path::new("standard output"), identity))
+    }
+
+    fn take_as(&mut self, flag: &'static str, path: &Path, identity: Identity) -> Result<()> {
         let what = match self.names.get(&identity) {
             None => {
                 self.names.insert(identity, (path.to_owned(), Use::Output));

@@ -41,6 +41,13 @@ impl Output {
     ///
     /// [`Error::Output`] where the folder is missing or cannot be written, or `path` is there and no regular file.
     pub fn create(path: &Path) -> Result<Self> {
+        Self::create_as(path, ".hachure-")
+    }
+
+    /// The same with a temporary name that begins so.
+    ///
+    /// [`Error::Output`] as [`Self::create`].
+    pub fn create_as(path: &Path, temporary: &str) -> Result<Self> {
         let failed = |what: String| Error::Output { path: path.to_owned(), what };
         let target = match fs::metadata(path) {
             Ok(meta) if meta.is_dir() => return Err(failed("it is a folder".into())),
@@ -57,7 +64,7 @@ impl Output {
             return Err(failed(format!("there is no folder {}", shown(folder))));
         }
         let mut builder = tempfile::Builder::new();
-        builder.prefix(".hachure-");
+        builder.prefix(temporary);
         // As for any new file: the system takes the user's umask off.
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));

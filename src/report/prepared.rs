@@ -65,6 +65,12 @@ impl Cache {
         Ok(())
     }
 
+    /// Whether all that is kept of a DEM in its file, without exaggeration, is there.
+    pub fn keeps(&self, dem: &Dem) -> bool {
+        let keys = dem.stamp().map(|stamp| [bounds::key(dem, stamp, 1.0), heights::key(dem, stamp)]);
+        keys.is_some_and(|keys| keys.iter().all(|key| self.hold(key).is_some()))
+    }
+
     /// Removes the heights of a DEM whose overviews turned out damaged, so that they are made anew next time. Nothing is wrong
     /// with what was drawn: it took the samples themselves. `warn` hears of it.
     pub fn discard_damaged(&self, dem: &Dem, warn: &dyn Fn(&str)) {
