@@ -1,7 +1,9 @@
 //! Numbers that are no heights, or not as they stand: marks, units, signs, pictures, depths. Each is told, and what the
 //! telling advises gives the land as it is.
 
+mod called;
 mod impossible;
+mod odd;
 mod pictures;
 mod seas;
 

@@ -37,7 +37,7 @@ pub struct TerrainArguments {
     #[arg(long, value_name = "V,A..B", value_parser = values::nodata, allow_hyphen_values = true, help_heading = "Surface")]
     nodata: Option<Nodata>,
     /// What the numbers in the file stand for: terrain-rgb or terrarium, colours of a picture; signed, unsigned numbers
-    /// the upper half of which is below 0 [default: elevations]
+    /// the upper half of which is below 0; elevations or depths, whatever the file says [default: as the file says]
     #[arg(long, value_name = "NAME", value_parser = values::encoding, help_heading = "Surface")]
     encoding: Option<Encoding>,
     /// Open files on a network, and VRTs that refer to files outside their folder

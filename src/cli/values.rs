@@ -135,6 +135,11 @@ pub fn elevation_unit(text: &str) -> Result<ElevationUnit, String> {
 /// `V`, `A..B`, or several of them with commas between.
 pub fn nodata(text: &str) -> Result<Nodata, String> {
     let number = |text: &str| text.trim().parse::<f64>().ok();
+    if text.split(',').flat_map(|part| part.split("..")).filter_map(number).any(|number| !number.is_finite()) {
+        return Err(
+            "what is not finite (nan, inf) is no data already; leave it out, and end ranges with a number".into()
+        );
+    }
     let range = |part: &str| match part.split_once("..") {
         Some((low, high)) => Some([number(low)?, number(high)?]).filter(|[low, high]| low <= high),
         None => number(part).map(|number| [number; 2]),
@@ -143,9 +148,9 @@ pub fn nodata(text: &str) -> Result<Nodata, String> {
     ranges.map(Nodata::new).ok_or_else(|| "want numbers as the file has them, or ranges A..B with A below B".into())
 }
 
-/// `terrain-rgb`, `terrarium` or `signed`.
+/// `terrain-rgb`, `terrarium`, `signed`, `elevations` or `depths`.
 pub fn encoding(text: &str) -> Result<Encoding, String> {
-    let known = [Encoding::TerrainRgb, Encoding::Terrarium, Encoding::Signed];
+    let known = Encoding::ALL;
     let found = known.into_iter().find(|encoding| encoding.name() == text);
     found.ok_or_else(|| format!("want {}", known.map(Encoding::name).join(", ")))
 }

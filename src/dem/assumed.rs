@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::doubt::{doubts, other_units, sentinels};
 use super::elevation::Elevation;
+use super::nodata::Nodata;
 use super::tally::Tally;
 use crate::error::shown;
 
@@ -33,16 +34,27 @@ fn marked(files: &[Tallied<'_>]) -> Option<String> {
     let with_marks: Vec<_> = files.iter().filter(|file| file.tally.marks > 0).collect();
     let marks = with_marks.iter().map(|file| file.tally.marks).sum::<usize>();
     let first = with_marks.first()?;
-    let numbers = with_marks.iter().map(|file| sentinels(file.tally, file.elevation)).collect::<Option<Vec<_>>>();
-    let mut numbers = numbers.unwrap_or_default().concat();
+    let mut numbers: Vec<_> = with_marks.iter().flat_map(|file| sentinels(file.tally, file.elevation)).collect();
     numbers.sort_unstable_by(|a, b| a[0].total_cmp(&b[0]));
     numbers.dedup();
-    let said = first.elevation.said();
-    let remedy = if numbers.is_empty() { "N".to_owned() } else { said.with(&numbers).to_string() };
-    Some(format!(
-        "{marks} samples at or below -32767 or above 100000 m are voids (no such nodata is declared; name it with --nodata \
-         {remedy}, or declare it with `gdal_translate -a_nodata N IN OUT.tif`)"
-    ))
+    let remedy = match numbers.as_slice() {
+        [] => match units(files) {
+            Some(units) => format!("if they are heights in another unit, add {units}"),
+            None => "if they are heights, say their unit with --elevation-unit".to_owned(),
+        },
+        numbers => {
+            let declared = match numbers {
+                [[low, high]] if low == high => {
+                    let number = Nodata::new(vec![[*low, *high]]);
+                    format!(", or declare it with `gdal_translate -a_nodata {number} IN OUT.tif`")
+                }
+                _ => String::new(),
+            };
+            let said = first.elevation.said().with(numbers);
+            format!("no such nodata is declared; name it with --nodata {said}{declared}")
+        }
+    };
+    Some(format!("{marks} samples at or below -32767 or above 100000 m are voids ({remedy})"))
 }
 
 /// What hardly is a height, file by file.

@@ -1,7 +1,7 @@
 //! Which band of a raster holds the elevations, and whether it can: colours and transparency are none.
 //!
-//! Without `--band` the one is taken whose name says that it is the elevation, else the first, and transparency is
-//! passed over. Not handled: names in other languages than English.
+//! Without `--band` the one is taken whose name says that it is the elevation, else the first whose name says nothing else,
+//! and transparency is passed over. Not handled: names in other languages than English.
 
 use gdal::Metadata;
 use gdal::raster::{ColorInterpretation, GdalDataType, RasterBand};
@@ -11,8 +11,34 @@ use super::source::Source;
 use super::{History, ReadOptions};
 use crate::error::{Error, Result};
 
-/// Words for elevation in the names of bands, the surest first. The last two are ways of gridding points.
-const NAMES: [&str; 5] = ["elevation", "dem", "height", "idw", "mean"];
+/// Words for elevation in the names of bands, and ways of gridding points; of each the surest first.
+const NAMES: [&[&str]; 2] = [&["elevation", "dem", "height"], &["idw", "mean"]];
+/// Words in the names of bands that are about elevations and hold none.
+const OTHER: [&str; 21] = [
+    "uncertainty",
+    "error",
+    "errors",
+    "err",
+    "rmse",
+    "count",
+    "counts",
+    "number",
+    "density",
+    "std",
+    "stdev",
+    "stddev",
+    "deviation",
+    "variance",
+    "slope",
+    "aspect",
+    "hillshade",
+    "quality",
+    "confidence",
+    "mask",
+    "flag",
+];
+/// How GDAL before 3.7 says that bytes have a sign.
+pub(super) const SIGNED_BYTE: &str = "PIXELTYPE=SIGNEDBYTE";
 /// Bands whose names are told.
 const TOLD: usize = 12;
 
@@ -31,14 +57,28 @@ impl Source {
         chosen.check_type()?;
         let band = chosen.band()?;
         let plain = band.scale().unwrap_or(1.0) == 1.0 && band.offset().unwrap_or(0.0) == 0.0;
-        if band.band_type() == GdalDataType::UInt8 && plain && options.elevation_unit.is_none() {
-            history.assume(
-                "its 8-bit numbers, 0 to 255, are heights in whole metres (a picture or a hillshade has such numbers: \
-                 then give the DEM it was made from; for heights say --elevation-unit m)"
-                    .into(),
-            );
+        let said = options.elevation_unit.is_some()
+            || matches!(options.encoding, Some(Encoding::Elevations | Encoding::Depths));
+        if band.band_type() == GdalDataType::UInt8 && plain && !said {
+            let (range, why) = match chosen.is_signed(options.encoding) {
+                true => ("-128 to 127", "few DEMs have no others"),
+                false => ("0 to 255", "a picture or a hillshade has such numbers: then give the DEM it was made from"),
+            };
+            history.assume(format!(
+                "its 8-bit numbers, {range}, are heights in whole metres ({why}; for heights say --elevation-unit m)"
+            ));
         }
         Ok(chosen)
+    }
+
+    /// Whether the upper half of the band's unsigned numbers is below zero: by `encoding`, or as the file says of bytes.
+    pub fn is_signed(&self, encoding: Option<Encoding>) -> bool {
+        let says = |band: RasterBand| {
+            let said = band.metadata_item("PIXELTYPE", "IMAGE_STRUCTURE");
+            band.band_type() == GdalDataType::UInt8
+                && said.is_some_and(|said| SIGNED_BYTE.ends_with(&format!("={said}")))
+        };
+        encoding == Some(Encoding::Signed) || self.band().is_ok_and(says)
     }
 
     /// The band of transparency beside the chosen one, if there is any.
@@ -53,8 +93,16 @@ impl Source {
             .filter(|band| self.colour(*band) != ColorInterpretation::AlphaBand)
             .map(|band| (band, self.name_of(band)))
             .collect();
-        let named = NAMES.iter().find_map(|word| bands.iter().find(|(_, name)| has_word(name, word)));
-        let Some((band, name)) = named.or(bands.first()) else { return Err(self.picture(1)) };
+        let candidates = || bands.iter().filter(|(_, name)| !OTHER.iter().any(|word| has_word(name, word)));
+        let of_group = |group: &&[&str]| {
+            let exact =
+                group.iter().find_map(|word| candidates().find(|(_, name)| name.trim().eq_ignore_ascii_case(word)));
+            exact.or_else(|| group.iter().find_map(|word| candidates().find(|(_, name)| has_word(name, word))))
+        };
+        let named = NAMES.iter().find_map(of_group);
+        let Some((band, name)) = named.or_else(|| candidates().next()).or(bands.first()) else {
+            return Err(self.picture(1));
+        };
         if !matches!(self.colour(*band), ColorInterpretation::Undefined | ColorInterpretation::GrayIndex)
             || (bands.len() == 3 && Encoding::of(&self)?.is_some())
         {

@@ -3,14 +3,14 @@
 //!
 //! A mark is one exact number at an end of the range that stands far from all others: farther than a tenth of their
 //! range, and ten times as far as they stand from one another. The largest number of the type is one, and -9999 where
-//! nothing is lower. On Earth no land is outside -11 100 to 8 900 m. Not handled: marks amid the heights, such as a sea of
+//! nothing is lower, or nothing else is there; so is what is off the Earth in every unit. On Earth no land is outside -11 100 to 8 900 m. Not handled: marks amid the heights, such as a sea of
 //! -1, and what was smeared by a warp before the file was written, but for what is off the Earth.
 
 use gdal::raster::GdalDataType;
 
 use super::elevation::{EARTH, Elevation, Reading};
 use super::nodata::{Nodata, shown};
-use super::tally::Tally;
+use super::tally::{Beyond, Tally};
 
 /// A gap this large against the range of all others sets a number apart …
 const OF_RANGE: f64 = 0.1;
@@ -22,8 +22,6 @@ const OTHERS: usize = 3;
 const USUAL: f64 = -9999.0;
 /// Most numbers named one by one.
 const NAMED: usize = 4;
-/// Share of samples up to which those outside all land may be spikes.
-const FEW: f64 = 0.01;
 /// Units smaller than the metre: names for `--elevation-unit`, and metres.
 const UNITS: [(&str, f64); 3] = [("dm", 0.1), ("cm", 0.01), ("mm", 0.001)];
 /// Metres of a foot.
@@ -40,6 +38,8 @@ struct Trial<'a> {
     high: Vec<(f64, u64)>,
     marks: Vec<(f64, u64)>,
     wrapped: bool,
+    /// Of the numbers that pass for marks by their size alone, below and above zero, those that are heights in some unit.
+    huge: [Beyond; 2],
 }
 
 /// What is assumed of numbers that hardly are heights, each with what to do, to stand behind "assumed that".
@@ -58,16 +58,26 @@ pub(super) fn other_units(tally: &Tally, elevation: &Elevation) -> Option<String
     if huge == [0; 2] { None } else { trial.units(huge) }
 }
 
-/// The numbers that are voids by their impossible value alone, for `--nodata`; `None` where they are too many.
-pub(super) fn sentinels(tally: &Tally, elevation: &Elevation) -> Option<Vec<[f64; 2]>> {
+/// The numbers that are voids by their impossible value alone, for `--nodata`: one by one, or as ranges where they are too
+/// many. Those left out that are heights in another unit.
+pub(super) fn sentinels(tally: &Tally, elevation: &Elevation) -> Vec<[f64; 2]> {
+    let is_sentinel = |number: f64| elevation.reading(number) == Reading::Sentinel;
     let both = tally.low.iter().chain(&tally.high);
-    let mut found: Vec<_> =
-        both.filter(|(number, _)| elevation.reading(*number) == Reading::Sentinel).copied().collect();
+    let mut found: Vec<_> = both.filter(|(number, _)| is_sentinel(*number)).copied().collect();
     found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
     found.dedup();
-    let all = found.iter().map(|(_, count)| *count).sum::<u64>() == tally.marks as u64 && found.len() <= NAMED;
+    let trial = Trial::new(tally, elevation);
+    let is_height =
+        |number: f64| (0..2).any(|i| trial.huge()[i] > 0 && (number > 0.0) == (i == 1) && !trial.is_off(number));
+    found.retain(|(number, _)| !is_height(*number));
+    let heights = trial.huge().iter().sum::<u64>();
+    let known = found.iter().map(|(_, count)| *count).sum::<u64>() + heights;
     let typed = |number: f64| shown(number, elevation.kind()).parse().unwrap_or(number);
-    all.then(|| found.iter().map(|(number, _)| [typed(*number); 2]).collect())
+    if known == tally.marks as u64 && found.len() <= NAMED {
+        return found.iter().map(|(number, _)| [typed(*number); 2]).collect();
+    }
+    let sides = [0, 1].map(|i| (trial.huge()[i] == 0 && tally.huge[i].count > 0).then_some(tally.huge[i]));
+    sides.into_iter().flatten().map(|side| [side.least, side.greatest].map(typed)).collect()
 }
 
 impl<'a> Trial<'a> {
@@ -77,7 +87,32 @@ impl<'a> Trial<'a> {
             list.iter().filter(sound).copied().collect::<Vec<_>>()
         };
         let (low, high) = (heights(&tally.low), heights(&tally.high));
-        Self { tally, elevation, low, high, marks: Vec::new(), wrapped: false }
+        let mut trial =
+            Self { tally, elevation, low, high, marks: Vec::new(), wrapped: false, huge: [Beyond::NONE; 2] };
+        trial.huge = [trial.rest(&tally.low, 0), trial.rest(&tally.high, 1)];
+        trial
+    }
+
+    /// Whether a number is off the Earth in every unit.
+    fn is_off(&self, number: f64) -> bool {
+        let smallest = UNITS[UNITS.len() - 1].1;
+        !self.is_on_earth(number, number, smallest)
+    }
+
+    /// Of the numbers on a side that pass for marks by their size, those that are on Earth in some unit; `list` goes from
+    /// the outermost inward.
+    fn rest(&self, list: &[(f64, u64)], side: usize) -> Beyond {
+        let all = self.tally.huge[side];
+        let off: u64 = list.iter().take_while(|(number, _)| self.is_off(*number)).map(|(_, count)| count).sum();
+        let next = list.iter().map(|(number, _)| *number).find(|number| !self.is_off(*number));
+        let next = next
+            .filter(|number| self.elevation.reading(*number) == Reading::Sentinel && (*number > 0.0) == (side == 1));
+        match next {
+            Some(_) if off == 0 => all,
+            Some(least) if side == 0 => Beyond { count: all.count - off.min(all.count), least, ..all },
+            Some(greatest) => Beyond { count: all.count - off.min(all.count), greatest, ..all },
+            None => Beyond::NONE,
+        }
     }
 
     /// Numbers in the upper half of an unsigned type, none near the middle: they were below zero.
@@ -110,6 +145,10 @@ impl<'a> Trial<'a> {
             let [Some(low), Some(high)] = [self.low.first(), self.high.first()].map(|end| end.map(|end| end.0)) else {
                 return;
             };
+            if low == high && low == USUAL && self.marks.is_empty() {
+                self.marks.push(self.low.remove(0));
+                self.high.clear();
+            }
             if low >= high {
                 return;
             }
@@ -162,8 +201,13 @@ impl<'a> Trial<'a> {
         let each = |(number, count): &(f64, u64)| format!("{} of exactly {}", self.share(*count), self.shown(*number));
         let marks = self.marks.iter().map(each).collect::<Vec<_>>().join(" and ");
         let ends = [self.low.first(), self.high.first()].map(|end| end.map_or(f64::NAN, |end| end.0));
+        let none = ends[0].is_nan();
         let [low, high] = ends.map(|end| self.shown(end));
-        let all = if low == high { format!("all others are {low}") } else { format!("all others are {low} to {high}") };
+        let all = match low == high {
+            _ if none => "there are no others".to_owned(),
+            true => format!("all others are {low}"),
+            false => format!("all others are {low} to {high}"),
+        };
         let remedy = self.nodata(&[]);
         let minus = self.elevation.modulus() - 1.0;
         let wrapped =
@@ -194,8 +238,8 @@ impl<'a> Trial<'a> {
         }
         let units = self.units(huge);
         let nodata = format!("if they are no heights, add --nodata {}", self.nodata(&ranges));
-        // A few may be spikes, whatever the unit.
-        let few = (all as f64) < FEW * self.tally.samples as f64;
+        // Whatever the unit, where most are land in metres the others may be none.
+        let few = all < self.tally.samples / 2;
         let remedy = match units {
             Some(units) if few => format!("if it is another, add {units}; {nodata}"),
             Some(units) => format!("if it is another, add {units}"),
@@ -224,7 +268,7 @@ impl<'a> Trial<'a> {
         }
         let sign = if self.elevation.is_depth() { 1 - side } else { side };
         if huge[sign] > 0 {
-            further.extend([self.tally.huge[sign].least, self.tally.huge[sign].greatest]);
+            further.extend([self.huge[sign].least, self.huge[sign].greatest]);
         }
         further.retain(|number| !numbers.iter().chain(&self.marks).any(|(known, _)| known == number));
         if self.wrapped {
@@ -239,11 +283,11 @@ impl<'a> Trial<'a> {
     /// How many numbers below and above zero that pass for marks by their size alone are many different ones, as heights
     /// in a small unit are.
     fn huge(&self) -> [u64; 2] {
-        let Tally { huge, low, high, .. } = self.tally;
-        let distinct = [
-            low.iter().filter(|(number, _)| *number <= huge[0].greatest).count(),
-            high.iter().filter(|(number, _)| *number >= huge[1].least).count(),
-        ];
+        let (Tally { low, high, .. }, huge) = (self.tally, self.huge);
+        let within = |list: &[(f64, u64)], of: Beyond| {
+            list.iter().filter(|(number, _)| (of.least..=of.greatest).contains(number)).count()
+        };
+        let distinct = [within(low, huge[0]), within(high, huge[1])];
         let smallest = UNITS[UNITS.len() - 1].1;
         let fits = self.is_on_earth(huge[0].least, huge[1].greatest, smallest) && self.elevation.is_plain_metres();
         [0, 1].map(|side| if fits && distinct[side] > OTHERS { huge[side].count } else { 0 })
@@ -262,9 +306,9 @@ impl<'a> Trial<'a> {
             return None;
         }
         let greatest = self.high.first().map_or(f64::NEG_INFINITY, |end| end.0);
-        let greatest = if huge[1] > 0 { self.tally.huge[1].greatest } else { greatest };
+        let greatest = if huge[1] > 0 { self.huge[1].greatest } else { greatest };
         let least = self.low.first().map_or(f64::INFINITY, |end| end.0);
-        let least = if huge[0] > 0 { self.tally.huge[0].least } else { least };
+        let least = if huge[0] > 0 { self.huge[0].least } else { least };
         let farthest = greatest.max(-least);
         let likely = |metres: f64| self.is_on_earth(least, greatest, metres) && farthest * metres > LOWEST_TOP;
         let units = UNITS.into_iter().chain([("ft", FOOT)]).filter(|(_, metres)| likely(*metres));

@@ -2,6 +2,7 @@
 
 use gdal::raster::GdalDataType;
 
+use super::choice::SIGNED_BYTE;
 use super::crs::Crs;
 use super::depth::is_depth;
 use super::encoding::Encoding;
@@ -60,6 +61,8 @@ pub(super) struct Elevation {
     /// Void because the user says so.
     said: Nodata,
     encoding: Option<Encoding>,
+    /// Whether the upper half of unsigned numbers is below zero.
+    signed: bool,
     /// Whether the metres are depths.
     depth: bool,
     /// Whether the place is on Earth, or nobody says where it is.
@@ -90,6 +93,7 @@ impl Elevation {
             kind: GdalDataType::Float64,
             said: options.nodata.clone(),
             encoding: options.encoding,
+            signed: source.is_signed(options.encoding),
             depth: false,
             on_earth: crs.is_of_earth(),
         };
@@ -117,9 +121,10 @@ impl Elevation {
         }
         if elevation.is_signed() {
             let most = elevation.modulus() / 2.0 - 1.0;
-            history.convert(format!("numbers above {most} are below 0 (--encoding signed)"));
+            let why = if options.encoding == Some(Encoding::Signed) { "--encoding signed" } else { SIGNED_BYTE };
+            history.convert(format!("numbers above {most} are below 0 ({why})"));
         }
-        Ok(Self { depth: is_depth(source, &elevation, history)?, ..elevation })
+        Ok(Self { depth: is_depth(source, &elevation, options.encoding, history)?, ..elevation })
     }
 
     /// What the number `raw` stands for.
@@ -127,7 +132,7 @@ impl Elevation {
         let number = self.number(raw);
         let value = number * self.scale + self.offset;
         let metres = value * self.factor;
-        if self.is_void(raw) || !metres.is_finite() || (number != raw && self.said.holds(number, self.kind)) {
+        if self.is_void(raw) || !metres.is_finite() || (number != raw && self.is_void(number)) {
             return Reading::Void;
         }
         // Marks are written in the file's own unit, but one much smaller than a metre reaches them with elevations.
@@ -173,7 +178,7 @@ impl Elevation {
 
     /// Whether the upper half of the numbers is below zero.
     pub fn is_signed(&self) -> bool {
-        self.encoding == Some(Encoding::Signed)
+        self.signed
     }
 
     /// Whether greater numbers lie deeper.
@@ -208,6 +213,7 @@ impl Elevation {
             kind: GdalDataType::Float32,
             said: Nodata::default(),
             encoding: None,
+            signed: false,
             depth: false,
             on_earth: true,
         }

@@ -1,11 +1,12 @@
-//! Elevations packed into whole numbers: into the three colours of a picture, or below 0 into unsigned ones.
+//! What the numbers of a file stand for where they are not what the file says: elevations packed into the three colours of
+//! a picture, or below 0 into unsigned numbers, heights that the file calls depths, depths that it does not call so.
 //!
 //! Formulas: Mapbox Terrain-RGB v1, and Terrarium of Mapzen. Which of the two a picture is, if any, shows when a few of
 //! its windows are decoded: the heights are on Earth, and the colour that counts most hardly changes from one pixel to
 //! the next, while in a picture for people all three change alike. Not handled: pictures that were compressed with
 //! losses or resampled, whose heights jump.
 
-use gdal::raster::{ColorInterpretation, GdalDataType};
+use gdal::raster::{ColorInterpretation, GdalDataType, RasterBand};
 
 use super::elevation::EARTH;
 use super::glance::windows;
@@ -28,9 +29,15 @@ pub enum Encoding {
     Terrarium,
     /// Unsigned numbers, the upper half of which are below 0: 65535 of 16 bits is -1.
     Signed,
+    /// The numbers are heights, whatever the file says of depths.
+    Elevations,
+    /// They are depths: the greater, the deeper.
+    Depths,
 }
 
 impl Encoding {
+    /// All of them.
+    pub const ALL: [Self; 5] = [Self::TerrainRgb, Self::Terrarium, Self::Signed, Self::Elevations, Self::Depths];
     /// Those of pictures.
     pub(super) const PICTURES: [Self; 2] = [Self::TerrainRgb, Self::Terrarium];
 
@@ -40,12 +47,14 @@ impl Encoding {
             Self::TerrainRgb => "terrain-rgb",
             Self::Terrarium => "terrarium",
             Self::Signed => "signed",
+            Self::Elevations => "elevations",
+            Self::Depths => "depths",
         }
     }
 
     /// Whether three bands make one elevation.
     pub(super) fn is_picture(self) -> bool {
-        self != Self::Signed
+        Self::PICTURES.contains(&self)
     }
 
     fn metres(self, [red, green, blue]: [u8; 3]) -> f64 {
@@ -54,16 +63,16 @@ impl Encoding {
             // One division, so that a decimal typed by hand is the same number.
             Self::TerrainRgb => (red * 65536.0 + green * 256.0 + blue - 100_000.0) / 10.0,
             Self::Terrarium => red * 256.0 + green + blue / 256.0 - 32768.0,
-            Self::Signed => red,
+            Self::Signed | Self::Elevations | Self::Depths => red,
         }
     }
 
-    /// Metres of a block of a picture, NaN where all three colours are the number that it declares void.
+    /// Metres of a block of a picture, NaN where all three colours are the number that it declares void, where it is black
+    /// and where it is transparent.
     pub(super) fn decode(self, source: &Source, from: [usize; 2], size: [usize; 2]) -> Result<Vec<f64>> {
         let void = source.band()?.no_data_value();
         let colours = colours(source, from, size)?;
-        let is_void = |colour: [u8; 3]| void.is_some_and(|void| colour.iter().all(|part| f64::from(*part) == void));
-        let metres = |colour| if is_void(colour) { f64::NAN } else { self.metres(colour) };
+        let metres = |colour| if is_void(colour, void) { f64::NAN } else { self.metres(colour) };
         Ok(colours.into_iter().map(metres).collect())
     }
 
@@ -92,32 +101,14 @@ impl Encoding {
     fn fits(self, source: &Source) -> Result<bool> {
         let bands = source.dataset.raster_count();
         let byte = |band: usize| source.dataset.rasterband(band).is_ok_and(|b| b.band_type() == GdalDataType::UInt8);
-        let alpha = |band| {
-            let of = source.dataset.rasterband(band);
-            of.is_ok_and(|band| band.color_interpretation() == ColorInterpretation::AlphaBand)
-        };
-        if !(1..=3).all(byte) || bands > 4 || (bands == 4 && !alpha(4)) {
+        if !(1..=3).all(byte) || bands > 4 || (bands == 4 && opacity(source).is_none()) {
             return Ok(false);
         }
         let void = source.band()?.no_data_value();
         let (mut seen, mut on_earth, mut changes) = (0, 0, [0; 3]);
         for Window { first, size } in windows([source.columns, source.rows]) {
-            let mut colours = colours(source, first, size)?;
-            if bands == 4 {
-                let opaque = block::<u8>(
-                    source,
-                    &source.dataset.rasterband(4).map_err(|_| source.unreadable(None))?,
-                    first,
-                    size,
-                )?;
-                colours
-                    .iter_mut()
-                    .zip(opaque)
-                    .filter(|(_, opaque)| *opaque == 0)
-                    .for_each(|(colour, _)| *colour = [0; 3]);
-            }
-            // Black is no data in both, declared or not.
-            let is_void = |colour: [u8; 3]| colour == [0; 3] || void.is_some_and(|v| colour.map(f64::from) == [v; 3]);
+            let colours = colours(source, first, size)?;
+            let is_void = |colour: [u8; 3]| is_void(colour, void);
             for row in colours.chunks_exact(size[0]) {
                 let valid = row.iter().filter(|colour| !is_void(**colour));
                 seen += valid.clone().count();
@@ -133,14 +124,40 @@ impl Encoding {
     }
 }
 
-/// The first three bands of a block, pixel by pixel.
+/// Whether a colour is no data: black is in both, declared or not.
+fn is_void(colour: [u8; 3], declared: Option<f64>) -> bool {
+    colour == [0; 3] || declared.is_some_and(|void| colour.map(f64::from) == [void; 3])
+}
+
+/// The fourth band, where it is transparency: called so, or by no name beside red, green and blue.
+fn opacity(source: &Source) -> Option<RasterBand<'_>> {
+    let colour = |band: &RasterBand| band.color_interpretation();
+    let coloured = [ColorInterpretation::RedBand, ColorInterpretation::GreenBand, ColorInterpretation::BlueBand];
+    let is_coloured =
+        || (1..).zip(coloured).all(|(i, known)| source.dataset.rasterband(i).is_ok_and(|band| colour(&band) == known));
+    let fourth = source.dataset.rasterband(4).ok().filter(|_| source.dataset.raster_count() == 4)?;
+    let is_transparency = match colour(&fourth) {
+        ColorInterpretation::AlphaBand => true,
+        ColorInterpretation::Undefined => is_coloured(),
+        _ => false,
+    };
+    is_transparency.then_some(fourth)
+}
+
+/// The first three bands of a block, pixel by pixel; black where it is transparent.
 fn colours(source: &Source, from: [usize; 2], size: [usize; 2]) -> Result<Vec<[u8; 3]>> {
     let band = |i: usize| {
         let band = source.dataset.rasterband(i).map_err(|_| source.unreadable(None))?;
         block::<u8>(source, &band, from, size)
     };
     let [red, green, blue] = [band(1)?, band(2)?, band(3)?];
-    Ok(red.into_iter().zip(green).zip(blue).map(|((red, green), blue)| [red, green, blue]).collect())
+    let mut colours: Vec<_> =
+        red.into_iter().zip(green).zip(blue).map(|((red, green), blue)| [red, green, blue]).collect();
+    if let Some(band) = opacity(source) {
+        let opaque = block::<f32>(source, &band, from, size)?;
+        colours.iter_mut().zip(opaque).filter(|(_, opaque)| *opaque == 0.0).for_each(|(colour, _)| *colour = [0; 3]);
+    }
+    Ok(colours)
 }
 
 #[cfg(test)]

@@ -34,6 +34,7 @@ mod quiet;
 mod raster;
 pub mod read;
 mod register;
+mod said;
 mod samples;
 mod source;
 mod survey;

@@ -45,13 +45,13 @@ pub(super) struct Beyond {
 }
 
 impl Beyond {
-    const NONE: Self = Self { count: 0, least: f64::INFINITY, greatest: f64::NEG_INFINITY };
+    pub const NONE: Self = Self { count: 0, least: f64::INFINITY, greatest: f64::NEG_INFINITY };
 
     fn add(&mut self, number: f64) {
         *self = self.with(Self { count: 1, least: number, greatest: number });
     }
 
-    fn with(self, other: Self) -> Self {
+    pub fn with(self, other: Self) -> Self {
         let (least, greatest) = (self.least.min(other.least), self.greatest.max(other.greatest));
         Self { count: self.count + other.count, least, greatest }
     }
