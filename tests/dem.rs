@@ -11,6 +11,7 @@ mod refused;
 mod remedies;
 mod shared;
 mod trusted;
+mod typed;
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -12,12 +12,11 @@ use std::path::{Path, PathBuf};
 use gdal::{GdalOpenFlags, Metadata};
 
 use super::formats::FORMATS;
-use super::hgt::{self, quoted};
-use super::mistaken;
 use super::name::Place;
+use super::shell::{self, quoted};
 use super::zip::packing;
-use super::{lossless, vrt, vsi, xml};
-use crate::error::{Error, Result};
+use super::{hgt, lossless, mistaken, outside, vrt, vsi, xml};
+use crate::error::{Error, Result, shown};
 
 /// Members that are looked into.
 const MEMBERS: usize = 1000;
@@ -70,17 +69,16 @@ pub(super) fn member(
         false => joined(&before_of(before, path), file),
     };
     if let Some((file, what, remedy)) = found.unreadable.as_ref().filter(|_| found.rasters.len() < 2) {
-        return Err(Error::input(path, format!("its member {file} {what}"), remedy.clone()));
+        return Err(Error::input(path, format!("its member {} {what}", said(file)), remedy.clone()));
     }
     match found.alone(path) {
         [(inner, _)] => {
             Ok(Some(Member { connection: joined(folder, inner), typed: typed(inner), inner: inner.clone() }))
         }
-        [] => Err(found.refused.unwrap_or_else(|| holds_none(path, before, folder, &files))),
+        [] => Err(found.refused.unwrap_or_else(|| holds_none(path, before, folder, place, &files))),
         several => {
             let names = several.iter().take(LISTED);
-            let names: Vec<_> =
-                names.map(|(file, _)| format!("`{}`", quoted(&typed(file).to_string_lossy()))).collect();
+            let names: Vec<_> = names.map(|(file, _)| format!("`{}`", quoted(typed(file).as_os_str()))).collect();
             let more = several.len().saturating_sub(LISTED);
             let more = if more > 0 { format!(", or one of {more} more") } else { String::new() };
             let what = format!("holds {} rasters, and which one is meant is not said", several.len());
@@ -123,7 +121,7 @@ pub(super) fn missing(path: &Path, connection: &Path, place: &Place) -> Option<E
     let there = after.is_empty() || files.contains(&after);
     let typed = || lossless::text(path.as_os_str()).strip_suffix(&after).map(|archive| format!("{archive}{first}"));
     let first = typed().unwrap_or_else(|| first.clone());
-    let remedy = format!("name a file that it holds, such as `{}`", quoted(&first));
+    let remedy = format!("name a file that it holds, such as `{}`", quoted(&lossless::name(&first)));
     (!there).then(|| Error::input(path, "there is no such file in that archive", remedy))
 }
 
@@ -219,20 +217,20 @@ impl Found {
 }
 
 /// The error for an archive without a readable raster.
-fn holds_none(path: &Path, before: &str, folder: &Path, files: &[String]) -> Error {
+fn holds_none(path: &Path, before: &str, folder: &Path, place: &Place, files: &[String]) -> Error {
     let with = |endings: &[&str]| files.iter().find(|file| endings.contains(&ending(file).as_str()));
-    let unpack = if before == "/vsizip/" { "unzip IN" } else { "tar -xf IN" };
+    let unpack = if before == "/vsizip/" { "unzip IN" } else { "tar -xkf IN" };
     let told = |what: String, remedy: String| Error::input(path, what, remedy);
     if let Some(file) = files.iter().find(|file| xml::is_vrt(&joined(folder, file))) {
-        let what = format!("holds a VRT ({file}), which names other files");
+        let what = format!("holds a VRT ({}), which names other files", said(file));
         return told(what, format!("unpack all of it, and name the VRT: `{unpack}`"));
     }
     if let Some(file) = with(&PACKED) {
-        let what = format!("holds another archive ({file}), and archives in archives are not read");
+        let what = format!("holds another archive ({}), and archives in archives are not read", said(file));
         return told(what, format!("unpack it, and name what comes out: `{unpack}`"));
     }
     if let Some(file) = with(&VECTOR) {
-        let what = format!("holds points, lines or areas ({file}), not a raster of elevations");
+        let what = format!("holds points, lines or areas ({}), not a raster of elevations", said(file));
         return told(what, "give a DEM raster; contours and points become one with `gdal_grid`".into());
     }
     let Some(first) = with(&RASTER).or(files.first()) else {
@@ -240,19 +238,32 @@ fn holds_none(path: &Path, before: &str, folder: &Path, files: &[String]) -> Err
     };
     if ending(first) == "hgt" {
         let corner = hgt::corner(first).or(hgt::corner(&path.to_string_lossy())).unwrap_or("N45E006".into());
-        let command = if before == "/vsizip/" { "unzip -p" } else { "tar -xOf" };
-        let what = format!("its member {first} is a .hgt tile, whose place is its name alone, and that says none");
-        let remedy =
-            format!("unpack it to the name of its south-west corner: `{command} IN {} > {corner}.hgt`", quoted(first));
+        let called = lossless::name(&outside::called(first, place));
+        let known = |archive: &Path| packing(archive, called.as_encoded_bytes()).is_some();
+        let exact = matches!(place, Place::Archive(archive) if known(archive));
+        let command = match before {
+            "/vsizip/" => format!("unzip -p IN {}", shell::unzipped(&called.to_string_lossy(), exact)),
+            _ => format!("tar -xOf IN -- {}", quoted(&called)),
+        };
+        let what =
+            format!("its member {} is a .hgt tile, whose place is its name alone, and that says none", said(first));
+        // No file that is there already is written over.
+        let remedy = format!("unpack it to the name of its south-west corner: `(set -C; {command} > {corner}.hgt)`");
         return told(what, remedy);
     }
     let head = vsi::head(&joined(folder, first)).unwrap_or_default();
-    if let Some((what, remedy)) = mistaken::what(&head, &first.to_ascii_lowercase()) {
-        return told(format!("its member {first} {what}"), remedy);
+    let answer = || with(&RASTER).and_then(|_| mistaken::answer(&head));
+    if let Some((what, remedy)) = mistaken::what(&head, &first.to_ascii_lowercase()).or_else(answer) {
+        return told(format!("its member {} {what}", said(first)), remedy);
     }
     let count = if files.len() == 1 { "1 file".to_owned() } else { format!("{} files", files.len()) };
-    let what = format!("holds no raster that hachure reads ({count}, {first} for one)");
+    let what = format!("holds no raster that hachure reads ({count}, {} for one)", said(first));
     told(what, "download an archive with a GeoTIFF or another DEM raster in it".into())
+}
+
+/// A member's way as it is printed.
+fn said(file: &str) -> String {
+    shown(Path::new(&lossless::name(file)))
 }
 
 /// What systems leave in archives beside what is meant.

@@ -162,6 +162,11 @@ fn names(bands: &[(usize, String)]) -> String {
     format!("the bands are {}{more}; ", told.collect::<Vec<_>>().join(", "))
 }
 
+/// How surely a name says that it is the elevation: 0 the surest, the greatest number not at all.
+pub(super) fn rank(name: &str) -> usize {
+    NAMES.iter().position(|word| has_word(name, word)).unwrap_or(NAMES.len())
+}
+
 /// Whether a text has `word`, small letters, between signs that are no letters or digits.
 pub(super) fn has_word(text: &str, word: &str) -> bool {
     text.split(|c: char| !c.is_alphanumeric()).any(|part| part.to_lowercase() == word)

@@ -5,6 +5,7 @@
 use std::path::Path;
 
 use super::mistaken::Told;
+use super::shell;
 
 /// Lengths of the tiles there are, bytes, each with its columns and rows: 3, 1, 1 x 2 and half a second of arc.
 const LENGTHS: [(u64, &str); 4] = [
@@ -28,12 +29,12 @@ pub(super) fn what(path: &Path, length: u64) -> Option<Told> {
         return Some((what, "copy or download it again".into()));
     }
     let what = "is a .hgt tile, whose place is its name alone, and this name says none that is understood".to_owned();
-    let from = quoted(&path.to_string_lossy());
+    let from = shell::file(path.as_os_str());
     let remedy = match corner(&name) {
-        Some(corner) => format!("copy it to a name that does: `cp {from} {corner}.hgt`"),
+        Some(corner) => format!("copy it to a name that does: `cp -n {from} {corner}.hgt`"),
         None => format!(
             "copy it to the name of its south-west corner, for 45 degrees north and 6 east for instance: \
-             `cp {from} N45E006.hgt`"
+             `cp -n {from} N45E006.hgt`"
         ),
     };
     Some((what, remedy))
@@ -51,12 +52,6 @@ pub(super) fn corner(name: &str) -> Option<String> {
     parts.filter(|part| part.is_ascii()).find(|part| is_corner(part)).map(str::to_owned)
 }
 
-/// A name as a shell takes it for one word.
-pub(super) fn quoted(name: &str) -> String {
-    let plain = |c: char| c.is_alphanumeric() || "/._-+=:,@%".contains(c);
-    if name.chars().all(plain) { name.to_owned() } else { format!("'{}'", name.replace('\'', r"'\''")) }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -70,11 +65,5 @@ mod tests {
         assert_eq!(found("srtm tile.hgt"), "");
         assert_eq!(found("N99E006.hgt"), "", "no such latitude");
         assert_eq!(found("höheN45E00ä.hgt"), "");
-    }
-
-    #[test]
-    fn a_shell_takes_a_quoted_name_for_one_word() {
-        assert_eq!(quoted("a/b.tif"), "a/b.tif");
-        assert_eq!(quoted("it's a.tif"), r"'it'\''s a.tif'");
     }
 }

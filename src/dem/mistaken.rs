@@ -6,8 +6,11 @@
 /// What a file is, and what to do.
 pub(super) type Told = (String, String);
 
+/// What helps against a damage.
+const AGAIN: &str = "copy or download it again";
+
 /// Marks at the start of files that are no raster of elevations: the mark, what it stands for, what to do.
-const MARKS: [(&[u8], &str, &str); 13] = [
+const MARKS: [(&[u8], &str, &str); 18] = [
     (b"%PDF", "is a PDF, pages to read", "download the raster itself from where the PDF came"),
     (
         b"\xff\xd8\xff",
@@ -24,11 +27,18 @@ const MARKS: [(&[u8], &str, &str); 13] = [
     (b"BZh", "is packed with bzip2, which GDAL does not read", "unpack it: `bunzip2 -c IN > OUT.tif`"),
     (b"\xfd7zXZ", "is packed with xz, which GDAL does not read", "unpack it: `xz -dc IN > OUT.tif`"),
     (b"\x28\xb5\x2f\xfd", "is packed with Zstandard, which GDAL does not read", "unpack it: `zstd -dc IN > OUT.tif`"),
+    (b"\x89HDF\r\n\x1a\n", "begins as HDF5 and netCDF 4 do and is damaged or cut short", AGAIN),
+    (b"CDF\x01", "begins as netCDF does and is damaged or cut short", AGAIN),
+    (b"CDF\x02", "begins as netCDF does and is damaged or cut short", AGAIN),
+    (b"CDF\x05", "begins as netCDF does and is damaged or cut short", AGAIN),
+    (b"\x0e\x03\x13\x01", "begins as HDF4 does and is damaged or cut short", AGAIN),
     (b"version https://git-lfs", "is a pointer of git-LFS, not the raster itself", "fetch that: `git lfs pull`"),
 ];
 
 /// Where a tar archive says that it is one.
 const TAR: (usize, &[u8]) = (257, b"ustar");
+/// Bytes of the longest answer.
+const ANSWER: usize = 400;
 /// Letters of a page or message that are quoted.
 const QUOTED: usize = 60;
 
@@ -42,16 +52,27 @@ pub(super) fn what(head: &[u8], name: &str) -> Option<Told> {
     if let Some((mark, what, remedy)) = MARKS.iter().find(|(mark, ..)| head.starts_with(mark)) {
         // The archive inside may be one, too.
         let tar = name.contains(".tar") && !mark.starts_with(b"PK");
-        return Some(((*what).to_owned(), if tar { "unpack it: `tar -xf IN`".into() } else { (*remedy).to_owned() }));
+        return Some(((*what).to_owned(), if tar { "unpack it: `tar -xkf IN`".into() } else { (*remedy).to_owned() }));
     }
     if is_tar(head) {
-        return Some(("is a tar archive by another name".into(), "unpack it: `tar -xf IN`".into()));
+        return Some(("is a tar archive by another name".into(), "unpack it: `tar -xkf IN`".into()));
     }
     if head.len() >= 16 && head.iter().all(|byte| *byte == 0) {
         let what = "begins with zeros alone, as a download does that was cut off";
         return Some((what.into(), "copy or download it again".into()));
     }
     text(&String::from_utf8_lossy(head))
+}
+
+/// What a file is that begins with `head` and is one line of words, as servers answer in a file's place. A raster's own
+/// text has more than that.
+pub(super) fn answer(head: &[u8]) -> Option<Told> {
+    let line = str::from_utf8(head).ok()?.trim();
+    let is_line = line.starts_with(char::is_alphanumeric) && line.len() <= ANSWER && !line.contains(char::is_control);
+    let has_words = line.split(|c: char| !c.is_alphabetic()).any(|word| word.len() >= 3);
+    let what = || format!("is one line of text, not a raster{}", quoted(Some(line)));
+    let remedy = "download it again, after mending the request if that is the answer of a server";
+    (is_line && has_words).then(|| (what(), remedy.into()))
 }
 
 /// What a text is.

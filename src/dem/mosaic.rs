@@ -447,6 +447,7 @@ fn no_way([one, other]: [(&Path, &Grid); 2]) -> Error {
     let [(path, grid), (beside, base)] = if nameless(other) && !nameless(one) { [other, one] } else { [one, other] };
     let name = |crs: &super::Crs| match crs.label() {
         label if label.is_empty() => "no named coordinate system".to_owned(),
+        label if ["unknown", "unnamed"].contains(&label.to_lowercase().as_str()) => "an unnamed system".to_owned(),
         label => label,
     };
     let what = format!(

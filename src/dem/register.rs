@@ -46,7 +46,7 @@ fn remedy(set: &[&str], found: Option<PathBuf>) -> String {
             set.join(" "),
             set.join(" and ")
         ),
-        Some(file) => format!("move it away: `mv {0} {0}.old`", super::hgt::quoted(&file.to_string_lossy())),
+        Some(file) => format!("move it away: `mv -n {0} {0}.old`", super::shell::quoted(file.as_os_str())),
         None => {
             "install PROJ's data (Debian: `apt-get install proj-data`), or set PROJ_DATA and PROJ_LIB to the folder \
                  of a proj.db"

@@ -14,12 +14,12 @@ use std::sync::Once;
 
 use gdal::errors::CplErrType;
 use gdal::raster::{GdalDataType, RasterBand};
-use gdal::{Dataset, GdalOpenFlags, Metadata, config};
+use gdal::{Dataset, GdalOpenFlags, config};
 
 use super::archive::{self, Member};
 use super::formats::{self, FORMATS, VECTORS};
 use super::name::{Local, Name, Place};
-use super::{hgt, lossless, mistaken, vrt, vsi};
+use super::{grids, hgt, lossless, mistaken, outside, vrt, vsi};
 use crate::error::{Error, Result, shown};
 
 thread_local! {
@@ -105,7 +105,7 @@ impl Source {
     /// One band of real numbers, wide and high enough for a cell.
     fn check_band(&self, name: &Path) -> Result<()> {
         if self.dataset.raster_count() == 0 {
-            return Err(self.no_band(name));
+            return Err(grids::unchosen(&self.path, name, &self.dataset));
         }
         self.check_type()?;
         if self.columns < MIN_SIDE || self.rows < MIN_SIDE {
@@ -124,27 +124,6 @@ impl Source {
             ));
         }
         Ok(())
-    }
-
-    /// A container of several grids, or of none.
-    fn no_band(&self, name: &Path) -> Error {
-        let absolute = name.to_string_lossy();
-        let listed = self.dataset.metadata_domain("SUBDATASETS").unwrap_or_default();
-        let grids = listed.iter().filter_map(|line| line.split_once("_NAME=").map(|(_, grid)| grid));
-        let shown = shown(&self.path);
-        let grids: Vec<_> = grids.map(|g| g.replace(&*absolute, &shown).replace('"', "")).collect();
-        let unpack = [("/vsizip/", "unzip IN"), ("/vsitar/", "tar -xf IN"), ("/vsigzip/", "gunzip -k IN")];
-        if let Some((_, command)) = unpack.iter().find(|(way, _)| absolute.starts_with(way) && !grids.is_empty()) {
-            let what = format!("holds {} grids, which cannot be named inside an archive", grids.len());
-            return self.error(what, format!("unpack it first, and name one of what comes out: `{command}`"));
-        }
-        match grids.first() {
-            Some(first) => self.error(
-                format!("holds {} grids, and which one is meant is not said", grids.len()),
-                format!("name the one with the elevations, for instance `{first}`"),
-            ),
-            None => self.error("holds no grid", "give a file with a raster band of elevations"),
-        }
     }
 
     /// GDAL fills the missing end of an ENVI file with zeros, and zeros would pass for sea.
@@ -262,12 +241,12 @@ fn told_of_archive(path: &Path, place: &Place) -> Option<Error> {
     let Place::Archive(archive) = place else { return None };
     let head = vsi::head(archive)?;
     let packed = head.starts_with(b"PK\x03") || head.starts_with(b"\x1f\x8b") || mistaken::is_tar(&head);
-    let told = if packed { None } else { mistaken::what(&head, "") };
+    let told = if packed { None } else { mistaken::what(&head, "").or_else(|| mistaken::answer(&head)) };
     told.map(|(what, remedy)| Error::input(path, what, remedy))
 }
 
 fn damaged_archive(path: &Path, place: &Place) -> Error {
-    told_of_archive(path, place).unwrap_or_else(|| {
+    told_of_archive(path, place).or_else(|| outside::error(path, place)).unwrap_or_else(|| {
         Error::input(path, "is a damaged archive, or one in another", "copy or download it again, or unpack it first")
     })
 }
@@ -316,6 +295,9 @@ fn is_out_of_files(_: &std::io::Error) -> bool {
 
 /// Why GDAL did not open `name`: vector data, something else in a raster's place, a fault that GDAL names, or no raster.
 fn cannot_open(path: &Path, name: &Path, place: &Place, complaint: Option<String>) -> Error {
+    if let Err(error) = grids::missing(path, name, place) {
+        return error;
+    }
     let (vector, _) = vsi::open(name, GdalOpenFlags::GDAL_OF_VECTOR, &VECTORS);
     if vector.is_some_and(|v| v.layer_count() > 0) {
         return Error::input(
@@ -351,16 +333,17 @@ fn told(path: &Path, name: &Path, place: &Place) -> Option<mistaken::Told> {
     let file = if let Place::File(file) = place { file } else { name };
     let named = lossless::text(path.as_os_str()).to_ascii_lowercase();
     let tile = || hgt::what(path, fs::metadata(file).ok()?.len());
-    vsi::head(file).and_then(|head| mistaken::what(&head, &named)).or_else(tile)
+    let head = vsi::head(file).unwrap_or_default();
+    mistaken::what(&head, &named).or_else(|| mistaken::answer(&head)).or_else(tile)
 }
 
 /// The first sentence of GDAL's words, with the file as the user named it, and no full stop.
 fn one_line(words: &str, path: &Path) -> String {
     let absolute = std::path::absolute(path).unwrap_or_default();
-    let words = match absolute.to_str() {
-        // First of all: a name may hold what ends a line or a sentence.
-        Some(absolute) if !absolute.is_empty() => words.replace(absolute, &shown(path)),
-        _ => words.to_owned(),
+    // First of all: a name may hold what ends a line or a sentence. The words are text, whatever the name is.
+    let words = match absolute.to_string_lossy() {
+        absolute if absolute.is_empty() => words.to_owned(),
+        absolute => words.replace(&*absolute, &shown(path)),
     };
     let sentence = words.lines().next().unwrap_or_default().split(". ").next().unwrap_or_default();
     sentence.trim().trim_end_matches('.').to_owned()

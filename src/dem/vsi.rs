@@ -65,6 +65,16 @@ pub(super) fn files_of(dataset: &Dataset) -> Vec<PathBuf> {
     names.unwrap_or_default().into_iter().map(PathBuf::from).collect()
 }
 
+/// What GDAL calls the grids of a container, as [`lossless`] text.
+pub(super) fn grids_of(dataset: &Dataset) -> Vec<String> {
+    // SAFETY: the handle is open; the list is the dataset's own, copied while that lives.
+    let (lines, _) =
+        heard(|| unsafe { copied(gdal_sys::GDALGetMetadata(dataset.c_dataset().cast(), c"SUBDATASETS".as_ptr())) });
+    let lines = lines.unwrap_or_default();
+    let lines = lines.iter().map(|line| lossless::text(line));
+    lines.filter_map(|line| line.split_once("_NAME=").map(|(_, grid)| grid.to_owned())).collect()
+}
+
 /// A name as GDAL takes it; `None` with a 0 in it.
 pub(super) fn c_string(name: &Path) -> Option<CString> {
     CString::new(name.as_os_str().as_encoded_bytes()).ok()
@@ -73,15 +83,23 @@ pub(super) fn c_string(name: &Path) -> Option<CString> {
 /// # Safety
 /// `names` is null or a list of GDAL's that ends in null and that nobody uses afterwards.
 unsafe fn list(names: *mut *mut c_char) -> Option<Vec<OsString>> {
+    // SAFETY: as promised; the list is GDAL's to free.
+    unsafe {
+        let copied = copied(names);
+        gdal_sys::CSLDestroy(names);
+        copied
+    }
+}
+
+/// # Safety
+/// `names` is null or a list of strings that ends in null.
+unsafe fn copied(names: *mut *mut c_char) -> Option<Vec<OsString>> {
     if names.is_null() {
         return None;
     }
     // SAFETY: as promised; each entry is a string that ends in 0.
     unsafe {
         let entries = (0..).map(|i| *names.add(i)).take_while(|entry| !entry.is_null());
-        let copied =
-            entries.map(|entry| lossless::name(&lossless::text_of(CStr::from_ptr(entry).to_bytes()))).collect();
-        gdal_sys::CSLDestroy(names);
-        Some(copied)
+        Some(entries.map(|entry| lossless::name(&lossless::text_of(CStr::from_ptr(entry).to_bytes()))).collect())
     }
 }

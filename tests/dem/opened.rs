@@ -39,7 +39,7 @@ fn what_stands_in_a_rasters_place_is_called_by_its_name() {
         ("zeros.tif", &[0; 4096], &["zeros alone", "download it again"]),
         ("packed.tif", b"7z\xbc\xaf\x27\x1c\0\x04", &["7z archive", "`7z x IN`"]),
         ("packed.tif.bz2", b"BZh91AY&SY", &["packed with bzip2", "`bunzip2 -c IN > OUT.tif`"]),
-        ("packed.tar.xz", b"\xfd7zXZ\0\0", &["packed with xz", "`tar -xf IN`"]),
+        ("packed.tar.xz", b"\xfd7zXZ\0\0", &["packed with xz", "`tar -xkf IN`"]),
     ];
     for (name, bytes, words) in cases {
         let path = dir.path().join(name);

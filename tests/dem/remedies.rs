@@ -83,7 +83,8 @@ impl Case {
 
     /// Types a command; whether its tool is there.
     fn run(&self, remedy: &str, folder: &Path) -> bool {
-        let tool = remedy.split(' ').next().unwrap();
+        let command = remedy.rsplit("; ").next().unwrap();
+        let tool = command.split(' ').next().unwrap();
         let found = Command::new("sh").args(["-c", &format!("command -v {tool} >/dev/null")]).status().unwrap();
         if !found.success() {
             let _ = writeln!(stderr(), "SKIP {remedy}: no {tool} on this machine");
