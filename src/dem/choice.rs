@@ -13,6 +13,8 @@ use crate::error::{Error, Result};
 
 /// Words for elevation in the names of bands, and ways of gridding points; of each the surest first.
 const NAMES: [&[&str]; 2] = [&["elevation", "dem", "height"], &["idw", "mean"]];
+/// How a name ranks that says nothing.
+const NEUTRAL: usize = 100;
 /// Words in the names of bands that are about elevations and hold none.
 const OTHER: [&str; 21] = [
     "uncertainty",
@@ -93,14 +95,7 @@ impl Source {
             .filter(|band| self.colour(*band) != ColorInterpretation::AlphaBand)
             .map(|band| (band, self.name_of(band)))
             .collect();
-        let candidates = || bands.iter().filter(|(_, name)| !OTHER.iter().any(|word| has_word(name, word)));
-        let of_group = |group: &&[&str]| {
-            let exact =
-                group.iter().find_map(|word| candidates().find(|(_, name)| name.trim().eq_ignore_ascii_case(word)));
-            exact.or_else(|| group.iter().find_map(|word| candidates().find(|(_, name)| has_word(name, word))))
-        };
-        let named = NAMES.iter().find_map(of_group);
-        let Some((band, name)) = named.or_else(|| candidates().next()).or(bands.first()) else {
+        let Some((band, name)) = bands.iter().min_by_key(|(_, name)| rank(name)) else {
             return Err(self.picture(1));
         };
         if !matches!(self.colour(*band), ColorInterpretation::Undefined | ColorInterpretation::GrayIndex)
@@ -111,7 +106,7 @@ impl Source {
         if bands.len() > 1 {
             let count = bands.len();
             let all = names(&bands);
-            let called = if named.is_some() { format!(", called {name}") } else { String::new() };
+            let called = if rank(name) < NEUTRAL { format!(", called {name}") } else { String::new() };
             history.assume(format!(
                 "elevations are in band {band} of {count}{called} ({all}choose another with --band N)"
             ));
@@ -162,9 +157,20 @@ fn names(bands: &[(usize, String)]) -> String {
     format!("the bands are {}{more}; ", told.collect::<Vec<_>>().join(", "))
 }
 
-/// How surely a name says that it is the elevation: 0 the surest, the greatest number not at all.
+/// How surely a name says that it is the elevation: 0 the surest, [`NEUTRAL`] where it says nothing, more where it is about
+/// something else.
 pub(super) fn rank(name: &str) -> usize {
-    NAMES.iter().position(|word| has_word(name, word)).unwrap_or(NAMES.len())
+    if OTHER.iter().any(|word| has_word(name, word)) {
+        return NEUTRAL + 1;
+    }
+    // Of each group of words first a name that is one, then one that has it among others.
+    let is_word = |word: &&str| name.trim().eq_ignore_ascii_case(word);
+    let of_group = |group: &&[&str]| {
+        let exact = group.iter().position(is_word);
+        exact.or_else(|| Some(group.len() + group.iter().position(|word| has_word(name, word))?))
+    };
+    let places = NAMES.iter().enumerate().find_map(|(i, group)| Some((i, of_group(group)?)));
+    places.map_or(NEUTRAL, |(i, place)| i * 2 * NAMES[0].len() + place)
 }
 
 /// Whether a text has `word`, small letters, between signs that are no letters or digits.
@@ -180,5 +186,14 @@ mod tests {
     fn words_are_whole() {
         assert!(has_word("Elevation (m)", "elevation") && has_word("z_mean", "mean") && has_word("DEM", "dem"));
         assert!(!has_word("demand", "dem") && !has_word("depths", "depth") && !has_word("", "dem"));
+    }
+
+    #[test]
+    fn names_rank_by_what_they_say() {
+        let names =
+            ["elevation", "DEM", "Height", "Elevation (m)", "dem_1", "IDW", "mean", "z_mean", "band", "dem error"];
+        let ranks = names.map(rank);
+        assert!(ranks.is_sorted_by(|a, b| a < b), "{ranks:?}");
+        assert_eq!((rank(""), rank("slope")), (NEUTRAL, NEUTRAL + 1));
     }
 }
