@@ -3,7 +3,7 @@
 //! A crop of degrees whose west is beyond its east crosses the meridian where they begin anew: 179 to -179 is 179 to 181.
 
 use super::grid::Grid;
-use super::mosaic::ALIGNED_CELLS;
+use super::lie::ALIGNED_CELLS;
 use crate::error::{Error, Result};
 
 /// `crop` with its west below its east, in the units of `grid`. Fails where it is no rectangle there.

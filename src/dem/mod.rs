@@ -23,6 +23,7 @@ mod history;
 pub mod info;
 mod inscribed;
 mod labels;
+mod lie;
 mod limits;
 mod listed;
 mod lossless;

@@ -18,6 +18,7 @@ use super::elevation::{Elevation, Reading};
 use super::encoding::Encoding;
 use super::grid::{Grid, Window, span};
 use super::handles::{Handles, Opening};
+use super::lie::Lie;
 use super::raster::Raster;
 use super::source::{Source, heard};
 use super::tally::{Tallies, Tally};
@@ -25,8 +26,6 @@ use super::tiling::Tiling;
 use super::{History, ReadOptions};
 use crate::error::{Error, Result, shown};
 
-/// How far, in cells, samples may lie from those of the first file and still count as the same places.
-pub(super) const ALIGNED_CELLS: f64 = 0.01;
 /// Samples read at once: 8 MiB of f64.
 const BLOCK_SAMPLES: usize = 1 << 20;
 /// Formats whose blocks are unpacked one by one and cost time: there, threads gain by reading at once. Others are read
@@ -56,15 +55,6 @@ struct Placed {
     parallel: bool,
     /// The format in GDAL's words.
     format: String,
-}
-
-/// How the samples of a file lie to those of the mosaic.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Lie {
-    /// The same places, from this column and row on, read backwards where flipped.
-    Aligned { first: [i64; 2], flip: [bool; 2] },
-    /// Between them, in these columns and rows (first and beyond the last).
-    Apart { first: [i64; 2], end: [i64; 2] },
 }
 
 impl Mosaic {
@@ -348,53 +338,6 @@ pub(super) fn block<T: GdalType + Copy>(
         (Ok(block), None) => Ok(block.into_shape_and_vec().1),
         // A driver that complains and goes on has made the numbers up.
         (_, words) => Err(source.unreadable(words.as_deref())),
-    }
-}
-
-impl Lie {
-    /// Of `grid` to `base`; `None` where no way leads from one system to the other.
-    fn of(grid: &Grid, base: &Grid) -> Option<Self> {
-        let own = grid.whole().outline();
-        let mut places = grid.outline(grid.whole());
-        Way::between(&grid.crs, &base.crs)?.carry(&mut places);
-        base.pixels(&mut places);
-        if places.iter().any(|place| !place.is_finite()) {
-            return None;
-        }
-        let [low, high] = span(&places);
-        let size = DVec2::new(grid.columns as f64, grid.rows as f64);
-        let first = (low - 0.5).round();
-        let [flip_x, flip_y] = [places[3].x < places[0].x, places[1].y < places[0].y];
-        let aligned = places.iter().zip(own).all(|(place, own)| {
-            let x = if flip_x { size.x - own.x } else { own.x };
-            let y = if flip_y { size.y - own.y } else { own.y };
-            (*place - first - DVec2::new(x, y)).abs().max_element() <= ALIGNED_CELLS
-        });
-        if aligned {
-            return Some(Self::Aligned { first: [first.x as i64, first.y as i64], flip: [flip_x, flip_y] });
-        }
-        // Places of the base between the outermost samples; where there are none the mosaic need not grow.
-        let (low, high) = ((low - 0.5).ceil(), (high + 0.5).floor());
-        let grows = low.cmplt(high).all();
-        let (low, high) = if grows { (low, high) } else { (DVec2::ZERO, DVec2::ZERO) };
-        Some(Self::Apart { first: [low.x as i64, low.y as i64], end: [high.x as i64, high.y as i64] })
-    }
-
-    /// First column and row, and those beyond the last, of `grid` that lies so.
-    fn bounds(self, grid: &Grid) -> ([i64; 2], [i64; 2]) {
-        match self {
-            Self::Aligned { first, .. } => (first, [first[0] + grid.columns as i64, first[1] + grid.rows as i64]),
-            Self::Apart { first, end } => (first, end),
-        }
-    }
-
-    /// The same, counted from `low`.
-    fn moved(self, low: [i64; 2]) -> Self {
-        let moved = |at: [i64; 2]| [at[0] - low[0], at[1] - low[1]];
-        match self {
-            Self::Aligned { first, flip } => Self::Aligned { first: moved(first), flip },
-            Self::Apart { first, end } => Self::Apart { first: moved(first), end: moved(end) },
-        }
     }
 }
 
