@@ -44,7 +44,7 @@ pub(super) fn unchosen(path: &Path, name: &Path, dataset: &Dataset) -> Error {
         let what = format!("holds {count} grids, and which one is meant is not said");
         return Error::input(path, what, name_one(&names));
     }
-    if name.starts_with("/vsicurl") || name.to_string_lossy().starts_with("/vsi") {
+    if name.to_string_lossy().starts_with("/vsi") {
         let what = format!("holds {count} grids, which cannot be named on a network");
         return Error::input(path, what, "download it first, and name one of them");
     }
@@ -55,8 +55,8 @@ pub(super) fn unchosen(path: &Path, name: &Path, dataset: &Dataset) -> Error {
     Error::input(path, what, format!("copy it to a plain name first: {copy}"))
 }
 
-/// The error for a name of one grid of a container that holds no such one; `None` for other names, and where the
-/// container cannot be opened or holds it.
+/// Fails where `path`, which GDAL calls `name`, names a grid that its container does not hold; not for other names, nor
+/// where the container cannot be opened.
 pub(super) fn missing(path: &Path, name: &Path, place: &Place) -> Result<()> {
     let Place::File(file) = place else { return Ok(()) };
     let Name::Local(Local { file: typed_file, .. }) = Name::of(&lossless::text(path.as_os_str())) else {
@@ -66,7 +66,7 @@ pub(super) fn missing(path: &Path, name: &Path, place: &Place) -> Result<()> {
     let driver = DRIVERS
         .iter()
         .find(|(prefix, _)| name.split_once(':').is_some_and(|(start, _)| start.eq_ignore_ascii_case(prefix)));
-    let Some((_, driver)) = driver.filter(|_| *file != typed_file || typed_file != path) else { return Ok(()) };
+    let Some((_, driver)) = driver.filter(|_| typed_file != path) else { return Ok(()) };
     let flags = GdalOpenFlags::GDAL_OF_RASTER | GdalOpenFlags::GDAL_OF_READONLY;
     let (Some(dataset), _) = vsi::open(file, flags, &[driver]) else { return Ok(()) };
     let grids = vsi::grids_of(&dataset);
