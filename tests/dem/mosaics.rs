@@ -170,9 +170,10 @@ fn a_system_without_a_name_is_called_so() {
     let dir = folder();
     hill().write("GTiff", &dir.path().join("hill.tif"));
     let source = "<SimpleSource><SourceFilename relativeToVRT=\"1\">hill.tif</SourceFilename></SimpleSource>";
-    let local = "<SRS>LOCAL_CS[\"unknown\",UNIT[\"metre\",1]]</SRS>";
+    let local = "<SRS>LOCAL_CS[\"unknown\",UNIT[\"metre\",1]]</SRS>\
+                 <GeoTransform>500000, 30, 0, 4200000, 0, -20</GeoTransform>";
     let own = super::vrt(&dir.path().join("own.vrt"), local, source);
     let error = read_all(&[own, dir.path().join("hill.tif")], &Default::default(), &|_, _| ());
     let said = error.unwrap_err().to_string();
-    assert!(said.contains("lies in an unnamed system") && !said.contains("unknown"), "{said}");
+    assert!(said.contains(" to an unnamed system, that of ") && !said.contains("unknown"), "{said}");
 }

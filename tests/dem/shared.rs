@@ -179,7 +179,7 @@ fn voids_of_rainier_and_the_alps_are_holes_or_filled() {
 fn a_container_lists_its_grids() {
     let Some(shared) = shared_dems() else { return };
     let path = shared.join("topo.nc");
-    let line = refused(&path, &["grids", "name the one"]);
+    let line = refused(&path, &["grids", "name one: `NETCDF:"]);
     let name = line.split('`').nth(1).unwrap();
     assert_eq!(name, format!("NETCDF:{}:dem", path.display()));
     let dem = read_all(Path::new(name));
