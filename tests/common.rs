@@ -1,7 +1,8 @@
 //! What several test modules share.
 
 use std::io::{Write, stderr};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::process::Command;
 use std::sync::OnceLock;
 use std::thread;
 
@@ -29,4 +30,20 @@ pub fn shared_dems() -> Option<PathBuf> {
     };
     assert!(folder.is_dir(), "HACHURE_DEMS: {} is no folder", folder.display());
     Some(folder)
+}
+
+/// Copies a raster as netCDF-4, which is HDF5, in a process of its own: that library serves one thread at a time, and other
+/// tests use it meanwhile. `false`, with a line that says so, where GDAL's tools are missing.
+pub fn netcdf_4(from: &Path, to: &Path) -> bool {
+    let options = ["-q", "-of", "netCDF", "-co", "FORMAT=NC4", "-co", "COMPRESS=DEFLATE"];
+    match Command::new("gdal_translate").args(options).args([from, to]).output() {
+        Ok(output) => {
+            assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+            true
+        }
+        Err(_) => {
+            let _ = writeln!(stderr(), "SKIP {}: install gdal_translate", thread::current().name().unwrap_or("test"));
+            false
+        }
+    }
 }

@@ -9,6 +9,7 @@ use gdal::raster::RasterCreationOptions;
 use gdal::{Dataset, DriverManager};
 
 use super::{Yard, each, typed, words, write_hill};
+use crate::common::netcdf_4;
 use crate::scenes::Random;
 
 const RUNS: u64 = 240;
@@ -39,7 +40,7 @@ fn originals(folder: &Path) -> Vec<Vec<PathBuf>> {
         vec![copy("EHdr", "ehdr.flt", &[]), at("ehdr.hdr"), at("ehdr.prj")],
         vec![copy("HFA", "hfa.img", &[])],
         vec![copy("netCDF", "classic.nc", &[])],
-        vec![copy("netCDF", "four.nc", &["FORMAT=NC4"])],
+        if netcdf_4(&plain, &at("four.nc")) { vec![at("four.nc")] } else { vec![plain.clone()] },
         vec![copy("RST", "idrisi.rst", &[]), at("idrisi.rdc")],
         vec![copy("VRT", "nested.vrt", &[]), plain.clone()],
         vec![hgt(&at("N46E008.hgt"))],
