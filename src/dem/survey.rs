@@ -128,7 +128,6 @@ impl Dem {
             survey.range.iter_mut().for_each(|range| exaggerate(range, filed.exaggeration()));
             exaggerate(&mut survey.thinned, filed.exaggeration());
         }
-
         // One that is there already says the same.
         let _ = self.survey.set(survey);
     }
