@@ -17,7 +17,7 @@ use super::nodata::Nodata;
 use super::raster::{FILL_REACH, Raster};
 use super::target::Target;
 use super::{Dem, Georeference, History, Samples, Store};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Setting};
 
 /// Largest exaggeration: above it the highest mountain stands higher than the Earth is wide.
 const MAX_EXAGGERATION: f64 = 1000.0;
@@ -107,7 +107,7 @@ pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Dem> {
 /// the list of formats, no Python in VRTs, a small cache. No other thread should be inside GDAL at that moment.
 ///
 /// # Errors
-/// [`Error::Flag`] for options that make no sense, [`Error::Limit`] for more samples than fit, [`Error::Input`] for a
+/// [`Error::Setting`] for options that make no sense, [`Error::Limit`] for more samples than fit, [`Error::Input`] for a
 /// file that is missing, damaged, no raster, nowhere, without elevations, not to be trusted, or outside the crop.
 pub fn read_all(paths: &[PathBuf], options: &ReadOptions, progress: &dyn Fn(Stage, f64)) -> Result<Dem> {
     Reading::new(paths, options)?.finish(progress)
@@ -210,17 +210,17 @@ fn check_options(options: &ReadOptions) -> Result<()> {
     let factor = options.exaggeration;
     if !(factor > 0.0 && factor <= MAX_EXAGGERATION) {
         let what = format!("{factor} is no factor to draw with");
-        return Err(Error::flag("--exaggeration", what, "give a number above 0 and at most 1000"));
+        return Err(Error::setting(Setting::Exaggeration, what, "give a number above 0 and at most 1000"));
     }
-    for (flag, metres) in [("--cell", options.cell), ("--resample", options.resample)] {
+    for (setting, metres) in [(Setting::Cell, options.cell), (Setting::Resample, options.resample)] {
         if let Some(metres) = metres.filter(|metres| !CELLS.contains(metres)) {
             let what = format!("{metres} is no size of a cell");
-            return Err(Error::flag(flag, what, "give metres, from 0.001 to 1000000"));
+            return Err(Error::setting(setting, what, "give metres, from 0.001 to 1000000"));
         }
     }
     if let (Some(encoding), Some(_)) = (options.encoding.filter(|encoding| encoding.is_picture()), options.band) {
         let what = format!("{} takes the three bands of a picture, not one", encoding.name());
-        return Err(Error::flag("--encoding", what, "leave out --band or --encoding"));
+        return Err(Error::setting(Setting::Encoding, what, "leave out --band or --encoding"));
     }
     let Some([west, south, east, north]) = options.crop else { return Ok(()) };
     let finite = [west, south, east, north].iter().all(|edge| edge.is_finite());
@@ -229,5 +229,5 @@ fn check_options(options: &ReadOptions) -> Result<()> {
         return Ok(());
     }
     let what = format!("{west},{south},{east},{north} is no rectangle");
-    Err(Error::flag("--crop", what, "give west,south,east,north with west < east and south < north"))
+    Err(Error::setting(Setting::Crop, what, "give west,south,east,north with west < east and south < north"))
 }
