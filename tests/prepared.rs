@@ -8,7 +8,8 @@ use std::thread;
 
 use glam::DVec3;
 use hachure::cache::Cache;
-use hachure::dem::{Dem, ReadOptions, read, write::write};
+use hachure::dem::Dem;
+use hachure::geo::{ReadOptions, read, write};
 use hachure::plan::{Border, Detail, Method, Plan};
 use hachure::render::Renderer;
 use hachure::surface::lattice::CELL_STEPS;
