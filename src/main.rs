@@ -3,10 +3,7 @@
 use std::process::ExitCode;
 
 use clap::Parser;
-use hachure::cli::{Arguments, memory, threads};
-
-/// Exit code for "try again": here, ended by a signal.
-const TRY_AGAIN: i32 = 75;
+use hachure::cli::{Arguments, memory, threads, words};
 
 /// Says in a line that memory has ended.
 #[global_allocator]
@@ -20,7 +17,7 @@ fn main() -> ExitCode {
     let handled = ctrlc::set_handler(|| {
         hachure::files::discard_all();
         // SAFETY: it ends the process and touches nothing. Destructors of drivers would run while their threads draw.
-        unsafe { libc::_exit(TRY_AGAIN) }
+        unsafe { libc::_exit(words::TRY_AGAIN.into()) }
     });
     if let Err(error) = handled {
         talk.warn(&format!("a signal may leave temporary files behind ({error})"));
@@ -29,7 +26,7 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             talk.error(&error);
-            ExitCode::from(error.exit_code())
+            ExitCode::from(words::exit_code(&error))
         }
     }
 }

@@ -6,7 +6,7 @@ use std::cell::{Ref, RefCell};
 use std::time::Instant;
 
 use crate::dem::Dem;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Setting};
 use crate::gpu::buffers::Room;
 use crate::gpu::clock::Timer;
 use crate::gpu::sizes::rim_fits;
@@ -16,6 +16,7 @@ use crate::gpu::work::Work;
 use crate::gpu::{Buffers, CameraUniform, Clock, Extent, Gpu};
 use crate::gpu::{border, facing, project, rasterize, seam, tessellate};
 use crate::ink::{InkRaster, Marks, marks};
+use crate::message;
 use crate::plan::left_out::{LeftOut, left_out};
 use crate::plan::{Batch, Border, Detail, Method, Piece, Pieces, Plan, Thrift, Visibility, batches, detail};
 use crate::surface::rim::{RimEdge, rim, rim_length};
@@ -151,7 +152,7 @@ impl<'a> Renderer<'a> {
     /// Draws a frame to its mask, piece by piece, and waits for it.
     ///
     /// # Errors
-    /// Whatever the driver reports; [`Error::Flag`] for an eye out of reach or a camera of another page size;
+    /// Whatever the driver reports; [`Error::Setting`] for an eye out of reach or a camera of another page size;
     /// [`Error::Input`] where samples cannot be read, or their files have changed: see [`Dem::check`](crate::dem::Dem::check).
     pub fn frame(&self, camera: &Camera) -> Result<()> {
         self.look(camera)?;
@@ -231,16 +232,14 @@ impl<'a> Renderer<'a> {
     /// other means. Chunks that cannot appear keep what they had, zeros at first.
     ///
     /// # Errors
-    /// [`Error::Limit`] when the scene has several batches, which share one vertex buffer; [`Error::Flag`] for an eye
+    /// [`Error::Limit`] when the scene has several batches, which share one vertex buffer; [`Error::Setting`] for an eye
     /// out of reach.
     pub fn record_vertices(&self, camera: &Camera, encoder: &mut wgpu::CommandEncoder) -> Result<()> {
         self.look(camera)?;
         let loaded = self.loaded.borrow();
         let ([_], [vertices, seams, _, projection, ..]) = (loaded.batches.as_slice(), &loaded.stages.per_batch) else {
-            return Err(Error::Limit {
-                what: format!("the vertices take {} batches, one can be drawn", loaded.batches.len()),
-                remedy: "use a lower --level or a --crop".into(),
-            });
+            let what = format!("the vertices take {} batches, one can be drawn", loaded.batches.len());
+            return Err(Error::limit(what, message!["use a lower ", Setting::Level, " or a ", Setting::Crop]));
         };
         loaded.buffers.write_camera(self.gpu, &self.camera_uniform(&loaded, camera)?)?;
         let fresh = loaded.buffers.fresh();
@@ -262,10 +261,10 @@ impl<'a> Renderer<'a> {
         let mut pieces = self.pieces.iter();
         match (pieces.next(), pieces.len()) {
             (Some(piece), 0) => self.read_piece(piece),
-            (_, more) => Err(Error::Limit {
-                what: format!("the page takes {} pieces, one can be read", more + 1),
-                remedy: "draw it piece by piece, or use a smaller --size".into(),
-            }),
+            (_, more) => {
+                let what = format!("the page takes {} pieces, one can be read", more + 1);
+                Err(Error::limit(what, message!["draw it piece by piece, or use a smaller ", Setting::Size]))
+            }
         }
     }
 
@@ -279,7 +278,7 @@ impl<'a> Renderer<'a> {
         let counts = self.gpu.read(buffers.get("counts")?, size_of::<Counts>() as u64)?;
         let counts: Counts = bytemuck::pod_read_unaligned(&counts);
         if counts.orphans > 0 {
-            return Err(Error::Gpu { what: format!("{} pixels have a depth and no facet", counts.orphans) });
+            return Err(Error::mistake(format!("{} pixels have a depth and no facet", counts.orphans)));
         }
         if counts.cut_short > 0 {
             return Err(Error::Gpu { what: format!("the driver cut {} walks short", counts.cut_short) });
@@ -365,7 +364,7 @@ impl<'a> Renderer<'a> {
             let [width, height] = self.pieces.page();
             let what =
                 format!("the camera has {}x{} pixels, the renderer {width}x{height}", camera.width, camera.height);
-            return Err(Error::flag("--size", what, "make a renderer for this size"));
+            return Err(Error::setting(Setting::Size, what, "make a renderer for this size"));
         }
         let mut loaded = self.loaded.borrow_mut();
         if let Detail::Adaptive { error_px } = self.plan.detail {

@@ -10,6 +10,7 @@ use std::time::{Duration, Instant, SystemTime};
 use gdal::raster::Buffer;
 use gdal::{DriverManager, Metadata};
 use hachure::cache::{Cache, Hearing, Kept, Key, Kind, Sheet};
+use hachure::cli::words::told;
 use hachure::dem::Dem;
 use hachure::geo::{ReadOptions, read};
 use tempfile::TempDir;
@@ -102,7 +103,7 @@ fn key(number: u128) -> Key {
 /// Gets `number` with 1000 bytes of it, and what was warned of; `made` counts how often they are made.
 fn get(cache: &Cache, number: u128, made: &AtomicUsize, slow: Duration) -> (Vec<u8>, Vec<String>) {
     let warnings = std::cell::RefCell::new(Vec::new());
-    let hearing = Hearing { warn: &|words| warnings.borrow_mut().push(words.to_owned()), progress: &|_| () };
+    let hearing = Hearing { warn: &|message| warnings.borrow_mut().push(told(message)), progress: &|_| () };
     let recall = |mut kept: Kept| {
         let mut bytes = vec![0; kept.bytes as usize];
         std::io::Read::read_exact(&mut kept.file, &mut bytes)?;

@@ -1,6 +1,7 @@
 //! What cannot be drawn is refused with what, where and remedy, before anything is allocated.
 
 use glam::DVec2;
+use hachure::cli::words::{exit_code, line};
 use hachure::dem::Dem;
 use hachure::error::{Error, Result};
 use hachure::gpu::{AdapterChoice, CameraUniform, Gpu, Int64};
@@ -16,7 +17,7 @@ use crate::scenes::level;
 /// The error of a call that must fail, with the words it must contain.
 fn refused<T>(outcome: Result<T>, words: &[&str]) -> Error {
     let Err(error) = outcome else { panic!("this must be refused: {words:?}") };
-    let line = error.to_string();
+    let line = line(&error);
     assert!(!line.contains('\n'), "one line: {line}");
     words.iter().for_each(|word| assert!(line.contains(word), "`{word}` is missing in: {line}"));
     error
@@ -32,7 +33,7 @@ fn an_adapter_of_no_name_is_refused_with_those_there_are() {
     let choice = AdapterChoice::Named("no such".into());
     let error = refused(Gpu::open(&choice, Int64::IfPresent), &["no such", "there is: ", there]);
     assert!(matches!(error, Error::NoAdapter { .. }));
-    assert_eq!(error.exit_code(), 1);
+    assert_eq!(exit_code(&error), 1);
 }
 
 #[test]
@@ -90,8 +91,8 @@ fn an_eye_out_of_reach_is_wrong_usage() {
     for eye in [near.eye * 1e6, near.eye.with_x(f64::NAN), near.eye.with_y(f64::INFINITY)] {
         let far = hachure::view::Camera { eye, ..near };
         let error = refused(renderer.frame(&far), &["--eye", "million cells", "CRS"]);
-        assert!(matches!(error, Error::Flag { .. }));
-        assert_eq!(error.exit_code(), 2);
+        assert!(matches!(error, Error::Setting { .. }));
+        assert_eq!(exit_code(&error), 2);
         assert!(CameraUniform::new(scene.dem(), &far).is_err());
     }
 }

@@ -1,6 +1,7 @@
 //! Large pages: drawn in pieces, a page has the same bits as in one piece.
 
 use glam::{DVec2, DVec3};
+use hachure::cli::words::line;
 use hachure::dem::Dem;
 use hachure::gpu::Gpu;
 use hachure::ink::{Marks, Pixel};
@@ -232,7 +233,7 @@ fn only_pages_beyond_a_limit_are_cut() {
     assert_eq!([[1920, 1080], [4096, 4096], [LONGEST_PIECE, 1024]].map(count), [1; 3]);
     assert!(count([4096, 4097]) > 1 && count([LONGEST_PIECE + 1, 1]) > 1);
     assert!(Pieces::from([LARGEST_PAGE; 2]).check().is_ok());
-    let line = Pieces::from([LARGEST_PAGE + 1, 1]).check().expect_err("too long").to_string();
+    let line = line(&Pieces::from([LARGEST_PAGE + 1, 1]).check().expect_err("too long"));
     assert!(line.contains("65537x1") && line.contains("--size"), "{line}");
     for page in [[LARGEST_PAGE; 2], [32_768, 32_768], [40_000, 8]] {
         assert!(hachure::gpu::sizes::page_fits(Pieces::from(page).largest()).is_ok());

@@ -8,7 +8,9 @@ use std::thread;
 
 use glam::DVec3;
 use hachure::cache::Cache;
+use hachure::cli::words::told;
 use hachure::dem::Dem;
+use hachure::error::Message;
 use hachure::geo::{ReadOptions, read, write};
 use hachure::plan::{Border, Detail, Method, Plan};
 use hachure::render::Renderer;
@@ -100,7 +102,7 @@ impl Place {
     /// The same with another exaggeration.
     fn prepared_times(&self, memory: u64, exaggeration: f64) -> (Surface, Vec<String>) {
         let surface = Surface::new(exaggerated(&self.dem(), memory, exaggeration));
-        let warn = |words: &str| self.said.borrow_mut().push(words.to_owned());
+        let warn = |message: &Message| self.said.borrow_mut().push(told(message));
         self.cache().prepare(&surface, &warn, &|_| ()).expect("samples");
         (surface, self.said.take())
     }
@@ -251,7 +253,7 @@ fn damaged_blocks_are_noticed_when_they_are_read() {
     assert!(!surface.dem().has_damaged_overviews());
     assert!(frames(&surface) == expected, "damaged samples are drawn");
     assert!(surface.dem().has_damaged_overviews(), "frames do not look at them");
-    place.cache().discard_damaged(surface.dem(), &|words| place.said.borrow_mut().push(words.to_owned()));
+    place.cache().discard_damaged(surface.dem(), &|message| place.said.borrow_mut().push(told(message)));
     assert_eq!(place.said.take(), ["what was kept of the DEM is damaged: it is made anew next time"]);
     assert_eq!(place.kept(), [bounds]);
     let (surface, said) = place.prepared(SMALL);

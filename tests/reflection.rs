@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::mem::offset_of;
 
+use hachure::cli::words::line;
 use hachure::gpu::buffers::Room;
 use hachure::gpu::pass::reflect;
 use hachure::gpu::sizes::{BLOCK, LARGEST_BINDING, fits, written};
@@ -248,7 +249,7 @@ fn every_binding_fits_at_every_level() {
         assert!(of("queue") >= 4 + chunks.min(u64::from(BATCH_CHUNKS)) * u64::from(lattice::CHUNK_FACETS) * 4);
     }
     assert!(fits("heights", LARGEST_BINDING).is_ok());
-    let line = fits("heights", LARGEST_BINDING + 1).expect_err("a byte too many").to_string();
+    let line = line(&fits("heights", LARGEST_BINDING + 1).expect_err("a byte too many"));
     assert!(line.contains("129 MiB of heights, a device binds 128; use --level auto or a --crop"), "{line}");
     assert!(written(Room { chunks: 1, nodes: 1, tiles: 1, patched: 0 }, [16_384, 1025]).is_err());
 }

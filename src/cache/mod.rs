@@ -12,7 +12,8 @@ pub mod shelf;
 
 use std::path::{Path, PathBuf};
 
-use crate::error::{Error, Result, shown};
+use crate::error::{Error, Message, Result, Setting, shown};
+use crate::message;
 
 pub use entry::{Kept, Sheet};
 pub use shelf::{Cleared, Shown};
@@ -53,7 +54,7 @@ pub struct Cache {
 #[derive(Clone, Copy)]
 pub struct Hearing<'a> {
     /// Something the user should know: a damaged file, a folder that cannot be written. They cost time, nothing else.
-    pub warn: &'a dyn Fn(&str),
+    pub warn: &'a dyn Fn(&Message),
     /// The share of the making that is done, here or by another process.
     pub progress: &'a dyn Fn(f64),
 }
@@ -125,7 +126,7 @@ impl Cache {
                 Ok(None) => {}
                 Err(None) if damaged => {}
                 Err(None) => {
-                    (hearing.warn)(&format!("{} is damaged: it is made anew", key.kind.words[1]));
+                    (hearing.warn)(&format!("{} is damaged: it is made anew", key.kind.words[1]).into());
                     damaged = true;
                 }
                 Err(Some(what)) => {
@@ -179,17 +180,17 @@ impl Cache {
 }
 
 /// That something was made and could not be kept.
-pub fn not_kept(key: &Key, why: &Error) -> String {
+pub fn not_kept(key: &Key, why: &Error) -> Message {
     let why = match why {
         Error::Output { path, what } => format!("{}: {what}", shown(path)),
         other => other.to_string(),
     };
-    format!("{} is not cached: {why}; give another folder with --cache DIR", key.kind.words[0])
+    let what = format!("{} is not cached: {why}; give another folder with ", key.kind.words[0]);
+    message![what, Setting::Cache.at("DIR")]
 }
 
-fn strange(path: &Path, what: &str) -> String {
-    format!(
-        "{}: {what} stands in the place of a cached file and is not used; remove it, or give --cache DIR",
-        shown(path)
-    )
+fn strange(path: &Path, what: &str) -> Message {
+    let what =
+        format!("{}: {what} stands in the place of a cached file and is not used; remove it, or give ", shown(path));
+    message![what, Setting::Cache.at("DIR")]
 }

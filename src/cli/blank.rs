@@ -9,6 +9,7 @@ use super::talk::Talk;
 use super::values::{LevelChoice, Size};
 use super::viewpoint::{FOV, View, ViewArguments};
 use crate::error::Error;
+use crate::message;
 use crate::render::{Page, Renderer};
 use crate::surface::Surface;
 use crate::view::{Camera, direction};
@@ -63,7 +64,7 @@ pub fn where_it_lies(surface: &Surface, view: &View) -> (Option<(f64, f64)>, Str
 pub fn with_place(error: Error, surface: &Surface, view: &View) -> Error {
     match error {
         Error::Scene { what, remedy } => {
-            Error::Scene { what: format!("{what} ({})", where_it_lies(surface, view).1), remedy }
+            Error::Scene { what: message![what, format!(" ({})", where_it_lies(surface, view).1)], remedy }
         }
         other => other,
     }

@@ -7,6 +7,7 @@ use std::time::SystemTime;
 use super::talk::Talk;
 use super::terrain::{TerrainArguments, warn_of_survey};
 use super::values;
+use super::words::told;
 use crate::cache::{Cache, Cleared, SIZE, Shown};
 use crate::error::{Error, Result, shown};
 use crate::surface::Surface;
@@ -126,13 +127,15 @@ fn make(terrain: &TerrainArguments, cache: &Cache, talk: &Talk) -> Result<()> {
     if cache.folder().is_none() || !on_disk {
         return talk.say(&format!("{label}: nothing to keep, it or the cache is not on the disk"));
     }
-    cache.prepare(&surface, &|words| talk.warn(words), &|done| talk.progress("looking at every sample", done))?;
+    cache.prepare(&surface, &|message| talk.warn(&told(message)), &|done| {
+        talk.progress("looking at every sample", done)
+    })?;
     talk.progress("looking at every sample", 1.0);
     warn_of_survey(surface.dem(), talk)?;
     if !cache.keeps(surface.dem()) {
         let folder = cache.folder().map(shown).unwrap_or_default();
         let what = format!("{label}: what was made is not kept in {folder}");
-        return Err(Error::Limit { what, remedy: "give a folder that can be written, with --cache DIR".into() });
+        return Err(Error::limit(what, "give a folder that can be written, with --cache DIR"));
     }
     talk.say(&format!("{label}: ready"))
 }

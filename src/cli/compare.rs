@@ -12,9 +12,10 @@ use super::terrain::TerrainArguments;
 use super::values::{self, LevelChoice, Size};
 use super::viewpoint::{View, ViewArguments};
 use super::views::{self, NamedView};
+use super::words::{flag, told};
 use super::{blank, cells};
 use crate::cache::Cache;
-use crate::error::{Error, Result, shown};
+use crate::error::{Error, Result, Setting, shown};
 use crate::files::Taken;
 use crate::geo::Reading;
 use crate::gpu::sizes::page_fits;
@@ -117,9 +118,9 @@ struct Job {
 /// Whatever went wrong; no page stands in the folder then.
 pub fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
     let sizes = arguments.sizes();
-    each_once("--sizes", sizes.iter().map(|size| format!("{}x{}", size.width, size.height)))?;
-    each_once("--levels", arguments.levels.iter().map(LevelChoice::to_string))?;
-    each_once("--methods", arguments.methods.iter().map(|(name, _)| (*name).to_owned()))?;
+    each_once(Setting::Sizes, sizes.iter().map(|size| format!("{}x{}", size.width, size.height)))?;
+    each_once(Setting::Levels, arguments.levels.iter().map(LevelChoice::to_string))?;
+    each_once(Setting::Methods, arguments.methods.iter().map(|(name, _)| (*name).to_owned()))?;
     sizes.iter().try_for_each(|size| page_fits([size.width, size.height]))?;
     arguments.view.check()?;
     let jobs = arguments.jobs(talk)?;
@@ -137,7 +138,7 @@ pub fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
     let (done, gpu) = (Cell::new(0.0), arguments.device.open_with(extra, talk)?);
     let hearing = Hearing {
         stage: &|stage, share| talk.progress(stage, (done.get() + share) / scenes_asked),
-        warn: &|words| talk.warn(words),
+        warn: &|message| talk.warn(&told(message)),
         say: &|line| talk.say(line),
         detail: &|line| talk.detail(line),
     };
@@ -206,14 +207,14 @@ impl CompareArguments {
             let view = NamedView { name, dem: PathBuf::new(), view: self.view.clone() };
             return Ok(vec![Job { files: dems.clone(), views: vec![view] }]);
         };
-        if let Some(flag) = self.view.flag() {
-            return Err(Error::flag(
-                "--views",
-                format!("the file gives the views, so does {flag}"),
+        if let Some(given) = self.view.given() {
+            return Err(Error::setting(
+                Setting::Views,
+                format!("the file gives the views, so does {}", flag(given)),
                 "leave out one of the two",
             ));
         }
-        each_once("DEM", dems.iter().filter_map(|dem| Some(dem.file_name()?.to_string_lossy().into_owned())))?;
+        each_once(Setting::Dem, dems.iter().filter_map(|dem| Some(dem.file_name()?.to_string_lossy().into_owned())))?;
         let mut views = views::read(path, self.view.fov(), self.view.size)?;
         let mut jobs = Vec::new();
         for dem in dems {
@@ -264,11 +265,11 @@ impl CompareArguments {
 }
 
 /// Files are named after what is compared.
-fn each_once(flag: &'static str, names: impl Iterator<Item = String>) -> Result<()> {
+fn each_once(setting: Setting, names: impl Iterator<Item = String>) -> Result<()> {
     let mut seen = HashSet::new();
     for name in names {
         if !seen.insert(name.clone()) {
-            return Err(Error::flag(flag, format!("{name} is there twice"), "name each once"));
+            return Err(Error::setting(setting, format!("{name} is there twice"), "name each once"));
         }
     }
     Ok(())
@@ -280,7 +281,7 @@ fn scene_name(view: &str, size: Size, sizes: &[Size]) -> String {
 
 fn contents(results: &Results, pictures: &[Picture]) -> Result<Contents> {
     let plot = error_time_svg(results)?;
-    let failed = |e: std::io::Error| Error::Report { what: e.to_string() };
+    let failed = |e: std::io::Error| Error::mistake(e.to_string());
     let mut csv = Vec::new();
     write_csv(results, &mut csv).map_err(failed)?;
     let mut json = serde_json::to_vec_pretty(results).map_err(|e| failed(e.into()))?;

@@ -16,9 +16,10 @@ use super::talk::Talk;
 use super::terrain::{TerrainArguments, warn_of_survey};
 use super::values::{self, LevelChoice};
 use super::viewpoint::{View, ViewArguments, ViewReport};
+use super::words::told;
 use super::{blank, cells};
 use crate::dem::Dem;
-use crate::error::{Error, Result, shown};
+use crate::error::{Error, Result, Setting, shown};
 use crate::files::Taken;
 use crate::gpu::Gpu;
 use crate::ink::{self, Style};
@@ -169,7 +170,7 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     let surface = Surface::new(dem);
     let cache = arguments.cache.cache();
     let prepare = || {
-        cache.prepare(&surface, &|words| talk.warn(words), &|done| {
+        cache.prepare(&surface, &|message| talk.warn(&told(message)), &|done| {
             talk.progress("looking at every sample, once for this file", 0.1 + 0.1 * done);
         })
     };
@@ -195,7 +196,7 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     talk.progress("drawing", 0.3);
     let renderer = Renderer::new(&gpu, &surface, Plan::new(arguments.detail()?, method, arguments.border), size)?;
     let page = renderer.page(&view.camera, |share| talk.progress("drawing", 0.3 + 0.3 * share))?;
-    cache.discard_damaged(surface.dem(), &|words| talk.warn(words));
+    cache.discard_damaged(surface.dem(), &|message| talk.warn(&told(message)));
     let drawing = ink::draw(&page.marks, &Style::for_page(view.camera.width));
     let report = || {
         talk.progress("timing more frames", 0.6);
@@ -232,17 +233,17 @@ impl DrawArguments {
 
     fn detail(&self) -> Result<Detail> {
         if self.error_px.is_some() && self.level != LevelChoice::Auto {
-            return Err(Error::flag("--error-px", "goes with --level auto only", "leave one of them out"));
+            return Err(Error::setting(Setting::ErrorPx, "goes with --level auto only", "leave one of them out"));
         }
         Ok(self.level.detail(self.error_px.unwrap_or(ERROR_PX)))
     }
 
     fn method(&self) -> Result<Method> {
         if self.wide && self.method != MethodName::TowardAway {
-            return Err(Error::flag("--wide", "goes with toward-away only", "add --method toward-away"));
+            return Err(Error::setting(Setting::Wide, "goes with toward-away only", "add --method toward-away"));
         }
         if self.share.is_some() && self.method != MethodName::Adjacency {
-            return Err(Error::flag("--share", "goes with adjacency only", "add --method adjacency"));
+            return Err(Error::setting(Setting::Share, "goes with adjacency only", "add --method adjacency"));
         }
         Ok(match self.method {
             MethodName::Walk => Method::Walk,

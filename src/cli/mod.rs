@@ -17,6 +17,7 @@ pub mod threads;
 pub mod values;
 pub mod viewpoint;
 pub mod views;
+pub mod words;
 
 use clap::{Parser, Subcommand};
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use crate::error::{Error, Result, shown};
+use crate::error::{Error, Result, Setting, shown};
 use crate::files::{Output, Taken};
 use crate::ink;
 use crate::render::Page;
@@ -45,31 +45,35 @@ impl OutputArguments {
     /// Checks what can be known of the names alone.
     ///
     /// # Errors
-    /// [`Error::Flag`] for a name that cannot be meant.
+    /// [`Error::Setting`] for a name that cannot be meant.
     pub fn check(&self) -> Result<()> {
-        wants_png("--output", &self.output)?;
-        self.mask.as_ref().map_or(Ok(()), |mask| wants_png("--mask", mask))
+        wants_png(Setting::Output, &self.output)?;
+        self.mask.as_ref().map_or(Ok(()), |mask| wants_png(Setting::Mask, mask))
     }
 
     /// Opens them all. None may be one of the files `taken`, or another output.
     ///
     /// # Errors
-    /// [`Error::Flag`] for a name that is taken, [`Error::Output`] where a file cannot be written.
+    /// [`Error::Setting`] for a name that is taken, [`Error::Output`] where a file cannot be written.
     pub fn open(&self, mut taken: Taken) -> Result<Outputs> {
-        let named = [("--output", Some(&self.output)), ("--mask", self.mask.as_ref()), ("--json", self.json.as_ref())];
+        let named = [
+            (Setting::Output, Some(&self.output)),
+            (Setting::Mask, self.mask.as_ref()),
+            (Setting::Json, self.json.as_ref()),
+        ];
         let mut has_stdout = false;
         // All names are compared before any file is opened.
-        for (flag, path) in named.into_iter().filter_map(|(flag, path)| Some((flag, path?))) {
+        for (setting, path) in named.into_iter().filter_map(|(setting, path)| Some((setting, path?))) {
             match is_stdout(path) {
                 true if has_stdout => {
                     let what = "standard output is another output already";
-                    return Err(Error::flag(flag, what, "give each file a name of its own"));
+                    return Err(Error::setting(setting, what, "give each file a name of its own"));
                 }
                 true => {
                     has_stdout = true;
-                    taken.take_stdout(flag)?;
+                    taken.take_stdout(setting)?;
                 }
-                false => taken.take(flag, path)?,
+                false => taken.take(setting, path)?,
             }
         }
         let open = |path: &Path| if is_stdout(path) { Ok(Output::stdout()) } else { Output::create(path) };
@@ -121,11 +125,11 @@ fn is_stdout(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-fn wants_png(flag: &'static str, path: &Path) -> Result<()> {
+fn wants_png(setting: Setting, path: &Path) -> Result<()> {
     if is_stdout(path) {
         let remedy = "send it on with `> picture.png` or `| program`, or name a .png";
         return if stdout().is_terminal() {
-            Err(Error::flag(flag, "standard output is a terminal", remedy))
+            Err(Error::setting(setting, "standard output is a terminal", remedy))
         } else {
             Ok(())
         };
@@ -133,5 +137,5 @@ fn wants_png(flag: &'static str, path: &Path) -> Result<()> {
     if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("png")) {
         return Ok(());
     }
-    Err(Error::flag(flag, format!("{} does not end in .png", shown(path)), "name it .png"))
+    Err(Error::setting(setting, format!("{} does not end in .png", shown(path)), "name it .png"))
 }

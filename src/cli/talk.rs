@@ -19,6 +19,7 @@ use std::time::{Duration, Instant};
 use clap::builder::Styles;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
+use super::words;
 use crate::error::{Error, Result, plain};
 use crate::files::Output;
 
@@ -134,7 +135,7 @@ impl Talk {
     pub fn error(&self, error: &Error) {
         self.finish_bar();
         let red = STYLES.get_error();
-        self.aside(&format!("{red}error:{red:#} {}", plain(error.to_string())));
+        self.aside(&format!("{red}error:{red:#} {}", plain(words::line(error))));
     }
 
     /// How far a stage of the work has come, from 0 to 1, which ends it. A bar appears on a terminal once the work has

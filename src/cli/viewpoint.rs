@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::talk::Talk;
 use super::values::{self, Height, LookAt, Size, Standpoint};
 use crate::dem::{Crs, Georeference};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Setting};
 use crate::surface::{Level, Surface};
 use crate::view::{Camera, Fixed, choose, direction};
 
@@ -114,15 +114,15 @@ impl ViewArguments {
         Self { eye, lonlat, look_at: None, crs: None, azimuth, altitude, fov, size }
     }
 
-    /// The flag that says where the eye is or looks, if one is given.
-    pub fn flag(&self) -> Option<&'static str> {
+    /// What says where the eye is or looks, if anything is given.
+    pub fn given(&self) -> Option<Setting> {
         let given = [
-            ("--eye", self.eye.is_some()),
-            ("--lonlat", self.lonlat.is_some()),
-            ("--azimuth", self.azimuth.is_some()),
-            ("--altitude", self.altitude.is_some()),
+            (Setting::Eye, self.eye.is_some()),
+            (Setting::LonLat, self.lonlat.is_some()),
+            (Setting::Azimuth, self.azimuth.is_some()),
+            (Setting::Altitude, self.altitude.is_some()),
         ];
-        given.into_iter().find(|(_, given)| *given).map(|(flag, _)| flag)
+        given.into_iter().find(|(_, given)| *given).map(|(setting, _)| setting)
     }
 
     /// Horizontal field of view, degrees.
@@ -133,11 +133,11 @@ impl ViewArguments {
     /// Checks what can be checked before the DEM is read.
     ///
     /// # Errors
-    /// [`Error::Flag`].
+    /// [`Error::Setting`].
     pub fn check(&self) -> Result<()> {
         if self.crs.is_some() && self.eye.is_none() && self.look_at.is_none() {
-            return Err(Error::flag(
-                "--crs",
+            return Err(Error::setting(
+                Setting::Crs,
                 "says in which CRS --eye or --look-at is given",
                 "add --eye or leave it out",
             ));
@@ -148,14 +148,14 @@ impl ViewArguments {
     /// The view as asked, or as chosen; `level` is that of the drawn surface, for heights above it.
     ///
     /// # Errors
-    /// [`Error::Flag`] for a place that the DEM's map does not have, or without ground where a height above it is asked.
+    /// [`Error::Setting`] for a place that the DEM's map does not have, or without ground where a height above it is asked.
     pub fn view(&self, surface: &Surface, level: Level) -> Result<View> {
         let georeference = surface.dem().georeference();
         let place = self.standpoint(georeference)?;
         let eye = match (place, self.eye.or(self.lonlat)) {
             (Some((world, _)), Some(standpoint)) => {
-                let flag = if self.eye.is_some() { "--eye" } else { "--lonlat" };
-                Some(above(surface, level, world, standpoint.height, flag)?)
+                let setting = if self.eye.is_some() { Setting::Eye } else { Setting::LonLat };
+                Some(above(surface, level, world, standpoint.height, setting)?)
             }
             _ => None,
         };
@@ -163,7 +163,11 @@ impl ViewArguments {
         if let (Some(eye), Some(look_at)) = (eye, self.look_at) {
             let towards = self.towards(surface, level, look_at)?;
             let (azimuth, altitude) = direction(towards - eye).ok_or_else(|| {
-                Error::flag("--look-at", "is where the eye stands", "give another place, or --azimuth and --altitude")
+                Error::setting(
+                    Setting::LookAt,
+                    "is where the eye stands",
+                    "give another place, or --azimuth and --altitude",
+                )
             })?;
             (fixed.azimuth, fixed.altitude) = (Some(azimuth), Some(altitude));
         }
@@ -185,22 +189,22 @@ impl ViewArguments {
     fn standpoint(&self, georeference: &Georeference) -> Result<Option<(DVec2, DVec2)>> {
         if let Some(eye) = self.eye {
             let crs = self.crs.map(Crs::from_epsg).transpose()?;
-            let world = world(georeference, crs.as_ref(), eye.place, "--eye")?;
+            let world = world(georeference, crs.as_ref(), eye.place, Setting::Eye)?;
             return match crs {
                 None => Ok(Some((world, eye.place))),
                 Some(_) => settled(georeference, world).map(Some),
             };
         }
         let Some(eye) = self.lonlat else { return Ok(None) };
-        let world = world(georeference, Some(&Crs::lonlat()?), eye.place, "--lonlat")?;
+        let world = world(georeference, Some(&Crs::lonlat()?), eye.place, Setting::LonLat)?;
         settled(georeference, world).map(Some)
     }
 
     fn towards(&self, surface: &Surface, level: Level, look_at: LookAt) -> Result<DVec3> {
         let crs = self.crs.map(Crs::from_epsg).transpose()?;
-        let place = world(surface.dem().georeference(), crs.as_ref(), look_at.place, "--look-at")?;
+        let place = world(surface.dem().georeference(), crs.as_ref(), look_at.place, Setting::LookAt)?;
         let height = look_at.height.map_or(Height::AboveGround(0.0), Height::Absolute);
-        above(surface, level, place, height, "--look-at")
+        above(surface, level, place, height, Setting::LookAt)
     }
 }
 
@@ -270,15 +274,15 @@ impl View {
 }
 
 /// World place of one given in `crs`, else in the file's own.
-fn world(georeference: &Georeference, crs: Option<&Crs>, place: DVec2, flag: &'static str) -> Result<DVec2> {
+fn world(georeference: &Georeference, crs: Option<&Crs>, place: DVec2, setting: Setting) -> Result<DVec2> {
     georeference.world_place(crs.unwrap_or(georeference.file()), place).ok_or_else(|| {
         if georeference.world().wkt().is_empty() {
             let what = "the DEM names no coordinate system, so other coordinates mean nothing in it";
-            return Error::flag(flag, what, "give --eye E,N in the DEM's own coordinates, without --crs");
+            return Error::setting(setting, what, "give --eye E,N in the DEM's own coordinates, without --crs");
         }
         let given = crs.unwrap_or(georeference.file());
         let what = format!("there is no place {},{} in {}, {}", place.x, place.y, given.label(), given.units());
-        Error::flag(flag, what, "check the order, x first, or name another system with --crs EPSG:N")
+        Error::setting(setting, what, "check the order, x first, or name another system with --crs EPSG:N")
     })
 }
 
@@ -294,17 +298,17 @@ fn settled(georeference: &Georeference, world: DVec2) -> Result<(DVec2, DVec2)> 
     let settled = place.and_then(|place| Some((georeference.world_place(file, place)?, place)));
     settled.ok_or_else(|| {
         let what = format!("there is no place {},{} m in the DEM's coordinate system", world.x, world.y);
-        Error::flag("--eye", what, "give a place on the map of the DEM")
+        Error::setting(Setting::Eye, what, "give a place on the map of the DEM")
     })
 }
 
 /// A map place at a height.
-fn above(surface: &Surface, level: Level, place: DVec2, height: Height, flag: &'static str) -> Result<DVec3> {
+fn above(surface: &Surface, level: Level, place: DVec2, height: Height, setting: Setting) -> Result<DVec3> {
     match height {
         Height::Absolute(z) => Ok(place.extend(z)),
         Height::AboveGround(h) => match surface.height_below(place, level) {
             Some(ground) => Ok(place.extend(to_millimetre(ground, h))),
-            None => Err(no_ground(surface, place, flag)),
+            None => Err(no_ground(surface, place, setting)),
         },
     }
 }
@@ -316,14 +320,14 @@ fn to_millimetre(ground: f64, h: f64) -> f64 {
     if h >= 0.0 && rounded < ground { millimetres.ceil() / 1e3 } else { rounded }
 }
 
-fn no_ground(surface: &Surface, place: DVec2, flag: &'static str) -> Error {
+fn no_ground(surface: &Surface, place: DVec2, setting: Setting) -> Error {
     let georeference = surface.dem().georeference();
     let [west, south, east, north] = surface.dem().extent();
     let corner = |x, y| georeference.place_in(georeference.file(), DVec2::new(x, y)).unwrap_or(DVec2::new(x, y));
     let (low, high, at) = (corner(west, south), corner(east, north), corner(place.x, place.y));
-    let height = if flag == "--look-at" { "add a height Z" } else { "give a height without +" };
-    Error::flag(
-        flag,
+    let height = if setting == Setting::LookAt { "add a height Z" } else { "give a height without +" };
+    Error::setting(
+        setting,
         format!("there is no ground at {},{} {} of the DEM", at.x, at.y, georeference.file().units()),
         format!("{height}, or a place with data between {},{} and {},{}", low.x, low.y, high.x, high.y),
     )

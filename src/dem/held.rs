@@ -17,10 +17,10 @@ pub(super) fn not_held([columns, rows]: [usize; 2]) -> Error {
     let samples = columns as u64 * rows as u64;
     let more = held_bytes(samples).div_ceil(1 << 20);
     let memory = if samples <= MAX_SAMPLES as u64 { format!(", or give --memory {more}MiB") } else { String::new() };
-    Error::Limit {
-        what: format!("{columns} x {rows} = {samples} samples stay in their files, but here they must be in memory"),
-        remedy: format!("use --crop to take a part{memory}"),
-    }
+    Error::limit(
+        format!("{columns} x {rows} = {samples} samples stay in their files, but here they must be in memory"),
+        format!("use --crop to take a part{memory}"),
+    )
 }
 
 /// How the voids of a DEM of so many columns and rows are filled.

@@ -159,8 +159,9 @@ impl Dem {
                 "the DEM (W {west} S {south} E {east} N {north} m) has no surface: {voids} of its {} samples are void, \
                  and no three neighbours among the others span a facet",
                 self.columns() * self.rows()
-            ),
-            remedy: held::to_fill([self.columns(), self.rows()], self.is_filed()),
+            )
+            .into(),
+            remedy: held::to_fill([self.columns(), self.rows()], self.is_filed()).into(),
         })
     }
 

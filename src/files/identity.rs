@@ -11,7 +11,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::error::{Error, Result, shown};
+use crate::error::{Error, Result, Setting, shown};
 
 /// What a name means; equal for all names of one file.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
@@ -91,23 +91,23 @@ impl Taken {
         Self { names: files.into_iter().filter_map(known).collect() }
     }
 
-    /// Takes a name for the output that `flag` names.
+    /// Takes a name for the output that `setting` names.
     ///
     /// # Errors
-    /// [`Error::Flag`] where it is a file that is read, or another output.
-    pub fn take(&mut self, flag: &'static str, path: &Path) -> Result<()> {
-        Identity::of(path).map_or(Ok(()), |identity| self.take_as(flag, path, identity))
+    /// [`Error::Setting`] where it is a file that is read, or another output.
+    pub fn take(&mut self, setting: Setting, path: &Path) -> Result<()> {
+        Identity::of(path).map_or(Ok(()), |identity| self.take_as(setting, path, identity))
     }
 
-    /// Takes standard output, and the file that it goes to, for the output that `flag` names.
+    /// Takes standard output, and the file that it goes to, for the output that `setting` names.
     ///
     /// # Errors
     /// As [`Self::take`].
-    pub fn take_stdout(&mut self, flag: &'static str) -> Result<()> {
-        Identity::of_stdout().map_or(Ok(()), |identity| self.take_as(flag, Path::new("standard output"), identity))
+    pub fn take_stdout(&mut self, setting: Setting) -> Result<()> {
+        Identity::of_stdout().map_or(Ok(()), |identity| self.take_as(setting, Path::new("standard output"), identity))
     }
 
-    fn take_as(&mut self, flag: &'static str, path: &Path, identity: Identity) -> Result<()> {
+    fn take_as(&mut self, setting: Setting, path: &Path, identity: Identity) -> Result<()> {
         let what = match self.names.get(&identity) {
             None => {
                 self.names.insert(identity, (path.to_owned(), Use::Output));
@@ -122,6 +122,6 @@ impl Taken {
                 format!("{} is {}, another output already", shown(path), shown(other))
             }
         };
-        Err(Error::flag(flag, what, "give each file a name of its own"))
+        Err(Error::setting(setting, what, "give each file a name of its own"))
     }
 }

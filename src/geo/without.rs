@@ -85,5 +85,5 @@ pub fn write(_: &Path, _: [usize; 2], _: f64, _: impl Fn(usize) -> Vec<f32> + Sy
 }
 
 fn without(what: &str) -> Error {
-    Error::Limit { what: format!("{what}, {WITHOUT}"), remedy: REMEDY.into() }
+    Error::limit(format!("{what}, {WITHOUT}"), REMEDY)
 }

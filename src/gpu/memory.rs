@@ -1,6 +1,7 @@
 //! How much memory the system lets this process take, for drivers that say little where it ends.
 
-use crate::error::Error;
+use crate::error::{Error, Setting};
+use crate::message;
 
 /// Addresses that a software driver takes before it draws anything, bytes: with less, none of its adapters opens.
 const DRIVER: u64 = 384 << 20;
@@ -39,7 +40,7 @@ pub(super) fn too_little() -> Option<Error> {
     let left = left().filter(|left| *left < DRIVER)?;
     let (left, needed) = (left >> 20, DRIVER >> 20);
     let what = format!("{left} MiB of memory are left, a GPU driver needs {needed} MiB to start");
-    Some(Error::Limit { what, remedy: unlimited()? })
+    Some(Error::limit(what, unlimited()?))
 }
 
 /// The driver's failure in its `words`: for lack of memory, where it says so or little is left under a limit.
@@ -56,7 +57,8 @@ pub(super) fn failure(words: String) -> Error {
 
 fn short(what: String) -> Error {
     let room = unlimited().map_or_else(String::new, |unlimited| format!(", or {unlimited}"));
-    Error::Limit { what, remedy: format!("use a smaller --size, a lower --level or a --crop{room}") }
+    let remedy = message!["use a smaller ", Setting::Size, ", a lower ", Setting::Level, " or a ", Setting::Crop, room];
+    Error::limit(what, remedy)
 }
 
 /// How to get rid of the limit.

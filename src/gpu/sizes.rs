@@ -2,7 +2,8 @@
 
 use super::buffers::Room;
 use super::uniforms::{ChunkUniform, Counts};
-use crate::error::{Error, Result};
+use crate::error::{Error, Message, Result, Setting};
+use crate::message;
 use crate::plan::batches::{BATCH_CHUNKS, PART_CHUNKS};
 use crate::plan::cost::{PIXEL_BYTES, RIM_EDGE_BYTES, VERTEX_BYTES, WORD_BYTES};
 use crate::plan::pieces::{LARGEST_PIECE, LONGEST_PIECE};
@@ -24,7 +25,7 @@ const FACING: [&str; 2] = ["facing_0", "facing_1"];
 /// [`Error::Limit`] when it is larger than a binding or a dispatch.
 pub fn page_fits([width, height]: [u32; 2]) -> Result<()> {
     let pixels = u64::from(width) * u64::from(height);
-    let refused = |what: String| Err(Error::Limit { what, remedy: "use a smaller --size".into() });
+    let refused = |what: String| Err(Error::limit(what, message!["use a smaller ", Setting::Size]));
     if width.max(height) > LONGEST_PIECE {
         return refused(format!(
             "{width}x{height} is longer than the {LONGEST_PIECE} pixels that are drawn in one piece"
@@ -77,7 +78,7 @@ pub fn written(room: Room, [width, height]: [u32; 2]) -> Result<Vec<(&'static st
 /// # Errors
 /// [`Error::Limit`] when it cannot.
 pub fn rim_fits(edges: u64) -> Result<()> {
-    binds(edges * RIM_EDGE_BYTES, "border lines", "use --border off, or a --crop")
+    binds(edges * RIM_EDGE_BYTES, "border lines", message!["use ", Setting::Border.at("off"), ", or a ", Setting::Crop])
 }
 
 /// Whether so many words that tell voids from samples can be bound whole.
@@ -85,7 +86,7 @@ pub fn rim_fits(edges: u64) -> Result<()> {
 /// # Errors
 /// [`Error::Limit`] when they cannot.
 pub fn valid_fits(words: u64) -> Result<()> {
-    binds(words * WORD_BYTES, "void marks", "use a --crop")
+    binds(words * WORD_BYTES, "void marks", message!["use a ", Setting::Crop])
 }
 
 /// Whether a storage buffer can be bound whole.
@@ -93,19 +94,24 @@ pub fn valid_fits(words: u64) -> Result<()> {
 /// # Errors
 /// [`Error::Limit`] when it cannot.
 pub fn fits(name: &str, size: u64) -> Result<()> {
-    binds(size, name, "use --level auto or a --crop; with --level auto a larger --error-px too")
+    let remedy = message![
+        "use ",
+        Setting::Level.at("auto"),
+        " or a ",
+        Setting::Crop,
+        "; with ",
+        Setting::Level.at("auto"),
+        " a larger ",
+        Setting::ErrorPx,
+        " too"
+    ];
+    binds(size, name, remedy)
 }
 
-fn binds(size: u64, of: &str, remedy: &str) -> Result<()> {
+fn binds(size: u64, of: &str, remedy: Message) -> Result<()> {
     if size <= LARGEST_BINDING {
         return Ok(());
     }
-    Err(Error::Limit {
-        what: format!(
-            "this DEM needs {} MiB of {of}, a device binds {}",
-            size.div_ceil(1 << 20),
-            LARGEST_BINDING >> 20
-        ),
-        remedy: remedy.into(),
-    })
+    let [needed, most] = [size.div_ceil(1 << 20), LARGEST_BINDING >> 20];
+    Err(Error::limit(format!("this DEM needs {needed} MiB of {of}, a device binds {most}"), remedy))
 }

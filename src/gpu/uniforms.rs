@@ -4,7 +4,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3};
 
 use crate::dem::Dem;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Setting};
 use crate::plan::cost::{CHUNK_BYTES, RIM_EDGE_BYTES};
 use crate::plan::pieces::Rectangle;
 use crate::surface::pyramid::Relief;
@@ -149,7 +149,7 @@ impl CameraUniform {
     /// The camera relative to the grid, so that the GPU never sees a northing.
     ///
     /// # Errors
-    /// [`Error::Flag`] when the eye is farther from the DEM than f32 can count cells.
+    /// [`Error::Setting`] when the eye is farther from the DEM than f32 can count cells.
     pub fn new(dem: &Dem, camera: &Camera) -> Result<Self> {
         let place = dem.grid_place(camera.eye.truncate());
         let eye_cell = place.floor();
@@ -157,8 +157,8 @@ impl CameraUniform {
             let [west, south, east, north] = dem.extent();
             let (middle, file) = (DVec2::new(west + east, south + north) / 2.0, dem.georeference().file());
             let near = dem.georeference().place_in(file, middle).unwrap_or(middle);
-            return Err(Error::flag(
-                "--eye",
+            return Err(Error::setting(
+                Setting::Eye,
                 format!("{:.0},{:.0} is more than 4 million cells from the DEM", camera.eye.x, camera.eye.y),
                 format!("give an eye in the CRS of the DEM, near its middle at {},{}", near.x, near.y),
             ));

@@ -5,7 +5,8 @@
 //! [`Marks`](crate::ink::Marks) tell whether ink encloses a pixel. Places and rays are those of the whole page, so that
 //! no bit depends on the pieces. Does not handle: overlapping work; a facet in two pieces is drawn twice.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Setting};
+use crate::message;
 
 /// Pixels around a piece that are drawn with it.
 pub const HALO: u32 = 2;
@@ -81,10 +82,9 @@ impl Pieces {
         if width.max(height) <= LARGEST_PAGE {
             return Ok(());
         }
-        Err(Error::Limit {
-            what: format!("--size {width}x{height} is longer than the {LARGEST_PAGE} pixels a page side holds"),
-            remedy: "use a smaller --size".into(),
-        })
+        let holds = format!(" is longer than the {LARGEST_PAGE} pixels a page side holds");
+        let what = message![Setting::Size.at(format!("{width}x{height}")), holds];
+        Err(Error::limit(what, message!["use a smaller ", Setting::Size]))
     }
 }
 

@@ -13,8 +13,9 @@ use super::results::{Convergence, DrawnLevel, LevelOffset, Run, TruthReport};
 use super::trial::{Trial, line, moved, picture_names};
 use super::truths::Kept;
 use crate::cache::Cache;
-use crate::error::{Error, Result};
+use crate::error::{Error, Message, Result, Setting};
 use crate::gpu::Gpu;
+use crate::message;
 use crate::plan::{Border, Detail, Method, Plan, Share};
 use crate::surface::Level;
 use crate::truth::metrics::{FRAGMENT, Judge, Offsets};
@@ -62,7 +63,7 @@ pub struct Hearing<'a> {
     /// What is being done, and the share of the scene's work that is done, 0 to 1.
     pub stage: &'a dyn Fn(&str, f64),
     /// Something the user should know.
-    pub warn: &'a dyn Fn(&str),
+    pub warn: &'a dyn Fn(&Message),
     /// A line on what was found.
     pub say: &'a dyn Fn(&str) -> Result<()>,
     /// A line for those who want to know more.
@@ -237,14 +238,21 @@ fn truth_line(name: &str, truth: &TruthReport) -> String {
 
 fn nothing_in_view(name: &str) -> Error {
     Error::Scene {
-        what: format!("{name}: nothing of the DEM is in view"),
-        remedy: "turn the view towards it with --look-at, or --azimuth and --altitude".into(),
+        what: format!("{name}: nothing of the DEM is in view").into(),
+        remedy: message![
+            "turn the view towards it with ",
+            Setting::LookAt,
+            ", or ",
+            Setting::Azimuth,
+            " and ",
+            Setting::Altitude
+        ],
     }
 }
 
 fn no_line(name: &str) -> Error {
     Error::Scene {
-        what: format!("{name}: no silhouette is in view, so there is nothing to compare"),
+        what: format!("{name}: no silhouette is in view, so there is nothing to compare").into(),
         remedy: "choose a view of hills against hills or sky".into(),
     }
 }

@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::pictures::Picture;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Setting};
 use crate::files::{Output, Taken, output};
 
 /// The page, the results as JSON and as CSV, the plot.
@@ -48,7 +48,7 @@ impl Folder {
     /// of them may be a file that is `taken`.
     ///
     /// # Errors
-    /// [`Error::Flag`] where one is taken;
+    /// [`Error::Setting`] where one is taken;
     /// [`Error::Output`] where it is a file or something cannot be written.
     pub fn open(path: &Path, pictures: impl Iterator<Item = String>, mut taken: Taken) -> Result<Self> {
         let failed = |what: String| Error::Output { path: path.to_owned(), what };
@@ -57,7 +57,7 @@ impl Folder {
         }
         let pictures: Vec<String> = pictures.collect();
         let mut names = FILES.into_iter().chain(pictures.iter().map(String::as_str));
-        names.try_for_each(|name| taken.take("--output", &path.join(name)))?;
+        names.try_for_each(|name| taken.take(Setting::Output, &path.join(name)))?;
         let missing = path.ancestors().take_while(|folder| !folder.as_os_str().is_empty() && !folder.exists());
         let mut missing: Vec<PathBuf> = missing.map(Path::to_owned).collect();
         missing.reverse();

@@ -83,7 +83,7 @@ impl Growth {
     /// The plot as a file of its own.
     ///
     /// # Errors
-    /// [`Error::Report`](crate::error::Error::Report) where the plotting library gives up.
+    /// [`Error::Mistake`](crate::error::Error::Mistake) where the plotting library gives up.
     pub fn svg(&self) -> Result<String> {
         plot(&self.title, &self.description(), &[&self.note], &[()], |root, panel, ()| self.draw(root, panel))
     }

@@ -53,7 +53,7 @@ struct Row<'a> {
 /// The page. `plot_svg` is the plot as [`error_time_svg`](super::error_time_svg) made it and goes in as it is.
 ///
 /// # Errors
-/// [`Error::Report`] where a picture is missing that the results name, or the template fails.
+/// [`Error::Mistake`] where a picture is missing that the results name, or the template fails.
 pub fn report_html(results: &Results, plot_svg: &str, pictures: &[Picture]) -> Result<String> {
     let pass_names = merge(results.runs.iter().map(|run| run.passes.iter().map(|pass| pass.name).collect()));
     let page = Page {
@@ -66,7 +66,7 @@ pub fn report_html(results: &Results, plot_svg: &str, pictures: &[Picture]) -> R
         results,
         pass_names,
     };
-    render(&page).map_err(|e| Error::Report { what: format!("the page: {e:#}") })
+    render(&page).map_err(|e| Error::mistake(format!("the page: {e:#}")))
 }
 
 fn render(page: &Page) -> std::result::Result<String, minijinja::Error> {
@@ -93,7 +93,7 @@ fn data_uris<'a>(results: &'a Results, pictures: &[Picture]) -> Result<BTreeMap<
     let names = results.scenes.iter().map(|scene| &scene.picture).chain(of_runs);
     let data_uri = |name: &'a String| {
         let picture = pictures.iter().find(|picture| picture.name == *name);
-        let picture = picture.ok_or_else(|| Error::Report { what: format!("there is no picture {name}") })?;
+        let picture = picture.ok_or_else(|| Error::mistake(format!("there is no picture {name}")))?;
         Ok((name.as_str(), format!("data:image/png;base64,{}", STANDARD.encode(&picture.png))))
     };
     names.map(data_uri).collect()

@@ -39,7 +39,7 @@ const FRONT: RGBColor = RGBColor(190, 190, 190);
 /// 1 - F of 0.0001 or less is drawn there, and the axis says so.
 ///
 /// # Errors
-/// [`Error::Report`](crate::error::Error::Report) where the plotting library gives up.
+/// [`Error::Mistake`](crate::error::Error::Mistake) where the plotting library gives up.
 pub fn error_time_svg(results: &Results) -> Result<String> {
     let panel = |root: &Area, panel: &Area, scene: &Scene| draw_panel(root, panel, scene, results);
     plot(TITLE, &description(results), &FOOTNOTE, &results.scenes, panel)

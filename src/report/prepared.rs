@@ -18,7 +18,7 @@ use std::cell::RefCell;
 
 use crate::cache::{Cache, Hearing, Key, Sheet};
 use crate::dem::Dem;
-use crate::error::Result;
+use crate::error::{Message, Result};
 use crate::surface::{Pyramid, Surface};
 
 use heights::{Heights, HeightsBuilder};
@@ -34,7 +34,7 @@ struct Work<'a> {
     plain: Option<&'a Dem>,
     bounds: Key,
     heights: Key,
-    warn: &'a dyn Fn(&str),
+    warn: &'a dyn Fn(&Message),
 }
 
 impl Cache {
@@ -44,7 +44,7 @@ impl Cache {
     ///
     /// # Errors
     /// As [`Dem::survey`] and [`Pyramid::new`]; where a file of the DEM changed meanwhile, as [`Dem::check`].
-    pub fn prepare(&self, surface: &Surface, warn: &dyn Fn(&str), progress: &dyn Fn(f64)) -> Result<()> {
+    pub fn prepare(&self, surface: &Surface, warn: &dyn Fn(&Message), progress: &dyn Fn(f64)) -> Result<()> {
         let dem = surface.dem();
         let Some(stamp) = self.folder().and_then(|_| dem.stamp()) else { return Ok(()) };
         let plain = dem.plain();
@@ -73,10 +73,10 @@ impl Cache {
 
     /// Removes the heights of a DEM whose overviews turned out damaged, so that they are made anew next time. Nothing is wrong
     /// with what was drawn: it took the samples themselves. `warn` hears of it.
-    pub fn discard_damaged(&self, dem: &Dem, warn: &dyn Fn(&str)) {
+    pub fn discard_damaged(&self, dem: &Dem, warn: &dyn Fn(&Message)) {
         let stamp = self.folder().and_then(|_| dem.stamp());
         if let Some(stamp) = stamp.filter(|_| dem.has_damaged_overviews()) {
-            warn(&format!("{} is damaged: it is made anew next time", WORDS[1]));
+            warn(&format!("{} is damaged: it is made anew next time", WORDS[1]).into());
             self.remove(&heights::key(dem, stamp));
         }
     }
@@ -103,7 +103,7 @@ impl Work<'_> {
     /// The bounds, made and kept in a sheet, and the heights, found or made in the same look.
     fn with_heights(&self, sheet: Option<Sheet>, progress: &dyn Fn(f64)) -> Result<(Pyramid, Heights)> {
         // That nothing can be kept was told when there was no sheet.
-        let warn = if sheet.is_some() { self.warn } else { &|_: &str| () };
+        let warn = if sheet.is_some() { self.warn } else { &|_: &Message| () };
         let mut made = None;
         let heights = self.heights(Hearing { warn, progress }, |sheet, progress| {
             let (pyramid, heights) = self.in_one_look(sheet, warn, progress)?;
@@ -121,7 +121,7 @@ impl Work<'_> {
     fn in_one_look(
         &self,
         sheet: Option<Sheet>,
-        warn: &dyn Fn(&str),
+        warn: &dyn Fn(&Message),
         progress: &dyn Fn(f64),
     ) -> Result<(Pyramid, Heights)> {
         let mut heights = HeightsBuilder::new(self.plain(), sheet);

@@ -11,6 +11,7 @@ use glam::DVec2;
 use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
 use crate::cache::{Cache, Hearing, Key, Kind, Sheet, not_kept};
+use crate::error::Message;
 use crate::surface::{Level, Surface};
 use crate::truth::{Line, Piece, Terrain, Truth};
 use crate::view::Camera;
@@ -54,7 +55,7 @@ struct Row {
 impl Cache {
     /// The truth of a view, from the folder or made and kept. `warn` hears of a damaged file and of a folder that cannot
     /// be written; both cost time, nothing else.
-    pub fn truth(&self, terrain: &Terrain<'_>, camera: &Camera, level: Level, warn: &dyn Fn(&str)) -> Kept {
+    pub fn truth(&self, terrain: &Terrain<'_>, camera: &Camera, level: Level, warn: &dyn Fn(&Message)) -> Kept {
         let make = || {
             let start = Instant::now();
             let truth = terrain.truth(camera, level);

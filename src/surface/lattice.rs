@@ -20,7 +20,8 @@ use rayon::prelude::*;
 
 use super::quadtree::{Growth, Quadtree};
 use crate::dem::{Dem, LARGEST_SIDE, Validity};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Setting};
+use crate::message;
 
 /// Lattice steps along a cell's edge: the finest level.
 pub const CELL_STEPS: u32 = 64;
@@ -161,15 +162,15 @@ impl Lattice {
         let across = |samples: usize| quads(samples).div_ceil(u64::from(CHUNK_QUADS));
         let (columns, rows) = (across(dem.columns()), across(dem.rows()));
         if columns * rows > MOST_CHUNKS {
-            return Err(Error::Limit {
-                what: format!(
-                    "level {} gives {} facets in {} chunks, at most {MOST_CHUNKS} chunks of {CHUNK_FACETS} have IDs",
-                    level.subdivisions(),
-                    2 * quads(dem.columns()) * quads(dem.rows()),
-                    columns * rows,
-                ),
-                remedy: "use --level auto, a lower --level or a --crop".into(),
-            });
+            let what = format!(
+                "level {} gives {} facets in {} chunks, at most {MOST_CHUNKS} chunks of {CHUNK_FACETS} have IDs",
+                level.subdivisions(),
+                2 * quads(dem.columns()) * quads(dem.rows()),
+                columns * rows,
+            );
+            let auto = Setting::Level.at("auto");
+            let remedy = message!["use ", auto, ", a lower ", Setting::Level, " or a ", Setting::Crop];
+            return Err(Error::limit(what, remedy));
         }
         let mut tree = Quadtree::new([columns as u32, rows as u32], CHUNK_QUADS * level.step());
         let chunk = |origin| Chunk { origin, step: level.step(), coarser: 0 };
@@ -201,10 +202,8 @@ impl Lattice {
         let end = [dem.columns(), dem.rows()].map(|samples| (samples as u32 - 1) * CELL_STEPS);
         let kept = tree.number(|origin, size| role(origin, step(size)));
         if kept.len() as u64 > MOST_CHUNKS {
-            return Err(Error::Limit {
-                what: format!("the page needs {} chunks of facets, at most {MOST_CHUNKS} have IDs", kept.len()),
-                remedy: "use a larger --error-px or a --crop".into(),
-            });
+            let what = format!("the page needs {} chunks of facets, at most {MOST_CHUNKS} have IDs", kept.len());
+            return Err(Error::limit(what, message!["use a larger ", Setting::ErrorPx, " or a ", Setting::Crop]));
         }
         let seen = kept.iter().filter(|(role, _)| *role == Role::Seen).count() as u32;
         let chunk = |(_, (origin, size))| {
@@ -282,10 +281,9 @@ fn check_sides(dem: &Dem) -> Result<()> {
     if dem.columns().max(dem.rows()) <= LARGEST_SIDE {
         return Ok(());
     }
-    Err(Error::Limit {
-        what: format!("{} x {} samples are longer than the {LARGEST_SIDE} a side holds", dem.columns(), dem.rows()),
-        remedy: "use a --crop".into(),
-    })
+    let [columns, rows] = [dem.columns(), dem.rows()];
+    let what = format!("{columns} x {rows} samples are longer than the {LARGEST_SIDE} a side holds");
+    Err(Error::limit(what, message!["use a ", Setting::Crop]))
 }
 
 /// Whether no patch under `chunk` has all its corners.

@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use hachure::cli::words::exit_code;
 use hachure::dem::Dem;
 use hachure::geo::{ReadOptions, read};
 
@@ -215,7 +216,7 @@ fn crops_run_across_180_degrees() {
     // Metres have no other side.
     let path = hill().write("GTiff", &dir.path().join("hill.tif"));
     let error = read(&path, &cropped([500_105.0, 4_199_950.0, 500_015.0, 4_199_990.0])).unwrap_err();
-    assert_eq!(error.exit_code(), 2);
+    assert_eq!(exit_code(&error), 2);
     assert!(error.to_string().contains("west beyond its east; give the two in the other order"), "{error}");
 }
 

@@ -55,7 +55,7 @@ fn each_picture_is_in_the_page_once_and_a_missing_one_is_an_error() {
     assert_eq!(page.matches("data:image/png;base64,").count(), pictures.len());
     assert_eq!(page, page_of(&results), "the same results give the same page");
     let lacking = report_html(&results, "<svg></svg>", &pictures[1..]);
-    assert!(matches!(lacking, Err(Error::Report { what }) if what.contains("west-temple_truth.png")));
+    assert!(matches!(lacking, Err(Error::Mistake { what }) if what.contains("west-temple_truth.png")));
 }
 
 #[test]

@@ -4,7 +4,7 @@
 
 use super::grid::Grid;
 use super::lie::ALIGNED_CELLS;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Setting};
 
 /// `crop` with its west below its east, in the units of `grid`. Fails where it is no rectangle there.
 pub(super) fn on(grid: &Grid, crop: Option<[f64; 4]>) -> Result<Option<[f64; 4]>> {
@@ -15,7 +15,7 @@ pub(super) fn on(grid: &Grid, crop: Option<[f64; 4]>) -> Result<Option<[f64; 4]>
         _ => {
             let what = format!("{west},{south},{east},{north} has its west beyond its east");
             let remedy = format!("give the two in the other order: --crop {east},{south},{west},{north}");
-            Err(Error::flag("--crop", what, remedy))
+            Err(Error::setting(Setting::Crop, what, remedy))
         }
     }
 }

@@ -9,7 +9,7 @@ use glam::DVec2;
 use super::register;
 use super::source::heard;
 use crate::dem::{Crs, Transform, Unit};
-use crate::error::{Error, Result, plain};
+use crate::error::{Error, Result, Setting, plain};
 
 /// Longitude and latitude, in the register of EPSG.
 const WGS84: u32 = 4326;
@@ -29,12 +29,12 @@ impl Crs {
     /// The system that the register of EPSG gives this number.
     ///
     /// # Errors
-    /// [`Error::Flag`] when there is none, or none of places on a map or the globe; [`Error::Limit`] when PROJ cannot
+    /// [`Error::Setting`] when there is none, or none of places on a map or the globe; [`Error::Limit`] when PROJ cannot
     /// find the register.
     pub fn from_epsg(code: u32) -> Result<Self> {
         let wrong = |what: String| {
             let remedy = "give the number of a system of map coordinates, for instance EPSG:32611 or EPSG:4326";
-            Error::flag("--crs", what, remedy)
+            Error::setting(Setting::Crs, what, remedy)
         };
         let (found, words) = heard(|| SpatialRef::from_epsg(code));
         let Ok(found) = found else {

@@ -8,7 +8,7 @@ use glam::{DAffine2, DMat2, DVec2};
 use super::source::{Source, heard};
 use super::{crs, labels};
 use crate::dem::{Crs, History, Window};
-use crate::error::{Error, Result, shown};
+use crate::error::{Error, Result, Setting, shown};
 
 /// How far, in cells, a row may leave its line before the grid counts as turned: rounding of file formats.
 const STRAIGHT_CELLS: f64 = 1e-3;
@@ -249,7 +249,7 @@ fn assumed_crs(degrees: bool) -> String {
 
 fn has_place(source: &Source) -> Error {
     let what = format!("{} says itself where it lies and how large its cells are", shown(&source.path));
-    Error::flag("--cell", what, "leave it out, or use --resample for cells of another size")
+    Error::setting(Setting::Cell, what, "leave it out, or use --resample for cells of another size")
 }
 
 /// Whether the place of each sample stands in arrays beside it.

@@ -81,22 +81,19 @@ pub(super) fn too_many(path: &Path, grid: &Grid, why: &Whole, metres: f64) -> Er
     let Grid { columns, rows, .. } = grid;
     let samples = *columns as u64 * *rows as u64;
     let reason = why.reason();
-    Error::Limit {
-        what: format!("{}: {columns} x {rows} = {samples} samples, at most {MAX_SAMPLES} fit {reason}", shown(path)),
-        remedy: format!(
-            "{}, use --crop to take a part, or --resample {metres} for cells of {metres} m",
-            why.remedy(grid)
-        ),
-    }
+    Error::limit(
+        format!("{}: {columns} x {rows} = {samples} samples, at most {MAX_SAMPLES} fit {reason}", shown(path)),
+        format!("{}, use --crop to take a part, or --resample {metres} for cells of {metres} m", why.remedy(grid)),
+    )
 }
 
 fn over_budget(path: &Path, grid: &Grid, why: &Whole, memory: u64) -> Error {
     let samples = grid.columns as u64 * grid.rows as u64;
     let (needed, reason) = (held_bytes(samples).div_ceil(1 << 20), why.reason());
-    Error::Limit {
-        what: format!("{}: needs {needed} MiB of memory {reason}, more than --memory allows", shown(path)),
-        remedy: format!("give --memory {needed}MiB (it is {} MiB), or {}", memory >> 20, why.remedy(grid)),
-    }
+    Error::limit(
+        format!("{}: needs {needed} MiB of memory {reason}, more than --memory allows", shown(path)),
+        format!("give --memory {needed}MiB (it is {} MiB), or {}", memory >> 20, why.remedy(grid)),
+    )
 }
 
 fn check_longest(path: &Path, grid: &Grid, metres: f64) -> Result<()> {
@@ -104,31 +101,29 @@ fn check_longest(path: &Path, grid: &Grid, metres: f64) -> Result<()> {
     if *columns.max(rows) <= LARGEST_SIDE {
         return Ok(());
     }
-    Err(Error::Limit {
-        what: format!("{}: {columns} x {rows} samples, at most {LARGEST_SIDE} along a side fit", shown(path)),
-        remedy: format!("use --crop to take a part, or --resample {metres} for cells of {metres} m"),
-    })
+    Err(Error::limit(
+        format!("{}: {columns} x {rows} samples, at most {LARGEST_SIDE} along a side fit", shown(path)),
+        format!("use --crop to take a part, or --resample {metres} for cells of {metres} m"),
+    ))
 }
 
 /// As many samples of a file as may be read to be warped, beside `held` others.
 fn check_read(path: &Path, read: u64, held: u64) -> Result<()> {
     if read > MAX_READ {
-        return Err(Error::Limit {
-            what: format!("{}: {read} samples would be read to be warped, at most {MAX_READ} fit", shown(path)),
-            remedy:
-                "use --crop to take a part, or make it coarser: `gdal_translate -outsize 10% 10% -r average IN OUT.tif`"
-                    .into(),
-        });
+        return Err(Error::limit(
+            format!("{}: {read} samples would be read to be warped, at most {MAX_READ} fit", shown(path)),
+            "use --crop to take a part, or make it coarser: `gdal_translate -outsize 10% 10% -r average IN OUT.tif`",
+        ));
     }
     check_memory(path, (read + held) * READ_BYTES, available_memory())
 }
 
 fn check_memory(path: &Path, needed: u64, available: Option<u64>) -> Result<()> {
     match available {
-        Some(available) if available < needed => Err(Error::Limit {
-            what: format!("{}: needs {} MiB of memory, {} MiB are free", shown(path), needed >> 20, available >> 20),
-            remedy: "use --crop to take a part, or --resample M for larger cells".into(),
-        }),
+        Some(available) if available < needed => Err(Error::limit(
+            format!("{}: needs {} MiB of memory, {} MiB are free", shown(path), needed >> 20, available >> 20),
+            "use --crop to take a part, or --resample M for larger cells",
+        )),
         _ => Ok(()),
     }
 }

@@ -81,10 +81,10 @@ fn shrink(from: &Grid, onto: &Grid) -> [f64; 2] {
 /// What else can fail in memory.
 fn out_of_memory(grid: &Grid, words: &str) -> Error {
     let words = words.lines().next().unwrap_or_default();
-    Error::Limit {
-        what: format!("{} x {} samples cannot be held and warped in memory ({words})", grid.columns, grid.rows),
-        remedy: "use --crop to take a part, or --resample M for larger cells".into(),
-    }
+    Error::limit(
+        format!("{} x {} samples cannot be held and warped in memory ({words})", grid.columns, grid.rows),
+        "use --crop to take a part, or --resample M for larger cells",
+    )
 }
 
 #[cfg(test)]

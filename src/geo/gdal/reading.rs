@@ -16,7 +16,7 @@ use super::raster::{FILL_REACH, Raster};
 use super::target::Target;
 use crate::dem::filed::exaggerate;
 use crate::dem::{Dem, Georeference, History, Tiles};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Setting};
 use crate::geo::info::name_of;
 use crate::geo::{ReadOptions, Stage};
 
@@ -148,17 +148,17 @@ fn check_options(options: &ReadOptions) -> Result<()> {
     let factor = options.exaggeration;
     if !(factor > 0.0 && factor <= MAX_EXAGGERATION) {
         let what = format!("{factor} is no factor to draw with");
-        return Err(Error::flag("--exaggeration", what, "give a number above 0 and at most 1000"));
+        return Err(Error::setting(Setting::Exaggeration, what, "give a number above 0 and at most 1000"));
     }
-    for (flag, metres) in [("--cell", options.cell), ("--resample", options.resample)] {
+    for (setting, metres) in [(Setting::Cell, options.cell), (Setting::Resample, options.resample)] {
         if let Some(metres) = metres.filter(|metres| !CELLS.contains(metres)) {
             let what = format!("{metres} is no size of a cell");
-            return Err(Error::flag(flag, what, "give metres, from 0.001 to 1000000"));
+            return Err(Error::setting(setting, what, "give metres, from 0.001 to 1000000"));
         }
     }
     if let (Some(encoding), Some(_)) = (options.encoding.filter(|encoding| encoding.is_picture()), options.band) {
         let what = format!("{} takes the three bands of a picture, not one", encoding.name());
-        return Err(Error::flag("--encoding", what, "leave out --band or --encoding"));
+        return Err(Error::setting(Setting::Encoding, what, "leave out --band or --encoding"));
     }
     let Some([west, south, east, north]) = options.crop else { return Ok(()) };
     let finite = [west, south, east, north].iter().all(|edge| edge.is_finite());
@@ -167,5 +167,5 @@ fn check_options(options: &ReadOptions) -> Result<()> {
         return Ok(());
     }
     let what = format!("{west},{south},{east},{north} is no rectangle");
-    Err(Error::flag("--crop", what, "give west,south,east,north with west < east and south < north"))
+    Err(Error::setting(Setting::Crop, what, "give west,south,east,north with west < east and south < north"))
 }

@@ -36,7 +36,7 @@ pub(super) fn error(words: Option<String>) -> Error {
         }
         (None, None) => format!("PROJ cannot find its register of coordinate systems ({FILE})"),
     };
-    Error::Limit { what, remedy: remedy(&set, found) }
+    Error::limit(what, remedy(&set, found))
 }
 
 fn remedy(set: &[&str], found: Option<PathBuf>) -> String {

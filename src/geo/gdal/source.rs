@@ -20,7 +20,7 @@ use super::archive::{self, Member};
 use super::formats::{self, FORMATS, VECTORS};
 use super::name::{Local, Name, Place};
 use super::{grids, hgt, lossless, mistaken, outside, vrt, vsi};
-use crate::error::{Error, Result, shown};
+use crate::error::{Error, Message, Result, shown};
 
 thread_local! {
     /// The first complaint of GDAL on this thread since `heard` last began.
@@ -82,7 +82,7 @@ impl Source {
     }
 
     /// An error about this file.
-    pub fn error(&self, what: impl Into<String>, remedy: impl Into<String>) -> Error {
+    pub fn error(&self, what: impl Into<Message>, remedy: impl Into<Message>) -> Error {
         Error::input(&self.path, what, remedy)
     }
 
@@ -90,10 +90,10 @@ impl Source {
     /// part of a mosaic is missing.
     pub fn unreadable(&self, words: Option<&str>) -> Error {
         if let Some(words) = words.filter(|words| lacks_memory(words)) {
-            return Error::Limit {
-                what: format!("{}: not enough memory to read it ({})", shown(&self.path), one_line(words, &self.path)),
-                remedy: "use a smaller --memory or a --crop, or allow more (`ulimit -v` says how much)".into(),
-            };
+            return Error::limit(
+                format!("{}: not enough memory to read it ({})", shown(&self.path), one_line(words, &self.path)),
+                "use a smaller --memory or a --crop, or allow more (`ulimit -v` says how much)",
+            );
         }
         let what = match words {
             Some(words) => format!("is damaged or cut short ({})", one_line(words, &self.path)),

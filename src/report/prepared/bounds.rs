@@ -12,7 +12,7 @@ use xxhash_rust::xxh3::{Xxh3, xxh3_128};
 use super::WORDS;
 use crate::cache::{Kept, Key, Kind, Sheet, not_kept};
 use crate::dem::{Dem, Samples};
-use crate::error::Result;
+use crate::error::{Message, Result};
 use crate::surface::{Pyramid, PyramidBuilder, Surface, SurfaceBand};
 
 /// Raise it when the pyramid of the same samples comes out otherwise, or when the bytes mean something else.
@@ -49,7 +49,7 @@ pub(super) fn make(
 }
 
 /// Writes a pyramid where it is kept.
-pub(super) fn keep(pyramid: &Pyramid, sheet: Option<Sheet>, warn: &dyn Fn(&str)) {
+pub(super) fn keep(pyramid: &Pyramid, sheet: Option<Sheet>, warn: &dyn Fn(&Message)) {
     let Some(mut sheet) = sheet else { return };
     let (key, mut hash) = (sheet.key().clone(), Xxh3::new());
     for bytes in pyramid.bytes() {

@@ -17,7 +17,7 @@ use xxhash_rust::xxh3::Xxh3;
 use super::WORDS;
 use crate::cache::{Kept, Key, Kind, Sheet, not_kept};
 use crate::dem::{Band, Dem, Entry, OverviewBuilder, Overviews, Samples, Survey, SurveyBuilder, Validity};
-use crate::error::Result;
+use crate::error::{Message, Result};
 
 /// Raise it when the survey or the overviews of the same samples come out otherwise, or when the bytes below mean something
 /// else.
@@ -69,7 +69,12 @@ pub(super) fn key(dem: &Dem, stamp: u128) -> Key {
 }
 
 /// Makes them in a look of their own.
-pub(super) fn make(dem: &Dem, sheet: Option<Sheet>, warn: &dyn Fn(&str), progress: &dyn Fn(f64)) -> Result<Heights> {
+pub(super) fn make(
+    dem: &Dem,
+    sheet: Option<Sheet>,
+    warn: &dyn Fn(&Message),
+    progress: &dyn Fn(f64),
+) -> Result<Heights> {
     let mut heights = HeightsBuilder::new(dem, sheet);
     for band in dem.bands(1) {
         let Band { rows, samples } = band?;
@@ -97,7 +102,7 @@ impl<'a> HeightsBuilder<'a> {
     }
 
     /// They, kept where they can be, when all rows have been taken.
-    pub(super) fn finish(self, warn: &dyn Fn(&str)) -> Result<Heights> {
+    pub(super) fn finish(self, warn: &dyn Fn(&Message)) -> Result<Heights> {
         let (survey, index) = (self.survey.finish()?, self.overviews.into_index());
         let Some(mut sheet) = self.sheet else { return Ok(Heights { survey, overviews: None }) };
         let key = sheet.key().clone();

@@ -1,11 +1,17 @@
-//! What can go wrong, said so that a user can mend it: what, where, remedy.
+//! What can go wrong, said so that a user can mend it: what, where, remedy. How settings are spelled and with which code a
+//! program ends is for the program to say.
+
+mod message;
 
 use std::path::{Path, PathBuf};
+
+pub use message::{Message, Part, Setting};
 
 /// `Result` with this crate's [`Error`].
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// Everything this library can fail with. `Display` is one line: what, where, remedy.
+/// Everything this library can fail with: what, where, and what may be done about it. `Display` is one line; settings stand
+/// in it by their names.
 #[derive(Debug, Clone, thiserror::Error)]
 pub enum Error {
     /// A file that cannot be used as a DEM.
@@ -14,22 +20,22 @@ pub enum Error {
         /// The file as the user named it.
         path: PathBuf,
         /// What is wrong with it.
-        what: String,
+        what: Message,
         /// What the user can do.
-        remedy: String,
+        remedy: Message,
     },
-    /// A flag whose value makes no sense, whatever the file.
-    #[error("{flag}: {what}; {remedy}")]
-    Flag {
-        /// The flag with its dashes.
-        flag: &'static str,
+    /// A setting whose value makes no sense, whatever the file.
+    #[error("{setting}: {what}; {remedy}")]
+    Setting {
+        /// Which one.
+        setting: Setting,
         /// What is wrong with its value.
-        what: String,
+        what: Message,
         /// What the user can do.
-        remedy: String,
+        remedy: Message,
     },
     /// A file that cannot be written.
-    #[error("{}: cannot be written ({what}); {}", shown(path), way_out(what))]
+    #[error("{}: cannot be written ({what})", shown(path))]
     Output {
         /// The file as the user named it.
         path: PathBuf,
@@ -40,17 +46,17 @@ pub enum Error {
     #[error("{what}; {remedy}")]
     Limit {
         /// Which limit, with both numbers.
-        what: String,
+        what: Message,
         /// What the user can do.
-        remedy: String,
+        remedy: Message,
     },
     /// A view in which there is nothing to do.
     #[error("{what}; {remedy}")]
     Scene {
         /// Which view, and what it lacks.
-        what: String,
+        what: Message,
         /// What the user can do.
-        remedy: String,
+        remedy: Message,
     },
     /// No GPU and no software driver either, or none of the asked name.
     #[error("no GPU adapter: {what}; {remedy}")]
@@ -61,53 +67,44 @@ pub enum Error {
         remedy: String,
     },
     /// The GPU driver refused or failed; trying again does not help.
-    #[error("the GPU failed: {what}; try `--adapter cpu`, a smaller --size or a lower --level")]
+    #[error("the GPU failed: {what}")]
     Gpu {
         /// The driver's words.
         what: String,
     },
-    /// A report that cannot be laid out, whatever was compared.
-    #[error("the report cannot be made: {what}; that is hachure's mistake, please report it with the command")]
-    Report {
-        /// Which part, and the library's words.
-        what: String,
-    },
     /// The device was lost or hung; trying again may help.
-    #[error("the GPU was lost: {what}; try again, or use `--adapter cpu`")]
+    #[error("the GPU was lost: {what}")]
     DeviceLost {
         /// The driver's words.
+        what: String,
+    },
+    /// Something that no input can cause: a shader, a binding, a template that do not fit together.
+    #[error("{what}; that is hachure's mistake, please report it with the command")]
+    Mistake {
+        /// Which part, and what it lacks.
         what: String,
     },
 }
 
 impl Error {
     /// A DEM problem: the file, what is wrong with it, what to do.
-    pub fn input(path: &Path, what: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Self::Input { path: path.to_owned(), what: plain(what.into()), remedy: plain(remedy.into()) }
+    pub fn input(path: &Path, what: impl Into<Message>, remedy: impl Into<Message>) -> Self {
+        Self::Input { path: path.to_owned(), what: what.into().plain(), remedy: remedy.into().plain() }
     }
 
-    /// A flag problem: the flag, what is wrong with its value, what to do.
-    pub fn flag(flag: &'static str, what: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Self::Flag { flag, what: plain(what.into()), remedy: plain(remedy.into()) }
+    /// A problem with a setting: which, what is wrong with its value, what to do.
+    pub fn setting(setting: Setting, what: impl Into<Message>, remedy: impl Into<Message>) -> Self {
+        Self::Setting { setting, what: what.into().plain(), remedy: remedy.into().plain() }
     }
 
-    /// The process exit code of this error: 1 failed, 2 wrong usage, 75 try again.
-    pub fn exit_code(&self) -> u8 {
-        match self {
-            Self::Flag { .. } => 2,
-            Self::DeviceLost { .. } => 75,
-            _ => 1,
-        }
+    /// A limit that is passed: which, with both numbers, and what to do.
+    pub fn limit(what: impl Into<Message>, remedy: impl Into<Message>) -> Self {
+        Self::Limit { what: what.into(), remedy: remedy.into() }
     }
-}
 
-/// What to do about the system's reason not to write.
-fn way_out(what: &str) -> &'static str {
-    match what {
-        // EFBIG and ENOSPC of Linux and macOS.
-        _ if what.contains("(os error 27)") => "allow larger files (`ulimit -f unlimited`)",
-        _ if what.contains("(os error 28)") => "make room there or choose another output path",
-        _ => "choose another output path",
+    /// A mistake of ours: which part, and what it lacks.
+    pub fn mistake(what: impl Into<String>) -> Self {
+        Self::Mistake { what: what.into() }
     }
 }
 

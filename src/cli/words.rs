@@ -1,0 +1,114 @@
+//! What the core says, in the words of the command line: flags in the place of settings, remedies, exit codes.
+
+use crate::error::{Error, Message, Setting, shown};
+
+/// Exit code for "try again".
+pub const TRY_AGAIN: u8 = 75;
+
+/// How a setting is typed.
+pub fn flag(setting: Setting) -> &'static str {
+    match setting {
+        Setting::Adapter => "--adapter",
+        Setting::AllowRemote => "--allow-remote",
+        Setting::Altitude => "--altitude",
+        Setting::Azimuth => "--azimuth",
+        Setting::Band => "--band",
+        Setting::Border => "--border",
+        Setting::Cache => "--cache",
+        Setting::Cell => "--cell",
+        Setting::Crop => "--crop",
+        Setting::Crs => "--crs",
+        Setting::Dem => "DEM",
+        Setting::Eye => "--eye",
+        Setting::Encoding => "--encoding",
+        Setting::ElevationUnit => "--elevation-unit",
+        Setting::ErrorPx => "--error-px",
+        Setting::Exaggeration => "--exaggeration",
+        Setting::FillVoids => "--fill-voids",
+        Setting::Json => "--json",
+        Setting::Level => "--level",
+        Setting::Levels => "--levels",
+        Setting::LonLat => "--lonlat",
+        Setting::LookAt => "--look-at",
+        Setting::Mask => "--mask",
+        Setting::Memory => "--memory",
+        Setting::Method => "--method",
+        Setting::Methods => "--methods",
+        Setting::Nodata => "--nodata",
+        Setting::Output => "--output",
+        Setting::Resample => "--resample",
+        Setting::Share => "--share",
+        Setting::Size => "--size",
+        Setting::Sizes => "--sizes",
+        Setting::Views => "--views",
+        Setting::Wide => "--wide",
+    }
+}
+
+/// A message with flags.
+pub fn told(message: &Message) -> String {
+    message.told(|setting, value| match value {
+        Some(value) => format!("{} {value}", flag(setting)),
+        None => flag(setting).to_owned(),
+    })
+}
+
+/// An error as one line: what, where, remedy.
+pub fn line(error: &Error) -> String {
+    match error {
+        Error::Input { path, what, remedy } => format!("{}: {}; {}", shown(path), told(what), told(remedy)),
+        Error::Setting { setting, what, remedy } => format!("{}: {}; {}", flag(*setting), told(what), told(remedy)),
+        Error::Limit { what, remedy } | Error::Scene { what, remedy } => format!("{}; {}", told(what), told(remedy)),
+        Error::Output { what, .. } => format!("{error}; {}", way_out(what)),
+        Error::Gpu { .. } => format!("{error}; try `--adapter cpu`, a smaller --size or a lower --level"),
+        Error::DeviceLost { .. } => format!("{error}; try again, or use `--adapter cpu`"),
+        Error::NoAdapter { .. } | Error::Mistake { .. } => error.to_string(),
+    }
+}
+
+/// The process's exit code for an error: 1 failed, 2 wrong usage, 75 try again.
+pub fn exit_code(error: &Error) -> u8 {
+    match error {
+        Error::Setting { .. } => 2,
+        Error::DeviceLost { .. } => TRY_AGAIN,
+        _ => 1,
+    }
+}
+
+/// What to do about the system's reason not to write.
+fn way_out(what: &str) -> &'static str {
+    match what {
+        // EFBIG and ENOSPC of Linux and macOS.
+        _ if what.contains("(os error 27)") => "allow larger files (`ulimit -f unlimited`)",
+        _ if what.contains("(os error 28)") => "make room there or choose another output path",
+        _ => "choose another output path",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::HashSet;
+
+    use clap::CommandFactory;
+
+    use super::super::Arguments;
+    use super::*;
+
+    #[test]
+    fn every_setting_is_a_flag_that_can_be_typed() {
+        let command = Arguments::command();
+        let of = |command: &clap::Command| {
+            command
+                .get_arguments()
+                .filter_map(|flag| flag.get_long())
+                .map(|flag| format!("--{flag}"))
+                .collect::<Vec<_>>()
+        };
+        let known: HashSet<String> = command.get_subcommands().flat_map(of).collect();
+        let typed = Setting::ALL.map(flag);
+        let unknown: Vec<_> = typed.into_iter().filter(|flag| *flag != "DEM" && !known.contains(*flag)).collect();
+        assert!(unknown.is_empty(), "{unknown:?} are no flags");
+        assert_eq!(HashSet::from(typed).len(), typed.len(), "each has its own");
+        assert!(!known.contains("--colour"), "a flag that nobody has is not known");
+    }
+}
