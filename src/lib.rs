@@ -3,7 +3,7 @@
 //! A DEM to a picture:
 //!
 //! ```no_run
-//! use hachure::dem::{ReadOptions, read};
+//! use hachure::geo::{ReadOptions, read};
 //! use hachure::gpu::{AdapterChoice, Gpu, Int64};
 //! use hachure::view::{Fixed, choose};
 //! use hachure::{ink, plan::Plan, render::Renderer, surface::Surface};
@@ -21,7 +21,7 @@
 //!
 //! | stage | from | to | where |
 //! |---|---|---|---|
-//! | read | raster files | [`Dem`](dem::Dem): a north-up grid of metres, voids marked | [`dem::read()`], CPU |
+//! | read | raster files | [`Dem`](dem::Dem): a north-up grid of metres, voids marked | [`geo::read()`], CPU |
 //! | surface | the grid | [`Surface`](surface::Surface): one normal a sample, cubic PN triangles between them | CPU, once a DEM |
 //! | view | flags, or nothing | [`Camera`](view::Camera): eye, directions, page | CPU |
 //! | plan | what is asked | [`Plan`](plan::Plan): method, level, border | CPU |
@@ -49,7 +49,8 @@
 //! |---|---|
 //! | [`files`] | outputs that are whole or not there; which names mean one file |
 //! | [`cache`] | a folder of what took long to make: found again, capped, made by one process at a time |
-//! | [`dem`] | reads and holds the grid; alone knows GDAL |
+//! | [`dem`] | the grid: held in memory, or read as it is asked for |
+//! | [`geo`] | rasters and systems of coordinates; alone knows GDAL, without which (`--no-default-features`) it reads nothing |
 //! | [`surface`] | vertex normals, PN patches, the lattice and its IDs, bounds of chunks |
 //! | [`view`] | the camera, and a view where none is given |
 //! | [`plan`] | what a frame needs: method, batches |
@@ -67,6 +68,7 @@ pub mod cli;
 pub mod dem;
 pub mod error;
 pub mod files;
+pub mod geo;
 pub mod gpu;
 pub mod ink;
 pub mod plan;

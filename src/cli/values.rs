@@ -5,7 +5,8 @@ use std::ops::RangeInclusive;
 
 use glam::DVec2;
 
-use crate::dem::{ElevationUnit, Encoding, LARGEST_SIDE as MOST_SAMPLES, Nodata};
+use crate::dem::LARGEST_SIDE as MOST_SAMPLES;
+use crate::geo::{ElevationUnit, Encoding, Nodata};
 use crate::gpu::AdapterChoice;
 use crate::plan::pieces::LARGEST_PAGE;
 use crate::plan::{Detail, Method};

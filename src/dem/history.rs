@@ -28,20 +28,23 @@ impl History {
         &self.usual
     }
 
-    pub(super) fn convert(&mut self, clause: String) {
+    /// One more clause on what was changed.
+    pub fn convert(&mut self, clause: String) {
         self.converted.push(plain(clause));
     }
 
-    pub(super) fn assume(&mut self, clause: String) {
+    /// One more clause on what was taken as given.
+    pub fn assume(&mut self, clause: String) {
         self.assumed.push(plain(clause));
     }
 
-    pub(super) fn assume_as_usual(&mut self, clause: String) {
+    /// One more on what few files say.
+    pub fn assume_as_usual(&mut self, clause: String) {
         self.usual.push(clause);
     }
 
     /// Takes over what holds for one of several files: `path` is named where it is not the first and says more.
-    pub(super) fn take(&mut self, of_file: Self, path: Option<&Path>) {
+    pub fn take(&mut self, of_file: Self, path: Option<&Path>) {
         let add = |list: &mut Vec<String>, clauses: Vec<String>| {
             let clauses: Vec<_> = clauses.into_iter().filter(|clause| !list.contains(clause)).collect();
             list.extend(clauses.into_iter().map(|clause| match path {

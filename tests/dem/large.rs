@@ -3,7 +3,8 @@
 use std::process::Command;
 use std::time::Instant;
 
-use hachure::dem::{ReadOptions, fractal, read, write::write};
+use hachure::dem::fractal;
+use hachure::geo::{ReadOptions, read, write};
 use hachure::report::memory::peak;
 use hachure::surface::Surface;
 

@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use glam::DVec2;
-use hachure::dem::{Dem, ReadOptions, read_all};
+use hachure::dem::Dem;
+use hachure::geo::{ReadOptions, read_all};
 
 use super::{Raster, TRANSFORM, folder, hill};
 use crate::tolerances::PLANE_METRES;

@@ -8,7 +8,7 @@ use gdal::raster::ColorInterpretation::{BlueBand, GreenBand, RedBand, Undefined}
 use gdal::raster::{Buffer, RasterCreationOptions};
 use gdal::spatial_ref::SpatialRef;
 use hachure::cli::values;
-use hachure::dem::{Encoding, ReadOptions, read};
+use hachure::geo::{Encoding, ReadOptions, read};
 
 use super::{Bands, SIDE, assumed, cured, doubt, folder, land, marked, one, same};
 

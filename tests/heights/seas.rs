@@ -4,7 +4,7 @@ use std::io::{Write, stderr};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use hachure::dem::{ReadOptions, read};
+use hachure::geo::{ReadOptions, read};
 
 use super::{Bands, FILED, SIDE, assumed, folder, land, one, same};
 

@@ -5,7 +5,7 @@ use std::process::Command;
 use std::time::Instant;
 
 use glam::DVec3;
-use hachure::dem::{ReadOptions, read};
+use hachure::geo::{ReadOptions, read};
 use hachure::plan::{Border, Method, Share};
 use hachure::report::memory::peak;
 use hachure::surface::Surface;

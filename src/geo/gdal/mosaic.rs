@@ -15,16 +15,15 @@ use super::assumed::Tallied;
 use super::crop;
 use super::crs::Way;
 use super::elevation::{Elevation, Reading};
-use super::encoding::Encoding;
-use super::grid::{Grid, Window, span};
+use super::grid::{Grid, span};
 use super::handles::{Handles, Opening};
 use super::lie::Lie;
 use super::raster::Raster;
 use super::source::{Source, heard};
 use super::tally::{Tallies, Tally};
-use super::tiling::Tiling;
-use super::{History, ReadOptions};
+use crate::dem::{Crs, History, Tiling, Window};
 use crate::error::{Error, Result, shown};
+use crate::geo::{Encoding, ReadOptions};
 
 /// Samples read at once: 8 MiB of f64.
 const BLOCK_SAMPLES: usize = 1 << 20;
@@ -388,7 +387,7 @@ fn turn(raw: &mut [f64], width: usize, [along, down]: [bool; 2]) {
 fn no_way([one, other]: [(&Path, &Grid); 2]) -> Error {
     let nameless = |(_, grid): (&Path, &Grid)| grid.crs.wkt().is_empty();
     let [(path, grid), (beside, base)] = if nameless(other) && !nameless(one) { [other, one] } else { [one, other] };
-    let name = |crs: &super::Crs| match crs.label() {
+    let name = |crs: &Crs| match crs.label() {
         label if label.is_empty() => "no named coordinate system".to_owned(),
         label if ["unknown", "unnamed"].contains(&label.to_lowercase().as_str()) => "an unnamed system".to_owned(),
         label => label,

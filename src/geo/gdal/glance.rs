@@ -1,6 +1,6 @@
 //! A first look at a raster's numbers, before it is read: a few windows spread over it.
 
-use super::grid::Window;
+use crate::dem::Window;
 
 /// Sides of a raster up to which the look takes all of it.
 const WHOLE: usize = 192;

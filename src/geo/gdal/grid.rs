@@ -5,10 +5,9 @@ use std::ops::RangeInclusive;
 use gdal::Metadata;
 use glam::{DAffine2, DMat2, DVec2};
 
-use super::crs::{self, Crs};
-use super::history::History;
-use super::labels;
 use super::source::{Source, heard};
+use super::{crs, labels};
+use crate::dem::{Crs, History, Window};
 use crate::error::{Error, Result, Setting, shown};
 
 /// How far, in cells, a row may leave its line before the grid counts as turned: rounding of file formats.
@@ -36,15 +35,6 @@ pub(super) struct Grid {
     pub columns: usize,
     /// Samples in a column.
     pub rows: usize,
-}
-
-/// A rectangle of samples inside a grid.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Window {
-    /// First column and row.
-    pub first: [usize; 2],
-    /// Columns and rows.
-    pub size: [usize; 2],
 }
 
 impl Grid {
@@ -191,7 +181,7 @@ impl Grid {
 
 impl Window {
     /// Pixel coordinates of points along the outermost samples, once round.
-    pub fn outline(self) -> Vec<DVec2> {
+    pub(super) fn outline(self) -> Vec<DVec2> {
         let low = DVec2::new(self.first[0] as f64, self.first[1] as f64) + 0.5;
         let far = DVec2::new((self.size[0] - 1) as f64, (self.size[1] - 1) as f64);
         let along = (0..=SIDE_POINTS).map(|i| i as f64 / SIDE_POINTS as f64);
@@ -201,17 +191,12 @@ impl Window {
     }
 
     /// The same in blocks of at most `size` columns and rows, row by row of blocks.
-    pub fn blocks(self, size: [usize; 2]) -> impl Iterator<Item = Self> {
+    pub(super) fn blocks(self, size: [usize; 2]) -> impl Iterator<Item = Self> {
         let starts = move |i: usize| (0..self.size[i]).step_by(size[i]);
         starts(1).flat_map(move |r| starts(0).map(move |c| [c, r])).map(move |at| Self {
             first: [0, 1].map(|i| self.first[i] + at[i]),
             size: [0, 1].map(|i| size[i].min(self.size[i] - at[i])),
         })
-    }
-
-    /// How many samples.
-    pub fn samples(self) -> u64 {
-        self.size[0] as u64 * self.size[1] as u64
     }
 }
 

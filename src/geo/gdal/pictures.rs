@@ -1,5 +1,4 @@
-//! What the numbers of a file stand for where they are not what the file says: elevations packed into the three colours of
-//! a picture, or below 0 into unsigned numbers, heights that the file calls depths, depths that it does not call so.
+//! Elevations packed into the three colours of a picture.
 //!
 //! Formulas: Mapbox Terrain-RGB v1, and Terrarium of Mapzen. Which of the two a picture is, if any, shows when a few of
 //! its windows are decoded: the heights are on Earth, and the colour that counts most hardly changes from one pixel to
@@ -10,47 +9,20 @@ use gdal::raster::{ColorInterpretation, GdalDataType, RasterBand};
 
 use super::elevation::EARTH;
 use super::glance::windows;
-use super::grid::Window;
 use super::mosaic::block;
 use super::source::Source;
+use crate::dem::Window;
 use crate::error::Result;
+use crate::geo::Encoding;
 
 /// Share of samples whose heights must be on Earth.
 const ON_EARTH: f64 = 0.99;
 /// Most that the first colour may change beside the others.
 const STEADY: f64 = 0.1;
 
-/// How elevations are packed into the numbers of a file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Encoding {
-    /// Three bands of 8 bits: -10000 + (R x 65536 + G x 256 + B) / 10 metres.
-    TerrainRgb,
-    /// Three bands of 8 bits: R x 256 + G + B / 256 - 32768 metres.
-    Terrarium,
-    /// Unsigned numbers, the upper half of which are below 0: 65535 of 16 bits is -1.
-    Signed,
-    /// The numbers are heights, whatever the file says of depths.
-    Elevations,
-    /// They are depths: the greater, the deeper.
-    Depths,
-}
-
 impl Encoding {
-    /// All of them.
-    pub const ALL: [Self; 5] = [Self::TerrainRgb, Self::Terrarium, Self::Signed, Self::Elevations, Self::Depths];
     /// Those of pictures.
     pub(super) const PICTURES: [Self; 2] = [Self::TerrainRgb, Self::Terrarium];
-
-    /// The word for `--encoding`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::TerrainRgb => "terrain-rgb",
-            Self::Terrarium => "terrarium",
-            Self::Signed => "signed",
-            Self::Elevations => "elevations",
-            Self::Depths => "depths",
-        }
-    }
 
     /// Whether three bands make one elevation.
     pub(super) fn is_picture(self) -> bool {

@@ -1,4 +1,4 @@
-//! How large a DEM may be, and whether its samples are held in memory or stay in their files.
+//! Whether the samples of a DEM are held in memory or stay in their files.
 //!
 //! What fits the budget is held. Larger DEMs stay in their files, unless GDAL must have all samples at once: where they
 //! are warped (a warp of parts gives other bits than one of the whole) or voids are filled (from a hundred samples
@@ -6,16 +6,13 @@
 
 use std::path::{Path, PathBuf};
 
-use super::ReadOptions;
 use super::grid::Grid;
 use super::mosaic::Mosaic;
 use super::target::Target;
+use crate::dem::{LARGEST_SIDE, MAX_SAMPLES, held_bytes};
 use crate::error::{Error, Result, shown};
+use crate::geo::ReadOptions;
 
-/// Most samples of a DEM held in memory: 128 MiB of heights, the largest buffer that every GPU binds.
-pub const MAX_SAMPLES: usize = 1 << 25;
-/// Most samples along a side of any DEM: walks count 64 x 256 steps a cell in 32 bits, and may end a cell beyond it.
-pub const LARGEST_SIDE: usize = 131_000;
 /// Most samples that are read to be warped: 1 GiB.
 const MAX_READ: u64 = 1 << 28;
 /// Bytes a sample of the files at work.
@@ -56,11 +53,6 @@ pub(super) fn are_held(mosaic: &Mosaic, target: &Target, options: &ReadOptions) 
     }
     check_memory(path, ((work + samples) * READ_BYTES).max(held_bytes(samples)), available_memory())?;
     Ok(true)
-}
-
-/// Bytes of so many samples with their normals: a height, a bit and two gradients each.
-fn held_bytes(samples: u64) -> u64 {
-    samples * (4 + 8) + samples / 8
 }
 
 impl Whole {
@@ -113,30 +105,6 @@ fn check_longest(path: &Path, grid: &Grid, metres: f64) -> Result<()> {
         format!("{}: {columns} x {rows} samples, at most {LARGEST_SIDE} along a side fit", shown(path)),
         format!("use --crop to take a part, or --resample {metres} for cells of {metres} m"),
     ))
-}
-
-/// The error of those who need samples in memory that stay in their files.
-pub(super) fn not_held([columns, rows]: [usize; 2]) -> Error {
-    let samples = columns as u64 * rows as u64;
-    let more = held_bytes(samples).div_ceil(1 << 20);
-    let memory = if samples <= MAX_SAMPLES as u64 { format!(", or give --memory {more}MiB") } else { String::new() };
-    Error::limit(
-        format!("{columns} x {rows} = {samples} samples stay in their files, but here they must be in memory"),
-        format!("use --crop to take a part{memory}"),
-    )
-}
-
-/// How the voids of a DEM of so many columns and rows are filled.
-pub(super) fn to_fill([columns, rows]: [usize; 2], is_filed: bool) -> String {
-    let samples = columns as u64 * rows as u64;
-    let needed = held_bytes(samples).div_ceil(1 << 20);
-    match is_filed {
-        false => "add --fill-voids".into(),
-        true if samples <= MAX_SAMPLES as u64 => {
-            format!("give --fill-voids --memory {needed}MiB, in the place of a smaller --memory")
-        }
-        true => "fill them first: `gdal_fillnodata.py IN OUT.tif`".into(),
-    }
 }
 
 /// As many samples of a file as may be read to be warped, beside `held` others.

@@ -10,14 +10,15 @@ use std::path::Path;
 use glam::DVec2;
 
 use super::crop;
-use super::crs::{Crs, Way};
-use super::grid::{Grid, Window, span};
+use super::crs::Way;
+use super::grid::{Grid, span};
 use super::inscribed::largest;
-use super::limits::{MAX_SAMPLES, Whole, too_many};
+use super::limits::{Whole, too_many};
 use super::mosaic::reach;
 use super::source::MIN_SIDE;
-use super::{History, ReadOptions};
+use crate::dem::{Crs, History, MAX_SAMPLES, Window};
 use crate::error::{Error, Result};
+use crate::geo::ReadOptions;
 
 /// Pixels from the border of the files to where cubic convolution has all its samples.
 const BORDER: f64 = 1.5;

@@ -6,10 +6,10 @@
 use gdal::Metadata;
 use gdal::raster::{ColorInterpretation, GdalDataType, RasterBand};
 
-use super::encoding::Encoding;
 use super::source::Source;
-use super::{History, ReadOptions};
+use crate::dem::History;
 use crate::error::{Error, Result};
+use crate::geo::{Encoding, ReadOptions};
 
 /// Words for elevation in the names of bands, and ways of gridding points; of each the surest first.
 const NAMES: [&[&str]; 2] = [&["elevation", "dem", "height"], &["idw", "mean"]];

@@ -10,12 +10,21 @@ use rayon::prelude::*;
 
 use super::formats;
 use super::source::heard;
+use crate::error::Result;
 
 /// Samples along a side of the file's tiles, and rows written at once.
 const TILE: usize = 512;
 /// Where the samples lie: UTM zone 32, its middle meridian and 50 degrees north in the middle.
 const EPSG: u32 = 32632;
 const MIDDLE: [f64; 2] = [500_000.0, 5_540_000.0];
+
+/// Whether this build has GDAL, which reads and writes rasters.
+///
+/// # Errors
+/// None here; [`Error::Limit`](crate::error::Error::Limit) in a build without.
+pub fn available() -> Result<()> {
+    Ok(())
+}
 
 /// Writes `rows` of `columns` metres as a GeoTIFF, tiled and deflated, with square cells of `cell` metres. `row` gives one
 /// row and is asked on several threads; `progress` hears the share done. Memory: 512 rows, twice.

@@ -4,7 +4,7 @@
 //! row), then each side moved out, or in, sample by sample. Cost: about 256 x 256 places and a few dozen sides. The
 //! region must be without holes, as the image of a rectangle is. The result is largest up to one node's spacing.
 
-use super::grid::Window;
+use crate::dem::Window;
 
 /// Nodes along the longer side.
 const NODES: usize = 256;

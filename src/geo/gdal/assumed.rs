@@ -4,9 +4,9 @@ use std::path::Path;
 
 use super::doubt::{doubts, other_units, sentinels};
 use super::elevation::Elevation;
-use super::nodata::Nodata;
 use super::tally::Tally;
 use crate::error::shown;
+use crate::geo::Nodata;
 
 /// Files whose doubtful heights are told one by one.
 const FILES: usize = 3;

@@ -3,9 +3,8 @@
 use std::fmt::{self, Display, Formatter};
 use std::path::PathBuf;
 
-use super::crs::Crs;
-use super::history::History;
-use super::read::{ReadOptions, Reading, Stage};
+use super::{ReadOptions, Reading, Stage};
+use crate::dem::{Crs, History};
 use crate::error::{Result, shown};
 
 /// What is known of a DEM after reading it whole. `Display` prints a few aligned lines.
@@ -52,19 +51,7 @@ impl Info {
 /// Those of [`read_all`](super::read_all()).
 pub fn info(paths: &[PathBuf], options: &ReadOptions, progress: &dyn Fn(Stage, f64)) -> Result<Info> {
     let reading = Reading::new(paths, options)?;
-    let (driver, files) = (reading.mosaic.format.clone(), reading.mosaic.grid.clone());
-    let source = reading.target.warps.then(|| {
-        let (cell, units) = (files.cell(), files.crs.units());
-        let [west, south, east, north] = files.extent();
-        format!(
-            "{} x {} samples, {}, cells of {:.6} x {:.6} {units}, W {west:.5} S {south:.5} E {east:.5} N {north:.5}",
-            files.columns,
-            files.rows,
-            name_of(&files.crs),
-            cell.x,
-            cell.y
-        )
-    });
+    let (driver, source) = (reading.format().to_owned(), reading.warped_from());
     let dem = reading.finish(progress)?;
     let survey = dem.survey(&|done| progress(Stage::Read, done))?;
     let mut history = dem.history().clone();
@@ -113,7 +100,7 @@ impl Display for Info {
 }
 
 /// Its label, or that there is none.
-fn name_of(crs: &Crs) -> String {
+pub(super) fn name_of(crs: &Crs) -> String {
     match crs.label() {
         label if label.is_empty() => "none".to_owned(),
         label => label,

@@ -9,8 +9,9 @@
 use gdal::raster::GdalDataType;
 
 use super::elevation::{EARTH, Elevation, Reading};
-use super::nodata::{Nodata, shown};
+use super::stored::shown;
 use super::tally::{Beyond, Tally};
+use crate::geo::Nodata;
 
 /// A gap this large against the range of all others sets a number apart …
 const OF_RANGE: f64 = 0.1;

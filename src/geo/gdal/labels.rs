@@ -5,10 +5,10 @@
 
 use glam::DVec2;
 
-use super::History;
-use super::crs::{Crs, Way};
+use super::crs::Way;
 use super::grid::{Grid, looks_like_degrees};
 use super::source::Source;
+use crate::dem::{Crs, History};
 use crate::error::Result;
 
 /// How far, in cells, a sample may lie beyond a pole: rounding of file formats.

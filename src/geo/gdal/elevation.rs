@@ -3,14 +3,11 @@
 use gdal::raster::GdalDataType;
 
 use super::choice::SIGNED_BYTE;
-use super::crs::Crs;
 use super::depth::is_depth;
-use super::encoding::Encoding;
-use super::history::History;
-use super::nodata::Nodata;
-use super::read::ReadOptions;
 use super::source::{Source, heard};
+use crate::dem::{Crs, History};
 use crate::error::{Error, Result};
+use crate::geo::{ElevationUnit, Encoding, Nodata, ReadOptions};
 
 /// At and below this many metres an elevation is a mark for no data, declared or not: -32767, -32768, -3.4e38.
 const DEEPEST: f64 = -32767.0;
@@ -22,32 +19,6 @@ pub(super) const EARTH: [f64; 2] = [-11_100.0, 8_900.0];
 
 /// Units below this many metres are small enough for elevations to reach the marks.
 const SMALL_UNIT: f64 = 0.09;
-
-/// Metres per international foot, exact.
-const FOOT: f64 = 0.3048;
-/// Metres per US survey foot: 1200 / 3937.
-const US_FOOT: f64 = 1200.0 / 3937.0;
-
-/// A unit of length that elevations are found in.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ElevationUnit(f64);
-
-impl ElevationUnit {
-    /// The metre.
-    pub const METRE: Self = Self(1.0);
-    /// The international foot, 0.3048 m.
-    pub const FOOT: Self = Self(FOOT);
-    /// The US survey foot, 1200 / 3937 m.
-    pub const US_FOOT: Self = Self(US_FOOT);
-    /// A tenth of a metre.
-    pub const DECIMETRE: Self = Self(0.1);
-    /// A hundredth of a metre.
-    pub const CENTIMETRE: Self = Self(0.01);
-    /// A thousandth of a metre.
-    pub const MILLIMETRE: Self = Self(0.001);
-    /// A thousand metres.
-    pub const KILOMETRE: Self = Self(1000.0);
-}
 
 /// How the numbers of one band become metres.
 #[derive(Debug, Clone)]
@@ -99,7 +70,7 @@ impl Elevation {
         };
         if options.encoding.is_some_and(Encoding::is_picture) {
             // The colours' own scale, unit and nodata are those of a picture.
-            return Ok(Self { factor: options.elevation_unit.map_or(1.0, |ElevationUnit(factor)| factor), ..plain });
+            return Ok(Self { factor: options.elevation_unit.map_or(1.0, ElevationUnit::metres), ..plain });
         }
         let elevation = Self {
             scale: band.scale().unwrap_or(1.0),
@@ -226,7 +197,7 @@ fn factor(source: &Source, crs: &Crs, unit: Option<ElevationUnit>, history: &mut
     let (vertical, vertical_metres) = vertical_unit(source);
     let named = [band.trim().to_owned(), vertical].into_iter().find(|name| !is_blank(name));
     let (factor, name) = match (unit, named) {
-        (Some(ElevationUnit(factor)), _) => (factor, "as --elevation-unit says".to_owned()),
+        (Some(unit), _) => (unit.metres(), "as --elevation-unit says".to_owned()),
         (None, Some(name)) => {
             let known = metres_per(&name).or(vertical_metres).ok_or_else(|| unknown_unit(source, &name))?;
             (known, format!("\"{name}\""))
@@ -265,8 +236,10 @@ fn metres_per(unit: &str) -> Option<f64> {
     let words = words.split_whitespace().collect::<Vec<_>>().join(" ");
     Some(match words.as_str() {
         "m" | "metre" | "metres" | "meter" | "meters" => 1.0,
-        "ft" | "foot" | "feet" | "international foot" | "international feet" => FOOT,
-        "us survey foot" | "us survey feet" | "us ft" | "us foot" | "us feet" | "ftus" | "usft" | "foot us" => US_FOOT,
+        "ft" | "foot" | "feet" | "international foot" | "international feet" => ElevationUnit::FOOT.metres(),
+        "us survey foot" | "us survey feet" | "us ft" | "us foot" | "us feet" | "ftus" | "usft" | "foot us" => {
+            ElevationUnit::US_FOOT.metres()
+        }
         "cm" | "centimetre" | "centimetres" | "centimeter" | "centimeters" => 0.01,
         "dm" | "decimetre" | "decimetres" | "decimeter" | "decimeters" => 0.1,
         "mm" | "millimetre" | "millimetres" | "millimeter" | "millimeters" => 0.001,
@@ -304,7 +277,7 @@ mod tests {
 
     #[test]
     fn marks_are_written_in_the_unit_of_the_file() {
-        let feet = Elevation { factor: FOOT, ..Elevation::plain() };
+        let feet = Elevation { factor: ElevationUnit::FOOT.metres(), ..Elevation::plain() };
         assert_eq!(feet.reading(-32767.0), Reading::Sentinel);
         assert_eq!(feet.reading(1000.0), Reading::Metres(304.8));
         let millimetres = Elevation { factor: 0.001, kind: GdalDataType::Int32, ..Elevation::plain() };

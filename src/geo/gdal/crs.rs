@@ -1,4 +1,4 @@
-//! Coordinate reference systems: names, units, and the way from one to another.
+//! Coordinate reference systems: what files and the register say of them, and the way from one to another.
 //!
 //! PROJ does the mathematics, through GDAL. Coordinates always stand x first, east or longitude, whatever order the
 //! system's register gives. Not handled: heights, epochs, datum grids that are not on the machine.
@@ -8,41 +8,16 @@ use glam::DVec2;
 
 use super::register;
 use super::source::heard;
+use crate::dem::{Crs, Transform, Unit};
 use crate::error::{Error, Result, Setting, plain};
 
-/// Relative difference of a linear unit to the metre that is still a metre.
-const METRE_EPSILON: f64 = 1e-9;
 /// Longitude and latitude, in the register of EPSG.
 const WGS84: u32 = 4326;
 /// Metres from the middle of the Earth to its equator, and how much another ellipsoid of the Earth may differ.
 const EARTH_RADIUS: f64 = 6_378_137.0;
 const EARTH_SHARE: f64 = 0.01;
 
-/// A coordinate reference system: a name for people, a definition for PROJ, and a unit.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Crs {
-    wkt: String,
-    name: String,
-    epsg: Option<u32>,
-    unit: Unit,
-}
-
-/// What one step of a coordinate is.
-#[derive(Debug, Clone, PartialEq)]
-enum Unit {
-    /// So many radians.
-    Angle(f64),
-    /// So many metres, and the unit's name.
-    Length(f64, String),
-}
-
 impl Crs {
-    /// Of a place that nobody named: metres from somewhere.
-    pub fn unknown() -> Self {
-        let unit = Unit::Length(1.0, "metre".into());
-        Self { wkt: String::new(), name: String::new(), epsg: None, unit }
-    }
-
     /// Longitude and latitude in degrees, WGS 84.
     ///
     /// # Errors
@@ -85,53 +60,7 @@ impl Crs {
         };
         let wkt = heard(|| reference.to_wkt()).0.ok()?;
         let (name, epsg) = identity(reference);
-        Some(Self { wkt, name: plain(name), epsg, unit })
-    }
-
-    /// Its name, empty when unknown.
-    pub fn name(&self) -> &str {
-        &self.name
-    }
-
-    /// Its number in the register of EPSG, where it is known.
-    pub fn epsg(&self) -> Option<u32> {
-        self.epsg
-    }
-
-    /// Its definition in the well-known text of OGC, empty when unknown.
-    pub fn wkt(&self) -> &str {
-        &self.wkt
-    }
-
-    /// Name and number, empty when unknown: `WGS 84 / UTM zone 10N (EPSG:32610)`.
-    pub fn label(&self) -> String {
-        match self.epsg {
-            Some(code) => format!("{} (EPSG:{code})", self.name),
-            None => self.name.clone(),
-        }
-    }
-
-    /// Whether its coordinates are longitude and latitude.
-    pub fn is_geographic(&self) -> bool {
-        matches!(self.unit, Unit::Angle(_))
-    }
-
-    /// Metres a step of a coordinate; `None` for angles.
-    pub fn metres_per_unit(&self) -> Option<f64> {
-        match self.unit {
-            Unit::Angle(_) => None,
-            Unit::Length(metres, _) if (metres - 1.0).abs() <= METRE_EPSILON => Some(1.0),
-            Unit::Length(metres, _) => Some(metres),
-        }
-    }
-
-    /// The unit of its coordinates in words, plural: `degrees`, `metres`, or as the file calls it.
-    pub fn units(&self) -> &str {
-        match &self.unit {
-            Unit::Angle(_) => "degrees",
-            Unit::Length(..) if self.metres_per_unit() == Some(1.0) => "metres",
-            Unit::Length(_, name) => name,
-        }
+        Some(Self::new(wkt, plain(name), epsg, unit))
     }
 
     /// Whether its ellipsoid has about the size of the Earth's, or nobody names one.
@@ -145,29 +74,35 @@ impl Crs {
         self.turn().map_or(x, |turn| x + turn * ((middle - x) / turn).round())
     }
 
-    /// Steps of a full turn, for longitudes.
-    pub(super) fn turn(&self) -> Option<f64> {
-        match self.unit {
-            Unit::Angle(radians) => Some(std::f64::consts::TAU / radians),
-            Unit::Length(..) => None,
-        }
-    }
-
     /// West, south, east and north of the area that it is made for, degrees, where the register tells.
     pub(super) fn area(&self) -> Option<[f64; 4]> {
-        let (area, _) = heard(|| SpatialRef::from_epsg(self.epsg?).ok()?.area_of_use());
+        let (area, _) = heard(|| SpatialRef::from_epsg(self.epsg()?).ok()?.area_of_use());
         let area = area?;
         Some([area.west_lon_degree, area.south_lat_degree, area.east_lon_degree, area.north_lat_degree])
     }
 
     /// GDAL's handle, x first; `None` when unknown.
     pub(super) fn reference(&self) -> Option<SpatialRef> {
-        if self.wkt.is_empty() {
+        if self.wkt().is_empty() {
             return None;
         }
-        let mut reference = heard(|| SpatialRef::from_wkt(&self.wkt)).0.ok()?;
+        let mut reference = heard(|| SpatialRef::from_wkt(self.wkt())).0.ok()?;
         reference.set_axis_mapping_strategy(AxisMappingStrategy::TraditionalGisOrder);
         Some(reference)
+    }
+}
+
+/// What leads from one system to another: PROJ.
+#[derive(Debug)]
+pub(super) struct Proj;
+
+impl Transform for Proj {
+    fn place(&self, from: &Crs, to: &Crs, place: DVec2) -> Option<DVec2> {
+        Way::between(from, to)?.place(place)
+    }
+
+    fn lonlat(&self) -> Result<Crs> {
+        Crs::lonlat()
     }
 }
 

@@ -6,14 +6,13 @@
 
 use super::choice::has_word;
 use super::elevation::{Elevation, Reading};
-use super::encoding::Encoding;
 use super::glance::windows;
-use super::grid::Window;
-use super::history::History;
 use super::mosaic::block;
 use super::said::Said;
 use super::source::Source;
+use crate::dem::{History, Window};
 use crate::error::Result;
+use crate::geo::Encoding;
 
 /// Words of a name that is one of heights, whatever else says depth.
 const UPWARD: [&str; 17] = [
