@@ -3,10 +3,8 @@
 use std::process::ExitCode;
 
 use clap::Parser;
-use hachure::cli::{Arguments, memory, threads};
-
-/// Exit code for "try again": here, ended by a signal.
-const TRY_AGAIN: i32 = 75;
+use hachure::cli::{Arguments, TRY_AGAIN, memory, threads};
+use hachure::files::signals;
 
 /// Says in a line that memory has ended.
 #[global_allocator]
@@ -17,12 +15,7 @@ fn main() -> ExitCode {
     threads::prepare();
     let arguments = Arguments::parse();
     let talk = arguments.talk();
-    let handled = ctrlc::set_handler(|| {
-        hachure::files::discard_all();
-        // SAFETY: it ends the process and touches nothing. Destructors of drivers would run while their threads draw.
-        unsafe { libc::_exit(TRY_AGAIN) }
-    });
-    if let Err(error) = handled {
+    if let Err(error) = signals::end_when_asked(TRY_AGAIN) {
         talk.warn(&format!("a signal may leave temporary files behind ({error})"));
     }
     match arguments.run(&talk) {

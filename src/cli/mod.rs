@@ -23,6 +23,9 @@ use clap::{Parser, Subcommand};
 use crate::error::Result;
 use talk::{Lines, Talk, TalkArguments};
 
+/// Exit code for "try again": here, ended by a signal.
+pub const TRY_AGAIN: i32 = 75;
+
 /// The end of `hachure --help`.
 const EXAMPLES: &str = "\
 Examples:
