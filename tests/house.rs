@@ -4,9 +4,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Folders and files of `src` in the order in which the data flows; errors are everyone's.
-const ORDER: [&str; 14] = [
-    "error", "files", "cache", "dem", "geo", "surface", "view", "plan", "gpu", "ink", "truth", "render", "report",
-    "cli",
+const ORDER: [&str; 15] = [
+    "error", "files", "cache", "dem", "geo", "surface", "view", "plan", "gpu", "ink", "truth", "render", "measure",
+    "report", "cli",
 ];
 
 /// What truth may know.

@@ -8,9 +8,9 @@ use glam::DVec2;
 use crate::dem::LARGEST_SIDE as MOST_SAMPLES;
 use crate::geo::{ElevationUnit, Encoding, Nodata};
 use crate::gpu::AdapterChoice;
+use crate::measure::compare::{LEAST_TRUTH_LEVEL, METHODS};
 use crate::plan::pieces::LARGEST_PAGE;
 use crate::plan::{Detail, Method};
-use crate::report::compare::{LEAST_TRUTH_LEVEL, METHODS};
 use crate::surface::Level;
 
 /// No place on Earth has coordinates beyond this, in any unit.

@@ -8,9 +8,9 @@
 //! Does not handle: several vertex batches, which share one buffer; facets across the near plane or the guard band, of
 //! which vertices have no place: they are left out, which costs nothing.
 
-use super::pass::reflect;
-use super::{Buffers, Gpu};
 use crate::error::{Error, Result};
+use crate::gpu::pass::reflect;
+use crate::gpu::{Buffers, Gpu};
 use crate::surface::Lattice;
 use crate::surface::lattice::{CHUNK_FACETS, CHUNK_SIDE, CHUNK_VERTICES, Chunk};
 

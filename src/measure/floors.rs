@@ -1,10 +1,9 @@
 //! Times of the bare copy and the depth draw of one run, and what they say of its frames.
 
-use super::results::Floor as Figures;
+use super::Floor;
+use super::figures::FloorFigures;
 use super::trial::median;
-use super::words::milliseconds;
 use crate::error::Result;
-use crate::render::Floor;
 use crate::view::Camera;
 
 /// Times taken in turn with the warm frames.
@@ -30,7 +29,7 @@ impl Floors {
     }
 
     /// The medians beside that of the frames.
-    pub fn beside(self, frame_ms: f64) -> Figures {
+    pub fn beside(self, frame_ms: f64) -> FloorFigures {
         let [copy_ms, draw_ms] = [self.copies, self.draws].map(of_all);
         let lacking = match (copy_ms, draw_ms) {
             (Some(_), Some(_)) => None,
@@ -39,7 +38,7 @@ impl Floors {
         };
         let per = |ms: Option<f64>| ms.map(|ms| frame_ms / ms);
         let (frame_per_copy, frame_per_draw) = (per(copy_ms), per(draw_ms));
-        Figures { bytes: self.bytes, copy_ms, draw_ms, lacking, frame_per_copy, frame_per_draw }
+        FloorFigures { bytes: self.bytes, copy_ms, draw_ms, lacking, frame_per_copy, frame_per_draw }
     }
 }
 
@@ -48,19 +47,4 @@ fn of_all(times: Vec<Option<f64>>) -> Option<f64> {
     let mut times = times.into_iter().collect::<Option<Vec<f64>>>()?;
     times.sort_by(f64::total_cmp);
     (!times.is_empty()).then(|| median(&times))
-}
-
-/// "98 MB at 4.1 GB/s, a bare copy 9.8 GB/s (frame / copy 2.4), depth draw 40.2 ms (frame / draw 0.6)".
-pub(super) fn words(floor: &Figures, frame_ms: f64) -> String {
-    let Figures { bytes, copy_ms, draw_ms, lacking, frame_per_copy, frame_per_draw } = floor;
-    // Bytes a millisecond are kilobytes a second.
-    let rate = |ms: f64| *bytes as f64 / ms / 1e6;
-    let mut words = format!("{:.0} MB at {:.2} GB/s", *bytes as f64 / 1e6, rate(frame_ms));
-    if let (Some(ms), Some(per)) = (copy_ms, frame_per_copy) {
-        words += &format!(", a bare copy {:.2} GB/s (frame / copy {per:.2})", rate(*ms));
-    }
-    if let (Some(ms), Some(per)) = (draw_ms, frame_per_draw) {
-        words += &format!(", depth draw {} ms (frame / draw {per:.2})", milliseconds(*ms));
-    }
-    lacking.map_or(words.clone(), |why| format!("{words}, lacking: {why}"))
 }

@@ -8,17 +8,17 @@ use std::cell::Cell;
 
 use glam::DVec2;
 
-use super::pictures::{Picture, truth_picture};
-use super::results::{Convergence, DrawnLevel, LevelOffset, Run, TruthReport};
-use super::trial::{Trial, line, moved, picture_names};
+use super::figures::{Convergence, DrawnLevel, LevelOffset, Run, TruthReport};
+use super::trial::{Trial, moved, picture_names};
 use super::truths::Kept;
 use crate::cache::Cache;
 use crate::error::{Error, Message, Result, Setting};
 use crate::gpu::Gpu;
+use crate::ink::InkRaster;
 use crate::message;
 use crate::plan::{Border, Detail, Method, Plan, Share};
 use crate::surface::Level;
-use crate::truth::metrics::{FRAGMENT, Judge, Offsets};
+use crate::truth::metrics::{FRAGMENT, Judge, Measured, Offsets};
 use crate::truth::{Line, Mask, Terrain, Truth};
 use crate::view::Camera;
 
@@ -48,7 +48,7 @@ pub struct Comparison {
     /// Warm frames behind a median, at least one.
     pub repeat: u32,
     /// Whether a bare copy and a hardware depth draw are timed in turn with the warm frames; pixels of the draw show facets
-    /// where the device has [`FEATURE`](crate::gpu::depth_draw::FEATURE).
+    /// where the device has [`FEATURE`](super::depth_draw::FEATURE).
     pub floor: bool,
     /// Whether border lines are drawn and judged.
     pub border: Border,
@@ -64,10 +64,28 @@ pub struct Hearing<'a> {
     pub stage: &'a dyn Fn(&str, f64),
     /// Something the user should know.
     pub warn: &'a dyn Fn(&Message),
-    /// A line on what was found.
-    pub say: &'a dyn Fn(&str) -> Result<()>,
-    /// A line for those who want to know more.
-    pub detail: &'a dyn Fn(&str) -> Result<()>,
+    /// What was found, one thing after the other.
+    pub found: &'a dyn Fn(Found<'_>) -> Result<()>,
+}
+
+/// What a comparison finds, told as soon as it is known.
+pub enum Found<'a> {
+    /// The truth of a scene of this name, and how coarser levels close in on it.
+    Truth(&'a str, &'a TruthReport, Option<&'a Convergence>),
+    /// What a method drew at a level, measured.
+    Run(&'a Run),
+    /// What a picture of this file name shows.
+    Picture(&'a str, Shown<'a>),
+}
+
+/// What pictures show.
+pub enum Shown<'a> {
+    /// Truth, drawn one pixel wide.
+    Truth(&'a Mask),
+    /// The ink of a frame.
+    Mask(&'a InkRaster),
+    /// How ink differs from truth.
+    Difference(&'a Mask, &'a Measured<'a>),
 }
 
 /// What was found of a scene.
@@ -80,8 +98,6 @@ pub struct Compared {
     pub runs: Vec<Run>,
     /// File name of truth drawn one pixel wide.
     pub picture: String,
-    /// Every picture, by the names that the runs have for them.
-    pub pictures: Vec<Picture>,
 }
 
 /// A scene's truths.
@@ -114,13 +130,10 @@ impl Comparison {
         to: &Hearing<'_>,
     ) -> Result<Compared> {
         let Truths { truth, report, convergence, pop } = self.truths(name, terrain, camera, to)?;
-        (to.say)(&truth_line(name, &report))?;
-        if let Some(Convergence { slope: Some(slope), fitted_levels, .. }) = &convergence {
-            (to.say)(&format!("{name} flip edges close in on truth: slope {slope:.2} over levels {fitted_levels:?}"))?;
-        }
+        (to.found)(Found::Truth(name, &report, convergence.as_ref()))?;
         let Some(judge) = Judge::new(&truth) else { return Err(no_line(name)) };
         let picture = truth_name(name);
-        let mut pictures = vec![truth_picture(picture.clone(), &Mask::of_truth(&truth))?];
+        (to.found)(Found::Picture(&picture, Shown::Truth(&Mask::of_truth(&truth))))?;
         let mut runs = Vec::new();
         for &level in &self.levels {
             for &(method_name, method) in &self.methods {
@@ -138,16 +151,15 @@ impl Comparison {
                     floor: self.floor,
                     judge: &judge,
                     truth_pop: pop,
+                    found: to.found,
                 };
-                let (run, drawn) = trial.run()?;
-                (to.say)(&line(&run))?;
-                (to.detail)(&format!("  masks of the warm frames: {}", run.mask_hashes.join(" ")))?;
+                let run = trial.run()?;
+                (to.found)(Found::Run(&run))?;
                 runs.push(run);
-                pictures.extend(drawn);
             }
         }
         mark_front(&mut runs);
-        Ok(Compared { truth: report, convergence, runs, picture, pictures })
+        Ok(Compared { truth: report, convergence, runs, picture })
     }
 
     fn truths(&self, name: &str, terrain: &Terrain<'_>, camera: &Camera, to: &Hearing<'_>) -> Result<Truths> {
@@ -225,15 +237,6 @@ fn mark_front(runs: &mut [Run]) {
     for (run, p) in runs.iter_mut().zip(&points) {
         run.pareto = !points.iter().any(|q| q[0] <= p[0] && q[1] <= p[1] && q != p);
     }
-}
-
-fn truth_line(name: &str, truth: &TruthReport) -> String {
-    let TruthReport { level, length_px, border_px, self_f, facets, rays, truth_ms, .. } = truth;
-    format!(
-        "{name} truth at level {level}: {length_px:.0} px of line ({border_px:.0} of border), F of half the level \
-         {self_f:.4}; {facets} facets, {rays} rays, {:.2} s",
-        truth_ms / 1e3
-    )
 }
 
 fn nothing_in_view(name: &str) -> Error {

@@ -8,16 +8,16 @@ use std::time::Instant;
 use glam::DVec2;
 use xxhash_rust::xxh3::xxh3_64;
 
-use super::floors::{self, Floors};
-use super::memory;
-use super::pictures::{Picture, difference_picture, mask_picture};
-use super::results::{AtDistance, Band, DrawnLevel, PassFigures, Place, Run};
+use super::compare::{Found, Shown};
+use super::cost::PassCost;
+use super::figures::{AtDistance, Band, DrawnLevel, PassFigures, Place, Run};
+use super::floors::Floors;
+use super::{Floor, costs, memory};
 use crate::error::Result;
 use crate::gpu::Gpu;
 use crate::ink::{InkRaster, Kind, Marks, Pixel, trace};
-use crate::plan::cost::PassCost;
 use crate::plan::{Method, Plan};
-use crate::render::{Floor, Frame, PassTime, Renderer};
+use crate::render::{Frame, PassTime, Renderer};
 use crate::surface::Surface;
 use crate::truth::metrics::{BandScore, DISTANCES, FRAGMENT, Judge, Scores};
 use crate::truth::{Inked, Mask};
@@ -43,6 +43,8 @@ pub(super) struct Trial<'a> {
     pub judge: &'a Judge<'a>,
     /// Share of truth, drawn one pixel wide, that pops when the eye moves on.
     pub truth_pop: f64,
+    /// Who hears of what its pictures show.
+    pub found: &'a dyn Fn(Found<'_>) -> Result<()>,
 }
 
 /// Frames and what they took.
@@ -67,15 +69,14 @@ struct Timed {
 
 impl Trial<'_> {
     /// Draws, times and measures.
-    pub fn run(&self) -> Result<(Run, [Picture; 2])> {
+    pub fn run(&self) -> Result<Run> {
         let timed = self.time()?;
         let mask = mask_of(&timed.first.raster, timed.near);
         let measured = self.judge.measure(&mask);
         let names = picture_names(self.scene, self.method, self.plan.detail.into());
-        let [mask_name, difference_name] = names.clone();
-        let pictures =
-            [mask_picture(mask_name, &timed.first.raster)?, difference_picture(difference_name, &mask, &measured)?];
-        Ok((self.result(timed, &mask, &measured.scores(), names), pictures))
+        (self.found)(Found::Picture(&names[0], Shown::Mask(&timed.first.raster)))?;
+        (self.found)(Found::Picture(&names[1], Shown::Difference(&mask, &measured)))?;
+        Ok(self.result(timed, &mask, &measured.scores(), names))
     }
 
     fn time(&self) -> Result<Timed> {
@@ -87,7 +88,7 @@ impl Trial<'_> {
         let first = renderer.read()?;
         let one_more = moved(self.camera, self.repeat + 1);
         let passes = renderer.timed_frame(&one_more)?.passes;
-        let costs = renderer.costs(&one_more, &renderer.read()?)?;
+        let costs = costs(&renderer, &one_more, &renderer.read()?)?;
         let bytes = costs.iter().map(|pass| pass.bytes).sum();
         let mut floor = self.floor.then(|| Floor::new(&renderer, bytes)).transpose()?;
         let mut floors = self.floor.then(|| Floors::new(bytes));
@@ -161,17 +162,6 @@ impl Trial<'_> {
             difference,
         }
     }
-}
-
-/// A run in a line: every figure beside its time and what was computed.
-pub(super) fn line(run: &Run) -> String {
-    let Run { scene, method, level, precision, recall, f, gaps, spurious, .. } = run;
-    let Run { frame_ms, first_frame_ms, facets, inked, floor, .. } = run;
-    let floor = floor.as_ref().map_or(String::new(), |floor| format!("; {}", floors::words(floor, *frame_ms)));
-    format!(
-        "{scene} {method} level {level}: P {precision:.4} R {recall:.4} F {f:.4}, {gaps} gaps, {spurious} spurious; \
-         {frame_ms:.1} ms (first frame {first_frame_ms:.1}), {facets} facets, {inked} px of ink{floor}"
-    )
 }
 
 /// File names of a run's mask and of its difference from truth.

@@ -3,8 +3,8 @@
 //! One command reads half the bytes and writes the other half; where half of them are more than a buffer may hold, one
 //! pair of buffers is copied several times. Few bytes may stay in a cache, as those of a frame may.
 
-use super::Gpu;
 use crate::error::Result;
+use crate::gpu::Gpu;
 
 /// Two buffers, one copied to the other.
 pub struct BareCopy {

@@ -11,24 +11,15 @@
 
 use std::collections::HashMap;
 
-use super::detail::across;
-use super::{Method, Plan, Thrift, Visibility};
 use crate::error::Result;
+use crate::gpu::sizes::{CHUNK_BYTES, PIXEL_BYTES, RIM_EDGE_BYTES, VERTEX_BYTES, WORD_BYTES};
+use crate::plan::detail::across;
+use crate::plan::{Method, Plan, Thrift, Visibility};
 use crate::surface::lattice::{CELL_STEPS, CHUNK_FACETS, CHUNK_QUADS, CHUNK_VERTICES, CHUNK_WORDS};
 use crate::surface::tile::TILE_SAMPLES;
 use crate::surface::{Lattice, Surface, Tile};
 use crate::view::Camera;
 
-/// Bytes of a vertex on the surface, and of one on the page.
-pub const VERTEX_BYTES: u64 = 16;
-/// Bytes of a chunk as shaders read it.
-pub const CHUNK_BYTES: u64 = 40;
-/// Bytes of a pixel: depth and ID, or two depths.
-pub const PIXEL_BYTES: u64 = 8;
-/// Bytes of a word: the ink of a pixel, an item of a list, 32 facing bits, the summary of a chunk, a height.
-pub const WORD_BYTES: u64 = 4;
-/// Bytes of an edge of the rim.
-pub const RIM_EDGE_BYTES: u64 = 16;
 /// Bytes of a sample of which gradients are read too.
 const SAMPLE_BYTES: u64 = 3 * WORD_BYTES;
 /// Bytes that a point on a facet depends on: its vertices.

@@ -9,11 +9,11 @@ use std::ops::Range;
 
 use xxhash_rust::xxh3::{Xxh3, xxh3_128};
 
-use super::WORDS;
+use super::super::{PyramidBuilder, SurfaceBand};
+use super::{Pyramid, Surface, WORDS};
 use crate::cache::{Kept, Key, Kind, Sheet, not_kept};
 use crate::dem::{Dem, Samples};
 use crate::error::{Message, Result};
-use crate::surface::{Pyramid, PyramidBuilder, Surface, SurfaceBand};
 
 /// Raise it when the pyramid of the same samples comes out otherwise, or when the bytes mean something else.
 const FORMAT: u32 = 1;

@@ -16,10 +16,10 @@ mod heights;
 
 use std::cell::RefCell;
 
+use super::{Pyramid, Surface};
 use crate::cache::{Cache, Hearing, Key, Sheet};
 use crate::dem::Dem;
 use crate::error::{Message, Result};
-use crate::surface::{Pyramid, Surface};
 
 use heights::{Heights, HeightsBuilder};
 
