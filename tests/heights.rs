@@ -16,6 +16,8 @@ use hachure::cli::values;
 use hachure::dem::{Dem, ReadOptions, read, read_all};
 use tempfile::TempDir;
 
+use crate::common::words;
+
 /// Columns and rows of the land here.
 const SIDE: usize = 80;
 /// Less memory than any tile: samples stay in their file.
@@ -91,7 +93,7 @@ fn assumed(paths: &[PathBuf], options: &ReadOptions) -> Vec<String> {
         let all = [filed.history().assumed(), &survey.assumed].concat();
         assert_eq!(all, held.history().assumed(), "a DEM in its file says something else");
     }
-    held.history().assumed().to_vec()
+    words(held.history().assumed())
 }
 
 /// The only clause that is assumed of a file, with all `words`.

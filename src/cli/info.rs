@@ -2,6 +2,7 @@
 
 use super::talk::Talk;
 use super::terrain::{TerrainArguments, words};
+use super::words::told;
 use crate::dem;
 use crate::error::Result;
 
@@ -25,5 +26,5 @@ pub struct InfoArguments {
 pub fn run(arguments: &InfoArguments, talk: &Talk) -> Result<()> {
     let terrain = &arguments.terrain;
     let info = dem::info(&terrain.dems, &terrain.options(1.0), &|stage, share| talk.progress(words(stage), share))?;
-    talk.answer(&info.to_string())
+    talk.answer(&info.told(told))
 }

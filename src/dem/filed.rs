@@ -19,7 +19,8 @@ use super::overviews::Overviews;
 use super::raster::Raster;
 use super::tally::{Tallies, merge};
 use super::tiling::{Tiling, gather};
-use crate::error::{Error, Result};
+use crate::error::{Error, Message, Result, Setting};
+use crate::message;
 
 /// Most bytes of tiles that are kept: frames ask for samples place by place.
 const MOST_KEPT: usize = 128 << 20;
@@ -175,7 +176,7 @@ impl Filed {
     }
 
     /// What had to be assumed of the numbers tallied, in words as those of a history.
-    pub fn assumed(&self, tallies: &Tallies) -> Vec<String> {
+    pub fn assumed(&self, tallies: &Tallies) -> Vec<Message> {
         assumed(&self.mosaic.tallied(tallies), self.mosaic.is_of_several())
     }
 
@@ -199,12 +200,17 @@ impl Filed {
             Some(units) => Error::input(
                 self.mosaic.path(),
                 format!("{what} or above 100000 m"),
-                format!("if the heights are in another unit, add {units}"),
+                message!["if the heights are in another unit, add ", units],
             ),
             None => Error::input(
                 self.mosaic.path(),
                 what,
-                "check the band and its nodata value with `gdalinfo -stats`, choose another --band, or move --crop",
+                message![
+                    "check the band and its nodata value with `gdalinfo -stats`, choose another ",
+                    Setting::Band,
+                    ", or move ",
+                    Setting::Crop
+                ],
             ),
         }
     }

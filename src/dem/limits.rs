@@ -10,7 +10,8 @@ use super::ReadOptions;
 use super::grid::Grid;
 use super::mosaic::Mosaic;
 use super::target::Target;
-use crate::error::{Error, Result, shown};
+use crate::error::{Error, Message, Part, Result, Setting, shown};
+use crate::message;
 
 /// Most samples of a DEM held in memory: 128 MiB of heights, the largest buffer that every GPU binds.
 pub const MAX_SAMPLES: usize = 1 << 25;
@@ -27,7 +28,7 @@ pub(super) enum Whole {
     Warped,
     /// This file is warped to the grid of the first.
     Apart(PathBuf),
-    /// `--fill-voids`.
+    /// Voids are filled.
     Filled,
 }
 
@@ -91,7 +92,7 @@ pub(super) fn too_many(path: &Path, grid: &Grid, why: &Whole, metres: f64) -> Er
     let reason = why.reason();
     Error::limit(
         format!("{}: {columns} x {rows} = {samples} samples, at most {MAX_SAMPLES} fit {reason}", shown(path)),
-        format!("{}, use --crop to take a part, or --resample {metres} for cells of {metres} m", why.remedy(grid)),
+        message![why.remedy(grid), ", ", coarser(metres)],
     )
 }
 
@@ -99,8 +100,12 @@ fn over_budget(path: &Path, grid: &Grid, why: &Whole, memory: u64) -> Error {
     let samples = grid.columns as u64 * grid.rows as u64;
     let (needed, reason) = (held_bytes(samples).div_ceil(1 << 20), why.reason());
     Error::limit(
-        format!("{}: needs {needed} MiB of memory {reason}, more than --memory allows", shown(path)),
-        format!("give --memory {needed}MiB (it is {} MiB), or {}", memory >> 20, why.remedy(grid)),
+        message![
+            format!("{}: needs {needed} MiB of memory {reason}, more than ", shown(path)),
+            Setting::Memory,
+            " allows"
+        ],
+        message!["give ", mebibytes(needed), format!(" (it is {} MiB), or {}", memory >> 20, why.remedy(grid))],
     )
 }
 
@@ -111,7 +116,7 @@ fn check_longest(path: &Path, grid: &Grid, metres: f64) -> Result<()> {
     }
     Err(Error::limit(
         format!("{}: {columns} x {rows} samples, at most {LARGEST_SIDE} along a side fit", shown(path)),
-        format!("use --crop to take a part, or --resample {metres} for cells of {metres} m"),
+        coarser(metres),
     ))
 }
 
@@ -119,24 +124,38 @@ fn check_longest(path: &Path, grid: &Grid, metres: f64) -> Result<()> {
 pub(super) fn not_held([columns, rows]: [usize; 2]) -> Error {
     let samples = columns as u64 * rows as u64;
     let more = held_bytes(samples).div_ceil(1 << 20);
-    let memory = if samples <= MAX_SAMPLES as u64 { format!(", or give --memory {more}MiB") } else { String::new() };
+    let mut remedy = message!["use ", Setting::Crop, " to take a part"];
+    if samples <= MAX_SAMPLES as u64 {
+        remedy.push(message![", or give ", mebibytes(more)]);
+    }
     Error::limit(
         format!("{columns} x {rows} = {samples} samples stay in their files, but here they must be in memory"),
-        format!("use --crop to take a part{memory}"),
+        remedy,
     )
 }
 
 /// How the voids of a DEM of so many columns and rows are filled.
-pub(super) fn to_fill([columns, rows]: [usize; 2], is_filed: bool) -> String {
+pub(super) fn to_fill([columns, rows]: [usize; 2], is_filed: bool) -> Message {
     let samples = columns as u64 * rows as u64;
     let needed = held_bytes(samples).div_ceil(1 << 20);
     match is_filed {
-        false => "add --fill-voids".into(),
+        false => message!["add ", Setting::FillVoids],
         true if samples <= MAX_SAMPLES as u64 => {
-            format!("give --fill-voids --memory {needed}MiB, in the place of a smaller --memory")
+            let needed = mebibytes(needed);
+            message!["give ", Setting::FillVoids, " ", needed, ", in the place of a smaller ", Setting::Memory]
         }
         true => "fill them first: `gdal_fillnodata.py IN OUT.tif`".into(),
     }
+}
+
+/// Fewer samples: a part of them, or cells of so many metres.
+fn coarser(metres: f64) -> Message {
+    let cells = format!(" for cells of {metres} m");
+    message!["use ", Setting::Crop, " to take a part, or ", Setting::Resample.at(metres), cells]
+}
+
+fn mebibytes(memory: u64) -> Part {
+    Setting::Memory.at(format!("{memory}MiB"))
 }
 
 /// As many samples of a file as may be read to be warped, beside `held` others.
@@ -144,7 +163,11 @@ fn check_read(path: &Path, read: u64, held: u64) -> Result<()> {
     if read > MAX_READ {
         return Err(Error::limit(
             format!("{}: {read} samples would be read to be warped, at most {MAX_READ} fit", shown(path)),
-            "use --crop to take a part, or make it coarser: `gdal_translate -outsize 10% 10% -r average IN OUT.tif`",
+            message![
+                "use ",
+                Setting::Crop,
+                " to take a part, or make it coarser: `gdal_translate -outsize 10% 10% -r average IN OUT.tif`"
+            ],
         ));
     }
     check_memory(path, (read + held) * READ_BYTES, available_memory())
@@ -154,7 +177,7 @@ fn check_memory(path: &Path, needed: u64, available: Option<u64>) -> Result<()> 
     match available {
         Some(available) if available < needed => Err(Error::limit(
             format!("{}: needs {} MiB of memory, {} MiB are free", shown(path), needed >> 20, available >> 20),
-            "use --crop to take a part, or --resample M for larger cells",
+            message!["use ", Setting::Crop, " to take a part, or ", Setting::Resample.at("M"), " for larger cells"],
         )),
         _ => Ok(()),
     }

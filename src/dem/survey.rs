@@ -9,7 +9,7 @@ use super::filed::exaggerate;
 use super::grid::Window;
 use super::validity::{Validity, ValidityBuilder};
 use super::{Band, Dem, Samples, Store, limits};
-use crate::error::{Error, Result};
+use crate::error::{Error, Message, Result};
 
 /// Most samples that are kept of a filed DEM to stand for all, about: 16 MiB.
 const THINNED_SAMPLES: usize = 1 << 22;
@@ -25,7 +25,7 @@ pub struct Survey {
     pub marks: usize,
     /// What had to be assumed of the files' numbers, in words as those of a history; empty for a held DEM, whose history
     /// tells.
-    pub assumed: Vec<String>,
+    pub assumed: Vec<Message>,
     /// Patches, two a cell, whose corners all hold an elevation.
     pub patches: u64,
     /// Exaggerated metres of every k-th sample of every k-th row of a filed DEM, k as [`Dem::thinning`] says, row-major,
@@ -162,7 +162,7 @@ impl Dem {
                 self.columns() * self.rows()
             )
             .into(),
-            remedy: limits::to_fill([self.columns(), self.rows()], self.is_filed()).into(),
+            remedy: limits::to_fill([self.columns(), self.rows()], self.is_filed()),
         })
     }
 
