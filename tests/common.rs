@@ -6,6 +6,8 @@ use std::process::Command;
 use std::sync::OnceLock;
 use std::thread;
 
+use hachure::cli::words::told;
+use hachure::error::Message;
 use hachure::gpu::{AdapterChoice, Gpu, Int64};
 
 /// The device of all tests, with 64-bit atomics where the adapter has them.
@@ -15,6 +17,11 @@ use hachure::gpu::{AdapterChoice, Gpu, Int64};
 pub fn gpu() -> &'static Gpu {
     static GPU: OnceLock<Gpu> = OnceLock::new();
     GPU.get_or_init(|| Gpu::open(&AdapterChoice::Best, Int64::IfPresent).expect("an adapter"))
+}
+
+/// What was converted or assumed, in the words of the command line.
+pub fn words(clauses: &[Message]) -> Vec<String> {
+    clauses.iter().map(told).collect()
 }
 
 /// The folder of shared terrain named by `HACHURE_DEMS`. `None`, with a line that says so, when the variable is

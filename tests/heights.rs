@@ -17,6 +17,8 @@ use hachure::dem::Dem;
 use hachure::geo::{ReadOptions, read, read_all};
 use tempfile::TempDir;
 
+use crate::common::words;
+
 /// Columns and rows of the land here.
 const SIDE: usize = 80;
 /// Less memory than any tile: samples stay in their file.
@@ -92,7 +94,7 @@ fn assumed(paths: &[PathBuf], options: &ReadOptions) -> Vec<String> {
         let all = [filed.history().assumed(), &survey.assumed].concat();
         assert_eq!(all, held.history().assumed(), "a DEM in its file says something else");
     }
-    held.history().assumed().to_vec()
+    words(held.history().assumed())
 }
 
 /// The only clause that is assumed of a file, with all `words`.

@@ -3,6 +3,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use clap::CommandFactory;
+use hachure::cli::Arguments;
+
 /// Folders and files of `src` in the order in which the data flows; errors are everyone's.
 const ORDER: [&str; 15] = [
     "error", "files", "cache", "dem", "geo", "surface", "view", "plan", "gpu", "ink", "truth", "render", "measure",
@@ -12,6 +15,9 @@ const ORDER: [&str; 15] = [
 /// What truth may know.
 const TRUTH: [&str; 5] = ["error", "dem", "surface", "view", "truth"];
 
+/// Macros of the crate that are imported as modules are.
+const MACROS: [&str; 1] = ["message"];
+
 /// Modules of the crate that a source names, macros left out.
 fn named(source: &str) -> Vec<&str> {
     let code = source.lines().filter(|line| !line.trim_start().starts_with("//"));
@@ -19,7 +25,7 @@ fn named(source: &str) -> Vec<&str> {
     let end = |path: &str| path.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(path.len());
     paths
         .map(|path| path.split_at(end(path)))
-        .filter(|(_, rest)| !rest.starts_with('!'))
+        .filter(|(name, rest)| !rest.starts_with('!') && !MACROS.contains(name))
         .map(|(name, _)| name)
         .collect()
 }
@@ -41,16 +47,24 @@ fn names_gdal(source: &str) -> bool {
     })
 }
 
+/// Every file in a folder of the repository and in its folders.
+fn files(folder: &str) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    let mut open = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join(folder)];
+    while let Some(path) = open.pop() {
+        match path.is_dir() {
+            true => open.extend(fs::read_dir(&path).expect("a folder").map(|entry| entry.expect("an entry").path())),
+            false => found.push(path),
+        }
+    }
+    found
+}
+
 /// Every source below `src` but the roots, with the folder or file of `src` it belongs to.
 fn sources() -> Vec<(String, PathBuf)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let mut found = Vec::new();
-    let mut open = vec![root.clone()];
-    while let Some(path) = open.pop() {
-        if path.is_dir() {
-            open.extend(fs::read_dir(&path).expect("a folder").map(|entry| entry.expect("an entry").path()));
-            continue;
-        }
+    for path in files("src") {
         let below = path.strip_prefix(&root).expect("below src").to_path_buf();
         let folder = below.components().next().expect("a name").as_os_str().to_string_lossy().replace(".rs", "");
         if folder != "lib" && folder != "main" {
@@ -111,5 +125,48 @@ fn an_import_from_below_is_noticed() {
         Vec::<&str>::new()
     );
     assert_eq!(against("ink", "use crate::nowhere::Thing;"), ["nowhere"], "what has no place");
+    assert_eq!(named("use crate::message;\nuse crate::messages::Thing;"), ["messages"], "a macro is no module");
     assert!(named("use crate::gpu::Gpu;").iter().any(|name| !TRUTH.contains(name)), "truth may not know gpu");
+}
+
+/// Long flags of a command and of all below it, with their dashes.
+fn flags(command: &clap::Command) -> Vec<String> {
+    let own = command.get_arguments().filter_map(|flag| flag.get_long()).map(|flag| format!("--{flag}"));
+    own.chain(command.get_subcommands().flat_map(flags)).collect()
+}
+
+/// Which of `flags` a text speaks of, in code, words or comments; flags of other programs are words like any others.
+fn spoken<'a>(text: &'a str, flags: &[String]) -> Vec<&'a str> {
+    let end = |rest: &str| rest.find(|c: char| !c.is_ascii_alphanumeric() && c != '-').unwrap_or(rest.len());
+    let dashed = text.match_indices("--").map(|(at, _)| &text[at..at + end(&text[at..])]);
+    dashed.filter(|word| flags.iter().any(|flag| flag == word)).collect()
+}
+
+#[test]
+fn only_the_command_line_speaks_of_flags() {
+    let flags = flags(&Arguments::command());
+    assert!(flags.len() > 40, "only {flags:?}");
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let core: Vec<_> = [files("src"), files("shaders")].concat();
+    let core: Vec<_> =
+        core.into_iter().filter(|path| !path.starts_with(root.join("cli")) && *path != root.join("main.rs")).collect();
+    assert!(core.len() > 100 && core.contains(&root.join("lib.rs")), "only {} sources", core.len());
+    for path in core {
+        let source = fs::read_to_string(&path).expect("a source");
+        let spoken = spoken(&source, &flags);
+        assert!(spoken.is_empty(), "{} speaks of {spoken:?}: a setting has a name, see error::Setting", path.display());
+    }
+}
+
+#[test]
+fn a_flag_in_the_core_is_noticed() {
+    let flags = flags(&Arguments::command());
+    let of = |text| spoken(text, &flags);
+    assert_eq!(of("remedy: \"use --crop, or a smaller --size\".into()"), ["--crop", "--size"]);
+    assert_eq!(of("format!(\"`--crop {west}`, --resample={metres}\")"), ["--crop", "--resample"]);
+    assert_eq!(of("/// For `--fill-voids`.\n// -q and --quiet"), ["--fill-voids", "--quiet"]);
+    assert_eq!(of("`gdal_translate --config GDAL_VRT_ENABLE_PYTHON YES IN OUT.tif`, `ulimit -v`"), [""; 0]);
+    assert_eq!(of("color: var(--ink); --paper: #fff; NW----NE  o--o--o  --cropped, --no-crop"), [""; 0]);
+    let cli = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("src/cli/words.rs")).expect("a source");
+    assert!(of(&cli).len() > 30, "the command line speaks of them");
 }

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use glam::DVec2;
+use hachure::cli::words::line;
 use hachure::dem::{BLOCK_SIDE, Dem, Validity};
 use hachure::geo::{ReadOptions, read, write};
 use hachure::gpu::sizes::{LARGEST_BINDING, rim_fits, valid_fits};
@@ -190,9 +191,9 @@ fn words_of_voids_are_few() {
 fn what_no_device_binds_is_refused_with_what_helps() {
     let most = LARGEST_BINDING / 16;
     assert!(rim_fits(most).is_ok() && valid_fits(LARGEST_BINDING / 4).is_ok());
-    let rim = rim_fits(most + 1).expect_err("too long").to_string();
+    let rim = line(&rim_fits(most + 1).expect_err("too long"));
     assert!(rim.contains("129 MiB of border lines") && rim.contains("--border off") && rim.contains("--crop"), "{rim}");
-    let valid = valid_fits(LARGEST_BINDING / 4 + 1).expect_err("too many").to_string();
+    let valid = line(&valid_fits(LARGEST_BINDING / 4 + 1).expect_err("too many"));
     assert!(valid.contains("129 MiB of void marks") && valid.contains("--crop"), "{valid}");
     assert!(!valid.contains("--level"), "no level needs fewer: {valid}");
 }

@@ -132,7 +132,7 @@ struct Report {
     int64: bool,
     view: ViewReport,
     flat_earth: Option<FlatEarth>,
-    left_out: Vec<LeftOut>,
+    left_out: Vec<LeftOutReport>,
 }
 
 /// What was drawn, and what became of the files on the way.
@@ -146,6 +146,14 @@ struct DemReport {
     voids: usize,
     converted: Vec<String>,
     assumed: Vec<String>,
+}
+
+/// What the frame did without.
+#[derive(Serialize)]
+struct LeftOutReport {
+    what: &'static str,
+    why: String,
+    saved: Option<String>,
 }
 
 /// Draws.
@@ -284,7 +292,7 @@ impl DrawArguments {
             int64: gpu.int64,
             view: view.report(surface.dem().georeference(), self.exaggeration),
             flat_earth: self.flat_earth(renderer, view, page),
-            left_out: renderer.left_out(camera)?,
+            left_out: renderer.left_out(camera)?.into_iter().map(LeftOutReport::of).collect(),
         })
     }
 
@@ -299,7 +307,7 @@ fn explain(talk: &Talk, renderer: &Renderer<'_>, left_out: &[LeftOut], report: O
     talk.say(&format!("chunks: {}", levels(&renderer.lattice())))?;
     for LeftOut { what, why, saved } in left_out {
         let saved = saved.as_ref().map_or(String::new(), |saved| format!(" ({saved})"));
-        talk.say(&format!("left out: {what}, {why}{saved}"))?;
+        talk.say(&format!("left out: {what}, {}{saved}", told(why)))?;
     }
     for PassTime { name, ms } in report.iter().flat_map(|report| &report.passes) {
         talk.say(&format!("pass {name}: {ms:.2} ms"))?;
@@ -307,10 +315,17 @@ fn explain(talk: &Talk, renderer: &Renderer<'_>, left_out: &[LeftOut], report: O
     report.map_or(Ok(()), |report| talk.say(&format!("median frame: {:.2} ms", report.frame_ms)))
 }
 
+impl LeftOutReport {
+    fn of(LeftOut { what, why, saved }: LeftOut) -> Self {
+        Self { what, why: told(&why), saved }
+    }
+}
+
 impl DemReport {
     fn of(files: &[PathBuf], dem: &Dem) -> Self {
         // What cannot be read fails elsewhere, with its reason.
         let surveyed = dem.survey(&|_| ()).map(|survey| survey.assumed.clone()).unwrap_or_default();
+        let assumed = [dem.history().assumed(), &surveyed, dem.history().usual()];
         Self {
             files: files.iter().map(|file| file.to_string_lossy().into_owned()).collect(),
             columns: dem.columns(),
@@ -318,8 +333,8 @@ impl DemReport {
             cell_m: dem.cell().to_array(),
             extent_m: dem.extent(),
             voids: dem.voids(),
-            converted: dem.history().converted().to_vec(),
-            assumed: [dem.history().assumed(), &surveyed, dem.history().usual()].concat(),
+            converted: dem.history().converted().iter().map(told).collect(),
+            assumed: assumed.into_iter().flatten().map(told).collect(),
         }
     }
 }

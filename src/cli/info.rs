@@ -2,6 +2,7 @@
 
 use super::talk::Talk;
 use super::terrain::{TerrainArguments, words};
+use super::words::told;
 use crate::error::Result;
 use crate::geo;
 
@@ -25,5 +26,5 @@ pub struct InfoArguments {
 pub fn run(arguments: &InfoArguments, talk: &Talk) -> Result<()> {
     let terrain = &arguments.terrain;
     let info = geo::info(&terrain.dems, &terrain.options(1.0), &|stage, share| talk.progress(words(stage), share))?;
-    talk.answer(&info.to_string())
+    talk.answer(&info.told(told))
 }

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use super::talk::Talk;
 use super::values;
+use super::words::told;
 use crate::dem::Dem;
 use crate::error::Result;
 use crate::geo::{ElevationUnit, Encoding, Nodata, ReadOptions, Reading, Stage};
@@ -81,9 +82,9 @@ impl TerrainArguments {
     /// As [`Reading::finish`].
     pub fn read(&self, reading: Reading, talk: &Talk) -> Result<Dem> {
         let dem = reading.finish(&|stage, share| talk.progress(words(stage), share))?;
-        dem.history().assumed().iter().for_each(|clause| talk.warn(&format!("assumed that {clause}")));
-        dem.history().converted().iter().try_for_each(|clause| talk.say(&format!("converted: {clause}")))?;
-        dem.history().usual().iter().try_for_each(|clause| talk.detail(&format!("assumed: {clause}")))?;
+        dem.history().assumed().iter().for_each(|clause| talk.warn(&format!("assumed that {}", told(clause))));
+        dem.history().converted().iter().try_for_each(|clause| talk.say(&format!("converted: {}", told(clause))))?;
+        dem.history().usual().iter().try_for_each(|clause| talk.detail(&format!("assumed: {}", told(clause))))?;
         Ok(dem)
     }
 }
@@ -96,7 +97,7 @@ impl TerrainArguments {
 pub fn warn_of_survey(dem: &Dem, talk: &Talk) -> Result<()> {
     if dem.is_filed() {
         let survey = dem.survey(&|_| ())?;
-        survey.assumed.iter().for_each(|clause| talk.warn(&format!("assumed that {clause}")));
+        survey.assumed.iter().for_each(|clause| talk.warn(&format!("assumed that {}", told(clause))));
     }
     Ok(())
 }

@@ -1,6 +1,7 @@
 //! How large a DEM may be, and what is said where its samples would have to be in memory.
 
-use crate::error::Error;
+use crate::error::{Error, Message, Part, Setting};
+use crate::message;
 
 /// Most samples of a DEM held in memory: 128 MiB of heights, the largest buffer that every GPU binds.
 pub const MAX_SAMPLES: usize = 1 << 25;
@@ -16,22 +17,31 @@ pub fn held_bytes(samples: u64) -> u64 {
 pub(super) fn not_held([columns, rows]: [usize; 2]) -> Error {
     let samples = columns as u64 * rows as u64;
     let more = held_bytes(samples).div_ceil(1 << 20);
-    let memory = if samples <= MAX_SAMPLES as u64 { format!(", or give --memory {more}MiB") } else { String::new() };
+    let mut remedy = message!["use ", Setting::Crop, " to take a part"];
+    if samples <= MAX_SAMPLES as u64 {
+        remedy.push(message![", or give ", mebibytes(more)]);
+    }
     Error::limit(
         format!("{columns} x {rows} = {samples} samples stay in their files, but here they must be in memory"),
-        format!("use --crop to take a part{memory}"),
+        remedy,
     )
 }
 
 /// How the voids of a DEM of so many columns and rows are filled.
-pub(super) fn to_fill([columns, rows]: [usize; 2], is_filed: bool) -> String {
+pub(super) fn to_fill([columns, rows]: [usize; 2], is_filed: bool) -> Message {
     let samples = columns as u64 * rows as u64;
     let needed = held_bytes(samples).div_ceil(1 << 20);
     match is_filed {
-        false => "add --fill-voids".into(),
+        false => message!["add ", Setting::FillVoids],
         true if samples <= MAX_SAMPLES as u64 => {
-            format!("give --fill-voids --memory {needed}MiB, in the place of a smaller --memory")
+            let needed = mebibytes(needed);
+            message!["give ", Setting::FillVoids, " ", needed, ", in the place of a smaller ", Setting::Memory]
         }
         true => "fill them first: `gdal_fillnodata.py IN OUT.tif`".into(),
     }
+}
+
+/// So much memory, as one sets it.
+pub fn mebibytes(memory: u64) -> Part {
+    Setting::Memory.at(format!("{memory}MiB"))
 }

@@ -2,53 +2,54 @@
 
 use std::path::Path;
 
-use crate::error::{plain, shown};
+use crate::error::{Message, shown};
+use crate::message;
 
 /// Clauses on how a DEM came about, in the order in which things were done.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct History {
-    converted: Vec<String>,
-    assumed: Vec<String>,
-    usual: Vec<String>,
+    converted: Vec<Message>,
+    assumed: Vec<Message>,
+    usual: Vec<Message>,
 }
 
 impl History {
     /// What was changed: units, projection, grid, voids.
-    pub fn converted(&self) -> &[String] {
+    pub fn converted(&self) -> &[Message] {
         &self.converted
     }
 
     /// What the files do not say and was taken as given, each with the way to say otherwise.
-    pub fn assumed(&self) -> &[String] {
+    pub fn assumed(&self) -> &[Message] {
         &self.assumed
     }
 
     /// What the files do not say but few files do, and was taken as given: nothing to warn of.
-    pub fn usual(&self) -> &[String] {
+    pub fn usual(&self) -> &[Message] {
         &self.usual
     }
 
     /// One more clause on what was changed.
-    pub fn convert(&mut self, clause: String) {
-        self.converted.push(plain(clause));
+    pub fn convert(&mut self, clause: impl Into<Message>) {
+        self.converted.push(clause.into().plain());
     }
 
     /// One more clause on what was taken as given.
-    pub fn assume(&mut self, clause: String) {
-        self.assumed.push(plain(clause));
+    pub fn assume(&mut self, clause: impl Into<Message>) {
+        self.assumed.push(clause.into().plain());
     }
 
     /// One more on what few files say.
-    pub fn assume_as_usual(&mut self, clause: String) {
-        self.usual.push(clause);
+    pub fn assume_as_usual(&mut self, clause: impl Into<Message>) {
+        self.usual.push(clause.into());
     }
 
     /// Takes over what holds for one of several files: `path` is named where it is not the first and says more.
     pub fn take(&mut self, of_file: Self, path: Option<&Path>) {
-        let add = |list: &mut Vec<String>, clauses: Vec<String>| {
+        let add = |list: &mut Vec<Message>, clauses: Vec<Message>| {
             let clauses: Vec<_> = clauses.into_iter().filter(|clause| !list.contains(clause)).collect();
             list.extend(clauses.into_iter().map(|clause| match path {
-                Some(path) => format!("{}: {clause}", shown(path)),
+                Some(path) => message![format!("{}: ", shown(path)), clause],
                 None => clause,
             }));
         };

@@ -9,7 +9,7 @@ use super::filed::exaggerate;
 use super::validity::{Validity, ValidityBuilder};
 use super::window::Window;
 use super::{Band, Dem, Samples, Store, held};
-use crate::error::{Error, Result};
+use crate::error::{Error, Message, Result};
 
 /// Most samples that are kept of a filed DEM to stand for all, about: 16 MiB.
 const THINNED_SAMPLES: usize = 1 << 22;
@@ -25,7 +25,7 @@ pub struct Survey {
     pub marks: usize,
     /// What had to be assumed of the files' numbers, in words as those of a history; empty for a held DEM, whose history
     /// tells.
-    pub assumed: Vec<String>,
+    pub assumed: Vec<Message>,
     /// Patches, two a cell, whose corners all hold an elevation.
     pub patches: u64,
     /// Exaggerated metres of every k-th sample of every k-th row of a filed DEM, k as [`Dem::thinning`] says, row-major,
@@ -161,7 +161,7 @@ impl Dem {
                 self.columns() * self.rows()
             )
             .into(),
-            remedy: held::to_fill([self.columns(), self.rows()], self.is_filed()).into(),
+            remedy: held::to_fill([self.columns(), self.rows()], self.is_filed()),
         })
     }
 

@@ -4,7 +4,7 @@ use std::fmt::Debug;
 
 use super::tiling::Tiling;
 use super::window::Window;
-use crate::error::{Error, Result};
+use crate::error::{Error, Message, Result};
 
 /// A grid that is read a window at a time. Windows count from its north-west sample.
 ///
@@ -39,7 +39,7 @@ pub trait Tiles: Debug + Send + Sync {
     fn marks(&self) -> usize;
 
     /// What had to be assumed of the samples read so far, in words as those of a [`History`](super::History).
-    fn assumed(&self) -> Vec<String>;
+    fn assumed(&self) -> Vec<Message>;
 
     /// The error for samples that are all void.
     fn all_void(&self) -> Error;

@@ -8,7 +8,7 @@ use std::fmt::{self, Display, Formatter};
 use super::plain;
 
 /// What a user of this library may set.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub enum Setting {
     /// Which adapter is opened.
     Adapter,
@@ -168,7 +168,7 @@ impl Display for Setting {
 }
 
 /// A piece of a message.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Part {
     /// As they are.
     Words(String),
@@ -177,7 +177,7 @@ pub enum Part {
 }
 
 /// Words and settings in the order of a sentence; see [`message!`](crate::message).
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 pub struct Message(Vec<Part>);
 
 impl Message {
@@ -192,7 +192,7 @@ impl Message {
     }
 
     /// The same on one line that moves nothing on a terminal.
-    pub(super) fn plain(self) -> Self {
+    pub(crate) fn plain(self) -> Self {
         let piece = |part| match part {
             Part::Words(words) => Part::Words(plain(words)),
             Part::Setting(setting, value) => Part::Setting(setting, value.map(plain)),

@@ -19,7 +19,7 @@ impl Encoding {
     /// All of them.
     pub const ALL: [Self; 5] = [Self::TerrainRgb, Self::Terrarium, Self::Signed, Self::Elevations, Self::Depths];
 
-    /// The word for `--encoding`.
+    /// Its name, as one asks for it.
     pub fn name(self) -> &'static str {
         match self {
             Self::TerrainRgb => "terrain-rgb",

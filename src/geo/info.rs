@@ -1,13 +1,13 @@
-//! What rasters hold, in the words of `hachure info`.
+//! What rasters hold.
 
-use std::fmt::{self, Display, Formatter};
+use std::fmt::{self, Display, Formatter, Write};
 use std::path::PathBuf;
 
 use super::{ReadOptions, Reading, Stage};
 use crate::dem::{Crs, History};
-use crate::error::{Result, shown};
+use crate::error::{Message, Result, shown};
 
-/// What is known of a DEM after reading it whole. `Display` prints a few aligned lines.
+/// What is known of a DEM after reading it whole. `Display` prints a few aligned lines, settings by their names.
 ///
 /// Size, extent, cell and range are those of the DEM as it is drawn; where its files are on another grid, `source` says so.
 #[derive(Debug, Clone, PartialEq)]
@@ -76,6 +76,20 @@ pub fn info(paths: &[PathBuf], options: &ReadOptions, progress: &dyn Fn(Stage, f
 
 impl Display for Info {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        self.write(f, &Message::to_string)
+    }
+}
+
+impl Info {
+    /// The lines of `Display`, with clauses in the words of `told`.
+    pub fn told(&self, told: impl Fn(&Message) -> String) -> String {
+        let mut lines = String::new();
+        // A string takes all that is written.
+        let _ = self.write(&mut lines, &told);
+        lines
+    }
+
+    fn write(&self, f: &mut impl Write, told: &dyn Fn(&Message) -> String) -> fmt::Result {
         let [west, south, east, north] = self.extent;
         let crs = name_of(&self.crs);
         for (i, path) in self.paths.iter().enumerate() {
@@ -93,9 +107,9 @@ impl Display for Info {
         writeln!(f, "cell       {across} m x {down} m (east x north)")?;
         writeln!(f, "elevation  {:.1} to {:.1} m", self.range[0], self.range[1])?;
         write!(f, "voids      {} ({:.1} %)", self.voids, 100.0 * self.void_share())?;
-        self.history.converted().iter().try_for_each(|clause| write!(f, "\nconverted  {clause}"))?;
+        self.history.converted().iter().try_for_each(|clause| write!(f, "\nconverted  {}", told(clause)))?;
         let assumed = self.history.assumed().iter().chain(self.history.usual());
-        assumed.into_iter().try_for_each(|clause| write!(f, "\nassumed    {clause}"))
+        assumed.into_iter().try_for_each(|clause| write!(f, "\nassumed    {}", told(clause)))
     }
 }
 

@@ -6,7 +6,7 @@ use std::fmt::{self, Display, Formatter};
 const LONG: f64 = 1e15;
 
 /// Numbers of a file that are no elevations, beside the one that it declares: single ones and whole ranges, as the file
-/// has them, before scale and unit. `Display` writes them as `--nodata` takes them: `-9999,9000..65535`.
+/// has them, before scale and unit. `Display` writes them as one gives them: `-9999,9000..65535`.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Nodata {
     /// Lowest and highest number of each range; both the same for a single number.

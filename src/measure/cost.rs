@@ -239,7 +239,7 @@ impl Quantities {
     }
 }
 
-/// Bytes of a pixel that only `--wide` has: the nearest away depth that touches it.
+/// Bytes of a pixel that only wide toward-away has: the nearest away depth that touches it.
 fn touched(method: Method) -> u64 {
     if method == (Method::TowardAway { wide: true }) { WORD_BYTES } else { 0 }
 }

@@ -7,6 +7,7 @@ use hachure::dem::{Crs, Dem};
 use hachure::geo::{ElevationUnit, ReadOptions, Stage, read, read_all as read_files};
 
 use super::{Raster, TRANSFORM, cropped, folder, hill, read_all, sized_vrt, vrt};
+use crate::common::words;
 use crate::tolerances::{PLANE_METRES, WARP_METRES};
 
 /// Metres per US survey foot.
@@ -59,7 +60,7 @@ fn degrees_become_square_metres_in_the_right_place() {
     let worst = off_waves(&dem);
     println!("waves in degrees: {worst} m off at worst");
     assert!(worst < WARP_METRES, "{worst} m");
-    assert!(dem.history().converted()[0].contains("WGS 84 / UTM zone 11N (EPSG:32611), cubic"));
+    assert!(words(dem.history().converted())[0].contains("WGS 84 / UTM zone 11N (EPSG:32611), cubic"));
     // A reader that took corners for middles would be half a cell off: the check must see that.
     let mut shifted = waves();
     shifted.transform = shifted.transform.map(|[x, dx, a, y, b, dy]| [x + CELL / 2.0, dx, a, y, b, dy]);
@@ -120,7 +121,7 @@ fn nameless_degrees_are_taken_with_a_warning() {
     let dir = folder();
     let dem = read_all(&written(Raster { epsg: None, ..waves() }, "nameless.tif", dir.path()));
     assert_eq!(dem.georeference().file().epsg(), Some(4326));
-    let warning = &dem.history().assumed()[0];
+    let warning = &words(dem.history().assumed())[0];
     assert!(warning.starts_with("coordinates are longitude and latitude in degrees"), "{warning}");
     assert!(warning.contains("gdal_translate -a_srs"), "{warning}");
     assert!(off_waves(&dem) < WARP_METRES);
@@ -139,7 +140,7 @@ fn marks_are_voids_before_anything_is_resampled() {
     assert!((1..9).contains(&dem.voids()), "{} voids", dem.voids());
     let worst = off_waves(&dem);
     assert!(worst < 10.0 * WARP_METRES, "beside a void {worst} m");
-    assert!(dem.history().assumed()[0].starts_with("1 samples at or below -32767"), "{:?}", dem.history());
+    assert!(words(dem.history().assumed())[0].starts_with("1 samples at or below -32767"), "{:?}", dem.history());
 }
 
 #[test]
@@ -188,7 +189,7 @@ fn south_up_and_mirrored_grids_are_read_backwards() {
             "mirrored {mirrored}, south-up {south_up}"
         );
         assert_eq!(dem.extent(), truth.extent());
-        assert_eq!(dem.history().converted(), ["rows and columns are read backwards, north up"]);
+        assert_eq!(words(dem.history().converted()), ["rows and columns are read backwards, north up"]);
         let crop = cropped([500_045.0, 4_199_950.0, 500_104.9, 4_199_970.0]);
         assert_eq!(read(&path, &crop).unwrap().held().unwrap().heights(), [105.0, 106.0, 109.0, 110.0]);
     }
@@ -204,7 +205,7 @@ fn feet_become_metres_on_every_axis() {
     let sample = DVec3::new(6_800_050.0 * US_FOOT, 2_099_950.0 * US_FOOT, 100.0);
     assert!((dem.position(0, 0) - sample).length() < 1e-6, "{}", dem.position(0, 0));
     // Beside feet on the map, metres of elevation are worth a warning; the flag ends it.
-    assert!(dem.history().assumed()[0].starts_with("elevations are metres"), "{:?}", dem.history());
+    assert!(words(dem.history().assumed())[0].starts_with("elevations are metres"), "{:?}", dem.history());
     let told = ReadOptions { elevation_unit: Some(ElevationUnit::US_FOOT), ..Default::default() };
     let dem = read(&path, &told).unwrap();
     assert!((f64::from(dem.range().unwrap()[0]) - 100.0 * US_FOOT).abs() < 1e-5);
@@ -300,9 +301,9 @@ fn voids_are_filled_when_asked_and_only_so_far() {
     assert!((dem.height(41, 11).unwrap() - 41.0).abs() < 3.0, "{:?}", dem.height(41, 11));
     assert!(dem.height(200, 15).is_some() && dem.height(290, 15).is_none());
     let filled = 12 + 149 * 30 - dem.voids();
-    let words = &dem.history().converted()[0];
-    assert!(words.starts_with(&format!("{filled} voids filled from up to 100 samples away")), "{words}");
-    assert!(words.ends_with(&format!("{} farther away stay holes", dem.voids())), "{words}");
+    let said = &words(dem.history().converted())[0];
+    assert!(said.starts_with(&format!("{filled} voids filled from up to 100 samples away (--fill-voids), ")), "{said}");
+    assert!(said.ends_with(&format!("{} farther away stay holes", dem.voids())), "{said}");
     let whole = read(written(hill(), "hill.tif", dir.path()), &ReadOptions { fill_voids: true, ..Default::default() });
     assert!(whole.unwrap().history().converted().is_empty(), "nothing to fill, nothing to say");
 }
@@ -312,7 +313,7 @@ fn stretched_maps_get_a_warning() {
     let dir = folder();
     let mercator = Raster { transform: Some([-13e6, 30.0, 0.0, 6e6, 0.0, -30.0]), epsg: Some(3857), ..hill() };
     let dem = read_all(&written(mercator, "mercator.tif", dir.path()));
-    let warning = &dem.history().assumed()[0];
+    let warning = &words(dem.history().assumed())[0];
     assert!(warning.contains("1.47 x as long here") && warning.contains("too flat"), "{warning}");
     assert!(read_all(&written(hill(), "hill.tif", dir.path())).history().assumed().is_empty());
 }

@@ -3,10 +3,12 @@
 use std::path::PathBuf;
 
 use glam::DVec2;
+use hachure::cli::words::line;
 use hachure::dem::Dem;
 use hachure::geo::{ReadOptions, read_all};
 
 use super::{Raster, TRANSFORM, folder, hill};
+use crate::common::words;
 use crate::tolerances::PLANE_METRES;
 
 fn together(paths: &[PathBuf]) -> Dem {
@@ -36,7 +38,7 @@ fn the_last_file_wins_and_its_voids_cover_nothing() {
     assert_eq!(row(1), some(&[1.0, 2.0, 3.0, 104.0, 105.0, 106.0, 107.0]), "a void covers nothing");
     assert_eq!(row(2), some(&[5.0, 6.0, 7.0, 8.0, 109.0, 110.0, 111.0]), "the last wins");
     assert_eq!(together(&[west, first]).height(3, 2), Some(108.0), "and the other way round");
-    assert_eq!(dem.history().converted(), ["2 files laid together: 7 x 3 samples"]);
+    assert_eq!(words(dem.history().converted()), ["2 files laid together: 7 x 3 samples"]);
 }
 
 #[test]
@@ -52,12 +54,8 @@ fn each_file_keeps_its_own_unit_band_and_marks() {
     let feet = super::sized_vrt(&dir.path().join("feet.vrt"), 2, 2, &head, &band);
     let dem = together(&[first, feet.clone()]);
     assert_eq!((dem.height(3, 0), dem.height(4, 0), dem.height(5, 0)), (Some(103.0), Some(304.8), None));
-    let words = dem
-        .history()
-        .converted()
-        .iter()
-        .any(|clause| *clause == format!("{}: elevations x 0.3048 to metres (\"ft\")", feet.display()));
-    assert!(words, "{:?}", dem.history());
+    let feet = format!("{}: elevations x 0.3048 to metres (\"ft\")", feet.display());
+    assert!(words(dem.history().converted()).contains(&feet), "{:?}", dem.history());
 }
 
 #[test]
@@ -88,7 +86,8 @@ fn other_grids_and_systems_are_warped_to_the_first() {
         seen += usize::from(p.x > 501_040.0);
     }
     assert!(seen > 800, "{seen} samples of the second file");
-    let warped = |dem: &Dem| dem.history().converted().iter().any(|c| c.contains("warped to the grid of the first"));
+    let warped =
+        |dem: &Dem| words(dem.history().converted()).iter().any(|c| c.contains("warped to the grid of the first"));
     assert!(warped(&dem), "{:?}", dem.history());
     // The same system under its old name falls on the same samples: no warp.
     let dem = together(&[
@@ -151,7 +150,7 @@ fn files_that_lie_nowhere_are_not_laid_together() {
     let image = |name: &str| Raster { transform: None, epsg: None, ..hill() }.write("GTiff", &dir.path().join(name));
     let paths = [image("a.tif"), image("b.tif")];
     let error = read_all(&paths, &ReadOptions { cell: Some(5.0), ..Default::default() }, &|_, _| ()).unwrap_err();
-    assert!(error.to_string().contains("cannot be laid beside others; draw it alone with --cell"), "{error}");
+    assert!(line(&error).contains("cannot be laid beside others; draw it alone with --cell"), "{error}");
 }
 
 #[test]

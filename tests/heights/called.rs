@@ -8,6 +8,7 @@ use gdal::raster::GdalDataType::Float32;
 use hachure::geo::{Encoding, ReadOptions, read};
 
 use super::{Bands, SIDE, assumed, cured, folder, land, one, same};
+use crate::common::words;
 
 fn turned() -> Vec<f64> {
     land().iter().map(|n| -n).collect()
@@ -48,11 +49,11 @@ fn the_flag_is_surer_than_the_file() {
     let path = dir.path().join("flag.tif");
     let read_as = |encoding| {
         let dem = read(&path, &ReadOptions { encoding: Some(encoding), ..Default::default() }).unwrap();
-        (dem.history().converted().to_vec(), dem)
+        (words(dem.history().converted()), dem)
     };
     for said in [("positive", "down"), ("standard_name", "depth"), ("long_name", "Depth")] {
         check(&path, "", &[said], &turned());
-        let told = read(&path, &ReadOptions::default()).unwrap().history().converted().to_vec();
+        let told = words(read(&path, &ReadOptions::default()).unwrap().history().converted());
         let line = told.iter().find(|clause| clause.starts_with("depths x -1")).unwrap();
         same(&cured(&path, line, "--encoding"), &land(), 0.0);
         let (told, dem) = read_as(Encoding::Elevations);

@@ -3,10 +3,11 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use hachure::cli::words::line;
 use hachure::geo::{ReadOptions, read, read_all};
 
 use super::{Bands, SIDE, assumed, cured, doubt, folder, land, marked, one, same};
-use crate::common::shared_dems;
+use crate::common::{shared_dems, words};
 
 /// Metres that a whole height of the land loses as f32 in a small unit.
 const UNIT_METRES: f64 = 1e-3;
@@ -104,7 +105,7 @@ fn small_units_and_feet_are_named() {
     }
     // All of them pass for marks.
     one(&times(1000.0), |n| n as i32).write(&path);
-    let line = read(&path, &ReadOptions::default()).unwrap_err().to_string();
+    let line = line(&read(&path, &ReadOptions::default()).unwrap_err());
     same(&cured(&path, &line, "--elevation-unit"), &land(), UNIT_METRES);
     // Both at once: each is told.
     one(&marked(65535.0, &times(10.0)), |n| n as u16).write(&path);
@@ -176,7 +177,7 @@ fn other_planets_have_other_limits() {
     let mut file = gdal::Dataset::open_ex(&path, options).unwrap();
     file.set_spatial_ref(&mars).unwrap();
     file.close().unwrap();
-    let told = read(&path, &ReadOptions::default()).unwrap().history().assumed().to_vec();
+    let told = words(read(&path, &ReadOptions::default()).unwrap().history().assumed());
     assert!(told.iter().all(|clause| !clause.contains("land on Earth")), "{told:?}");
 }
 
@@ -191,8 +192,9 @@ fn of_shared_terrain_crater_lake_alone_is_doubted() {
         // Those that stay in their file take long to be looked at.
         let options = ReadOptions { memory: 1 << 32, ..Default::default() };
         let Ok(dem) = read_all(std::slice::from_ref(&path), &options, &|_, _| ()) else { continue };
-        let words = ["are heights", "are voids", "8-bit", "in band", "below zero"];
-        let doubted = dem.history().assumed().iter().find(|clause| words.iter().any(|word| clause.contains(word)));
+        let doubts = ["are heights", "are voids", "8-bit", "in band", "below zero"];
+        let told = words(dem.history().assumed());
+        let doubted = told.iter().find(|clause| doubts.iter().any(|word| clause.contains(word)));
         let crater_lake = path.ends_with("craterlake-elev-16bit-30m.tif");
         assert_eq!(doubted.is_some(), crater_lake, "{}: {doubted:?}", path.display());
         read += 1;

@@ -8,6 +8,7 @@ use gdal::raster::ColorInterpretation::{BlueBand, GreenBand, RedBand, Undefined}
 use gdal::raster::{Buffer, RasterCreationOptions};
 use gdal::spatial_ref::SpatialRef;
 use hachure::cli::values;
+use hachure::cli::words::line;
 use hachure::geo::{Encoding, ReadOptions, read};
 
 use super::{Bands, SIDE, assumed, cured, doubt, folder, land, marked, one, same};
@@ -133,6 +134,6 @@ fn pictures_of_elevations_have_holes() {
     same(&read(&path, &asked).unwrap(), &holes, 1e-4);
     let opaque: Vec<u8> = marked(0.0, &vec![255.0; SIDE * SIDE]).iter().map(|n| *n as u8).collect();
     Bands { colours: colours(), ..Bands::new([packed(&whole), vec![opaque]].concat()) }.write(&path);
-    let line = read(&path, &ReadOptions::default()).expect_err("a picture was read").to_string();
+    let line = line(&read(&path, &ReadOptions::default()).expect_err("a picture was read"));
     same(&cured(&path, &line, "--encoding"), &holes, 1e-4);
 }

@@ -3,15 +3,15 @@
 use std::path::{Path, PathBuf};
 
 use gdal::raster::ColorInterpretation::{AlphaBand, BlueBand, GrayIndex, GreenBand, PaletteIndex, RedBand};
+use hachure::cli::words::line;
 use hachure::geo::{Encoding, ReadOptions, read};
 
 use super::{Bands, FILED, SIDE, assumed, cured, doubt, folder, land, marked, one, same};
 
 /// The line that a picture is refused with, held and filed.
 fn refused(path: &Path, options: &ReadOptions, words: &[&str]) -> String {
-    let [line, filed] = [options.memory, FILED].map(|memory| {
-        read(path, &ReadOptions { memory, ..options.clone() }).expect_err("a picture was read").to_string()
-    });
+    let [line, filed] = [options.memory, FILED]
+        .map(|memory| line(&read(path, &ReadOptions { memory, ..options.clone() }).expect_err("a picture was read")));
     assert_eq!(line, filed);
     words.iter().for_each(|word| assert!(line.contains(word), "no {word:?}: {line}"));
     line

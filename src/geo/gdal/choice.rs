@@ -1,6 +1,6 @@
 //! Which band of a raster holds the elevations, and whether it can: colours and transparency are none.
 //!
-//! Without `--band` the one is taken whose name says that it is the elevation, else the first whose name says nothing else,
+//! Where no band is asked for the one is taken whose name says that it is the elevation, else the first whose name says nothing else,
 //! and transparency is passed over. Not handled: names in other languages than English.
 
 use gdal::Metadata;
@@ -8,8 +8,9 @@ use gdal::raster::{ColorInterpretation, GdalDataType, RasterBand};
 
 use super::source::Source;
 use crate::dem::History;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Setting};
 use crate::geo::{Encoding, ReadOptions};
+use crate::message;
 
 /// Words for elevation in the names of bands, and ways of gridding points; of each the surest first.
 const NAMES: [&[&str]; 2] = [&["elevation", "dem", "height"], &["idw", "mean"]];
@@ -66,9 +67,11 @@ impl Source {
                 true => ("-128 to 127", "few DEMs have no others"),
                 false => ("0 to 255", "a picture or a hillshade has such numbers: then give the DEM it was made from"),
             };
-            history.assume(format!(
-                "its 8-bit numbers, {range}, are heights in whole metres ({why}; for heights say --elevation-unit m)"
-            ));
+            history.assume(message![
+                format!("its 8-bit numbers, {range}, are heights in whole metres ({why}; for heights say "),
+                Setting::ElevationUnit.at("m"),
+                ")"
+            ]);
         }
         Ok(chosen)
     }
@@ -107,9 +110,11 @@ impl Source {
             let count = bands.len();
             let all = names(&bands);
             let called = if rank(name) < NEUTRAL { format!(", called {name}") } else { String::new() };
-            history.assume(format!(
-                "elevations are in band {band} of {count}{called} ({all}choose another with --band N)"
-            ));
+            history.assume(message![
+                format!("elevations are in band {band} of {count}{called} ({all}choose another with "),
+                Setting::Band.at("N"),
+                ")"
+            ]);
         }
         Ok(Self { band: *band, ..self })
     }
@@ -119,7 +124,7 @@ impl Source {
         if let Ok(Some(encoding)) = Encoding::of(self) {
             let name = encoding.name();
             let what = format!("is a picture with elevations packed into its colours ({name})");
-            return self.error(what, format!("add --encoding {name} to decode it"));
+            return self.error(what, message!["add ", Setting::Encoding.at(name), " to decode it"]);
         }
         let colour = match self.colour(band) {
             ColorInterpretation::PaletteIndex => "numbers of colours in a palette",
@@ -131,7 +136,11 @@ impl Source {
         };
         self.error(
             format!("band {band} holds {colour}, not elevations"),
-            format!("give the DEM that it was made from, or --band {band} to draw these numbers as heights"),
+            message![
+                "give the DEM that it was made from, or ",
+                Setting::Band.at(band),
+                " to draw these numbers as heights"
+            ],
         )
     }
 

@@ -5,6 +5,7 @@
 use super::grid::Grid;
 use super::lie::ALIGNED_CELLS;
 use crate::error::{Error, Result, Setting};
+use crate::message;
 
 /// `crop` with its west below its east, in the units of `grid`. Fails where it is no rectangle there.
 pub(super) fn on(grid: &Grid, crop: Option<[f64; 4]>) -> Result<Option<[f64; 4]>> {
@@ -14,8 +15,8 @@ pub(super) fn on(grid: &Grid, crop: Option<[f64; 4]>) -> Result<Option<[f64; 4]>
         Some(turn) if west <= turn && east + turn > west => Ok(Some([west, south, east + turn, north])),
         _ => {
             let what = format!("{west},{south},{east},{north} has its west beyond its east");
-            let remedy = format!("give the two in the other order: --crop {east},{south},{west},{north}");
-            Err(Error::setting(Setting::Crop, what, remedy))
+            let other = Setting::Crop.at(format!("{east},{south},{west},{north}"));
+            Err(Error::setting(Setting::Crop, what, message!["give the two in the other order: ", other]))
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Depths below zero, told from heights by what the file says of its band, in the words of the CF conventions.
 //!
-//! `--encoding` is surer than any file, `positive` is sure, and so is the standard name. The long name is for people: where
+//! The encoding that is asked for is surer than any file, `positive` is sure, and so is the standard name. The long name is for people: where
 //! it, or the name of the band or variable, has a word for heights, too, depth is only spoken of; and where it alone speaks
 //! of depth the numbers have a say: those that are below zero already are heights. Not handled: other words and languages.
 
@@ -11,8 +11,9 @@ use super::mosaic::block;
 use super::said::Said;
 use super::source::Source;
 use crate::dem::{History, Window};
-use crate::error::Result;
+use crate::error::{Message, Part, Result, Setting};
 use crate::geo::Encoding;
+use crate::message;
 
 /// Words of a name that is one of heights, whatever else says depth.
 const UPWARD: [&str; 17] = [
@@ -36,9 +37,6 @@ const UPWARD: [&str; 17] = [
 ];
 /// The same in two words.
 const POSITIVE_UP: &str = "positive up";
-/// What to type where depths are none.
-const UNLESS: &str = "if they are heights, say --encoding elevations";
-
 /// Whether the band of `source` holds depths, as `encoding` says or else the file; what was found goes to `history`.
 /// `elevation` are its rules so far.
 pub(super) fn is_depth(
@@ -50,7 +48,7 @@ pub(super) fn is_depth(
     match encoding {
         Some(Encoding::Elevations) => return Ok(false),
         Some(Encoding::Depths) => {
-            history.convert("depths x -1 to heights (--encoding depths)".into());
+            history.convert(message!["depths x -1 to heights (", asked(Encoding::Depths), ")"]);
             return Ok(true);
         }
         _ => {}
@@ -60,7 +58,7 @@ pub(super) fn is_depth(
     let positive = said.attribute("positive").to_lowercase();
     let (standard, long) = (said.attribute("standard_name"), said.attribute("long_name"));
     let negate = |history: &mut History, why: &str| {
-        history.convert(format!("depths x -1 to heights ({why}; {UNLESS})"));
+        history.convert(message![format!("depths x -1 to heights ({why}; "), unless(), ")"]);
         Ok(true)
     };
     match positive.trim() {
@@ -75,20 +73,31 @@ pub(super) fn is_depth(
         return Ok(false);
     }
     if is_upward(&long) || said.names().iter().any(|name| is_upward(name)) {
-        history.assume_as_usual(format!(
-            "numbers are heights, though the long name \"{long}\" speaks of depth (if they are depths, say --encoding \
-             depths)"
-        ));
+        let though = format!("numbers are heights, though the long name \"{long}\" speaks of depth");
+        history.assume_as_usual(message![though, " (if they are depths, say ", asked(Encoding::Depths), ")"]);
         return Ok(false);
     }
     if is_mostly_negative(source, elevation)? {
-        history.assume(format!(
-            "most numbers are below zero because they are heights already, though the long name is \"{long}\" (if they \
-             are depths, add --encoding depths; {UNLESS})"
-        ));
+        let though = format!("they are heights already, though the long name is \"{long}\"");
+        history.assume(message![
+            format!("most numbers are below zero because {though} (if they are depths, add "),
+            asked(Encoding::Depths),
+            "; ",
+            unless(),
+            ")"
+        ]);
         return Ok(false);
     }
     negate(history, &format!("its long name is \"{long}\""))
+}
+
+fn asked(encoding: Encoding) -> Part {
+    Setting::Encoding.at(encoding.name())
+}
+
+/// What to ask for where depths are none.
+fn unless() -> Message {
+    message!["if they are heights, say ", asked(Encoding::Elevations)]
 }
 
 /// Whether a name is one of heights.

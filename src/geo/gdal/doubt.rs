@@ -11,7 +11,9 @@ use gdal::raster::GdalDataType;
 use super::elevation::{EARTH, Elevation, Reading};
 use super::stored::shown;
 use super::tally::{Beyond, Tally};
-use crate::geo::Nodata;
+use crate::error::{Message, Part, Setting};
+use crate::geo::{Encoding, Nodata};
+use crate::message;
 
 /// A gap this large against the range of all others sets a number apart …
 const OF_RANGE: f64 = 0.1;
@@ -23,7 +25,7 @@ const OTHERS: usize = 3;
 const USUAL: f64 = -9999.0;
 /// Most numbers named one by one.
 const NAMED: usize = 4;
-/// Units smaller than the metre: names for `--elevation-unit`, and metres.
+/// Units smaller than the metre: their names as settings have them, and metres.
 const UNITS: [(&str, f64); 3] = [("dm", 0.1), ("cm", 0.01), ("mm", 0.001)];
 /// Metres of a foot.
 const FOOT: f64 = 0.3048;
@@ -44,7 +46,7 @@ struct Trial<'a> {
 }
 
 /// What is assumed of numbers that hardly are heights, each with what to do, to stand behind "assumed that".
-pub(super) fn doubts(tally: &Tally, elevation: &Elevation) -> Vec<String> {
+pub(super) fn doubts(tally: &Tally, elevation: &Elevation) -> Vec<Message> {
     let mut trial = Trial::new(tally, elevation);
     let wrapped = trial.wrapped();
     trial.take_marks();
@@ -52,14 +54,19 @@ pub(super) fn doubts(tally: &Tally, elevation: &Elevation) -> Vec<String> {
     wrapped.into_iter().chain(marked).chain(outside).collect()
 }
 
+/// What to ask for where numbers lost their sign.
+fn signed() -> Part {
+    Setting::Encoding.at(Encoding::Signed.name())
+}
+
 /// Units other than the metre in which all numbers are heights on Earth, if there are any, and how high they reach then.
-pub(super) fn other_units(tally: &Tally, elevation: &Elevation) -> Option<String> {
+pub(super) fn other_units(tally: &Tally, elevation: &Elevation) -> Option<Message> {
     let trial = Trial::new(tally, elevation);
     let huge = trial.huge();
     if huge == [0; 2] { None } else { trial.units(huge) }
 }
 
-/// The numbers that are voids by their impossible value alone, for `--nodata`: one by one, or as ranges where they are too
+/// The numbers that are voids by their impossible value alone, as nodata: one by one, or as ranges where they are too
 /// many. Those left out that are heights in another unit.
 pub(super) fn sentinels(tally: &Tally, elevation: &Elevation) -> Vec<[f64; 2]> {
     let is_sentinel = |number: f64| elevation.reading(number) == Reading::Sentinel;
@@ -117,7 +124,7 @@ impl<'a> Trial<'a> {
     }
 
     /// Numbers in the upper half of an unsigned type, none near the middle: they were below zero.
-    fn wrapped(&mut self) -> Option<String> {
+    fn wrapped(&mut self) -> Option<Message> {
         let Tally { upper, below, high, .. } = self.tally;
         let modulus = self.elevation.modulus();
         let distinct = high.iter().filter(|(number, _)| *number >= modulus / 2.0).count();
@@ -131,13 +138,9 @@ impl<'a> Trial<'a> {
         self.wrapped = true;
         self.high = vec![(*below, 1)];
         let [least, greatest] = [upper.least, upper.greatest].map(|number| number - modulus);
-        Some(format!(
-            "{} from {} to {} are heights (they look like {least} to {greatest}, stored without a sign; if they are, add \
-             --encoding signed)",
-            self.share(upper.count),
-            upper.least,
-            upper.greatest
-        ))
+        let heights = format!("{} from {} to {} are heights", self.share(upper.count), upper.least, upper.greatest);
+        let like = format!(" (they look like {least} to {greatest}, stored without a sign; if they are, add ");
+        Some(message![heights, like, signed(), ")"])
     }
 
     /// Moves numbers that stand apart from the ends of the range to `marks`, until neither end has one.
@@ -195,7 +198,7 @@ impl<'a> Trial<'a> {
         }
     }
 
-    fn marked(&self) -> Option<String> {
+    fn marked(&self) -> Option<Message> {
         if self.marks.is_empty() {
             return None;
         }
@@ -209,16 +212,22 @@ impl<'a> Trial<'a> {
             true => format!("all others are {low}"),
             false => format!("all others are {low} to {high}"),
         };
-        let remedy = self.nodata(&[]);
+        let mut clause = message![
+            format!("{marks} are heights ({all}; if they mark missing data, add "),
+            Setting::Nodata.at(self.nodata(&[]))
+        ];
         let minus = self.elevation.modulus() - 1.0;
         let wrapped =
             self.marks.iter().any(|(number, _)| *number == minus) && self.low.first().is_some_and(|end| end.0 == 0.0);
-        let signed = if wrapped { ", if they are -1 without its sign, --encoding signed" } else { "" };
-        Some(format!("{marks} are heights ({all}; if they mark missing data, add --nodata {remedy}{signed})"))
+        if wrapped {
+            clause.push(message![", if they are -1 without its sign, ", signed()]);
+        }
+        clause.push(")");
+        Some(clause)
     }
 
     /// What is left outside all land of the Earth.
-    fn outside(&self) -> Option<String> {
+    fn outside(&self) -> Option<Message> {
         let huge = self.huge();
         let sides = [self.beyond(0, huge), self.beyond(1, huge)];
         let (mut clauses, mut ranges, mut all) = (Vec::new(), Vec::new(), 0);
@@ -238,15 +247,15 @@ impl<'a> Trial<'a> {
             return None;
         }
         let units = self.units(huge);
-        let nodata = format!("if they are no heights, add --nodata {}", self.nodata(&ranges));
+        let nodata = message!["if they are no heights, add ", Setting::Nodata.at(self.nodata(&ranges))];
         // Whatever the unit, where most are land in metres the others may be none.
         let few = all < self.tally.samples / 2;
         let remedy = match units {
-            Some(units) if few => format!("if it is another, add {units}; {nodata}"),
-            Some(units) => format!("if it is another, add {units}"),
+            Some(units) if few => message!["if it is another, add ", units, "; ", nodata],
+            Some(units) => message!["if it is another, add ", units],
             None => nodata,
         };
-        Some(format!("{} are heights in the right unit ({remedy})", clauses.join(" and ")))
+        Some(message![format!("{} are heights in the right unit (", clauses.join(" and ")), remedy, ")"])
     }
 
     /// How many numbers lie below (0) or above (1) all land on Earth, marks left out, and the outermost of them from the
@@ -302,7 +311,7 @@ impl<'a> Trial<'a> {
     }
 
     /// Units in which all that is left is on Earth, each with how far it reaches.
-    fn units(&self, huge: [u64; 2]) -> Option<String> {
+    fn units(&self, huge: [u64; 2]) -> Option<Message> {
         if !self.elevation.is_plain_metres() {
             return None;
         }
@@ -314,12 +323,12 @@ impl<'a> Trial<'a> {
         let likely = |metres: f64| self.is_on_earth(least, greatest, metres) && farthest * metres > LOWEST_TOP;
         let units = UNITS.into_iter().chain([("ft", FOOT)]).filter(|(_, metres)| likely(*metres));
         let far = if greatest >= -least { greatest } else { least };
-        let told: Vec<_> =
-            units.map(|(unit, metres)| format!("--elevation-unit {unit}: up to {:.1} m", far * metres)).collect();
-        (!told.is_empty()).then(|| told.join(", or "))
+        let told = units
+            .map(|(unit, metres)| message![Setting::ElevationUnit.at(unit), format!(": up to {:.1} m", far * metres)]);
+        told.reduce(|first, other| message![first, ", or ", other])
     }
 
-    /// What to type for `--nodata`: what was said before, the marks, and `more`.
+    /// What to give as nodata: what was said before, the marks, and `more`.
     fn nodata(&self, more: &[[f64; 2]]) -> Nodata {
         let as_shown = |number: f64| self.shown(number).parse().unwrap_or(number);
         let marks: Vec<_> = self.marks.iter().map(|(number, _)| [as_shown(*number); 2]).collect();

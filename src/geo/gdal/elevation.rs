@@ -6,8 +6,9 @@ use super::choice::SIGNED_BYTE;
 use super::depth::is_depth;
 use super::source::{Source, heard};
 use crate::dem::{Crs, History};
-use crate::error::{Error, Result};
+use crate::error::{Error, Message, Result, Setting};
 use crate::geo::{ElevationUnit, Encoding, Nodata, ReadOptions};
+use crate::message;
 
 /// At and below this many metres an elevation is a mark for no data, declared or not: -32767, -32768, -3.4e38.
 const DEEPEST: f64 = -32767.0;
@@ -92,8 +93,11 @@ impl Elevation {
         }
         if elevation.is_signed() {
             let most = elevation.modulus() / 2.0 - 1.0;
-            let why = if options.encoding == Some(Encoding::Signed) { "--encoding signed" } else { SIGNED_BYTE };
-            history.convert(format!("numbers above {most} are below 0 ({why})"));
+            let why: Message = match options.encoding {
+                Some(Encoding::Signed) => Setting::Encoding.at(Encoding::Signed.name()).into(),
+                _ => SIGNED_BYTE.into(),
+            };
+            history.convert(message![format!("numbers above {most} are below 0 ("), why, ")"]);
         }
         Ok(Self { depth: is_depth(source, &elevation, options.encoding, history)?, ..elevation })
     }
@@ -197,23 +201,25 @@ fn factor(source: &Source, crs: &Crs, unit: Option<ElevationUnit>, history: &mut
     let (vertical, vertical_metres) = vertical_unit(source);
     let named = [band.trim().to_owned(), vertical].into_iter().find(|name| !is_blank(name));
     let (factor, name) = match (unit, named) {
-        (Some(unit), _) => (unit.metres(), "as --elevation-unit says".to_owned()),
+        (Some(unit), _) => (unit.metres(), message!["as ", Setting::ElevationUnit, " says"]),
         (None, Some(name)) => {
             let known = metres_per(&name).or(vertical_metres).ok_or_else(|| unknown_unit(source, &name))?;
-            (known, format!("\"{name}\""))
+            (known, format!("\"{name}\"").into())
         }
         (None, None) => {
-            let clause = "elevations are metres (no unit is named; if they are feet, say --elevation-unit ft or us-ft)";
+            let feet = Setting::ElevationUnit.at("ft");
+            let clause =
+                message!["elevations are metres (no unit is named; if they are feet, say ", feet, " or us-ft)"];
             // Beside feet on the map metres are a surprise.
             match crs.metres_per_unit() {
-                None | Some(1.0) => history.assume_as_usual(clause.into()),
-                Some(_) => history.assume(clause.into()),
+                None | Some(1.0) => history.assume_as_usual(clause),
+                Some(_) => history.assume(clause),
             }
             return Ok(1.0);
         }
     };
     if factor != 1.0 {
-        history.convert(format!("elevations x {factor} to metres ({name})"));
+        history.convert(message![format!("elevations x {factor} to metres ("), name, ")"]);
     }
     Ok(factor)
 }
@@ -250,7 +256,7 @@ fn metres_per(unit: &str) -> Option<f64> {
 
 fn unknown_unit(source: &Source, unit: &str) -> Error {
     let what = format!("its elevations are in \"{unit}\", which is no known unit of length");
-    source.error(what, "say which it is with --elevation-unit m, dm, cm, mm, km, ft or us-ft")
+    source.error(what, message!["say which it is with ", Setting::ElevationUnit, " m, dm, cm, mm, km, ft or us-ft"])
 }
 
 #[cfg(test)]

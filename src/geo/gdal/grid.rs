@@ -9,6 +9,7 @@ use super::source::{Source, heard};
 use super::{crs, labels};
 use crate::dem::{Crs, History, Window};
 use crate::error::{Error, Result, Setting, shown};
+use crate::message;
 
 /// How far, in cells, a row may leave its line before the grid counts as turned: rounding of file formats.
 const STRAIGHT_CELLS: f64 = 1e-3;
@@ -249,7 +250,11 @@ fn assumed_crs(degrees: bool) -> String {
 
 fn has_place(source: &Source) -> Error {
     let what = format!("{} says itself where it lies and how large its cells are", shown(&source.path));
-    Error::setting(Setting::Cell, what, "leave it out, or use --resample for cells of another size")
+    Error::setting(
+        Setting::Cell,
+        what,
+        message!["leave it out, or use ", Setting::Resample, " for cells of another size"],
+    )
 }
 
 /// Whether the place of each sample stands in arrays beside it.
@@ -271,14 +276,20 @@ fn has_no_place(source: &Source) -> Error {
             "rectify it first: `gdalwarp -t_srs EPSG:CODE -r cubic IN OUT.tif` with the code of a CRS in metres",
         );
     }
-    source.error("does not say where it lies (no geotransform)", "give the size of its cells in metres with --cell M")
+    source.error(
+        "does not say where it lies (no geotransform)",
+        message!["give the size of its cells in metres with ", Setting::Cell.at("M")],
+    )
 }
 
 fn has_no_place_beside(source: &Source) -> Error {
     source.error(
         "does not say where it lies (no geotransform), so it cannot be laid beside others",
-        "draw it alone with --cell M, or place it: \
-         `gdal_translate -a_srs EPSG:CODE -a_ullr WEST NORTH EAST SOUTH IN OUT.tif`",
+        message![
+            "draw it alone with ",
+            Setting::Cell.at("M"),
+            ", or place it: `gdal_translate -a_srs EPSG:CODE -a_ullr WEST NORTH EAST SOUTH IN OUT.tif`"
+        ],
     )
 }
 

@@ -9,9 +9,10 @@ use std::path::{Path, PathBuf};
 use super::grid::Grid;
 use super::mosaic::Mosaic;
 use super::target::Target;
-use crate::dem::{LARGEST_SIDE, MAX_SAMPLES, held_bytes};
-use crate::error::{Error, Result, shown};
+use crate::dem::{LARGEST_SIDE, MAX_SAMPLES, held_bytes, mebibytes};
+use crate::error::{Error, Message, Result, Setting, shown};
 use crate::geo::ReadOptions;
+use crate::message;
 
 /// Most samples that are read to be warped: 1 GiB.
 const MAX_READ: u64 = 1 << 28;
@@ -24,7 +25,7 @@ pub(super) enum Whole {
     Warped,
     /// This file is warped to the grid of the first.
     Apart(PathBuf),
-    /// `--fill-voids`.
+    /// Voids are filled.
     Filled,
 }
 
@@ -83,7 +84,7 @@ pub(super) fn too_many(path: &Path, grid: &Grid, why: &Whole, metres: f64) -> Er
     let reason = why.reason();
     Error::limit(
         format!("{}: {columns} x {rows} = {samples} samples, at most {MAX_SAMPLES} fit {reason}", shown(path)),
-        format!("{}, use --crop to take a part, or --resample {metres} for cells of {metres} m", why.remedy(grid)),
+        message![why.remedy(grid), ", ", coarser(metres)],
     )
 }
 
@@ -91,8 +92,12 @@ fn over_budget(path: &Path, grid: &Grid, why: &Whole, memory: u64) -> Error {
     let samples = grid.columns as u64 * grid.rows as u64;
     let (needed, reason) = (held_bytes(samples).div_ceil(1 << 20), why.reason());
     Error::limit(
-        format!("{}: needs {needed} MiB of memory {reason}, more than --memory allows", shown(path)),
-        format!("give --memory {needed}MiB (it is {} MiB), or {}", memory >> 20, why.remedy(grid)),
+        message![
+            format!("{}: needs {needed} MiB of memory {reason}, more than ", shown(path)),
+            Setting::Memory,
+            " allows"
+        ],
+        message!["give ", mebibytes(needed), format!(" (it is {} MiB), or {}", memory >> 20, why.remedy(grid))],
     )
 }
 
@@ -103,7 +108,7 @@ fn check_longest(path: &Path, grid: &Grid, metres: f64) -> Result<()> {
     }
     Err(Error::limit(
         format!("{}: {columns} x {rows} samples, at most {LARGEST_SIDE} along a side fit", shown(path)),
-        format!("use --crop to take a part, or --resample {metres} for cells of {metres} m"),
+        coarser(metres),
     ))
 }
 
@@ -112,7 +117,11 @@ fn check_read(path: &Path, read: u64, held: u64) -> Result<()> {
     if read > MAX_READ {
         return Err(Error::limit(
             format!("{}: {read} samples would be read to be warped, at most {MAX_READ} fit", shown(path)),
-            "use --crop to take a part, or make it coarser: `gdal_translate -outsize 10% 10% -r average IN OUT.tif`",
+            message![
+                "use ",
+                Setting::Crop,
+                " to take a part, or make it coarser: `gdal_translate -outsize 10% 10% -r average IN OUT.tif`"
+            ],
         ));
     }
     check_memory(path, (read + held) * READ_BYTES, available_memory())
@@ -122,10 +131,16 @@ fn check_memory(path: &Path, needed: u64, available: Option<u64>) -> Result<()> 
     match available {
         Some(available) if available < needed => Err(Error::limit(
             format!("{}: needs {} MiB of memory, {} MiB are free", shown(path), needed >> 20, available >> 20),
-            "use --crop to take a part, or --resample M for larger cells",
+            message!["use ", Setting::Crop, " to take a part, or ", Setting::Resample.at("M"), " for larger cells"],
         )),
         _ => Ok(()),
     }
+}
+
+/// Fewer samples: a part of them, or cells of so many metres.
+fn coarser(metres: f64) -> Message {
+    let cells = format!(" for cells of {metres} m");
+    message!["use ", Setting::Crop, " to take a part, or ", Setting::Resample.at(metres), cells]
 }
 
 /// Bytes of memory that new work may take, where the system says so (Linux).

@@ -76,7 +76,7 @@ impl Mosaic {
         };
         let base = first.grid.north_up();
         if base.to_crs != first.grid.to_crs {
-            history.convert("rows and columns are read backwards, north up".into());
+            history.convert("rows and columns are read backwards, north up");
         }
         let lies = sources.iter().map(|placed| placed.lie.bounds(&placed.grid));
         let (low, end) = lies.fold(([0; 2], [0; 2]), |(low, end), (first, last)| {
@@ -207,7 +207,7 @@ impl Placed {
         let (first, onto) = base.unwrap_or_else(|| (path, grid.north_up()));
         let lie = Lie::of(&grid, &onto).ok_or_else(|| no_way([(path, &grid), (first, &onto)]))?;
         if matches!(lie, Lie::Apart { .. }) {
-            own.convert("warped to the grid of the first file, cubic".into());
+            own.convert("warped to the grid of the first file, cubic");
         }
         history.take(own, later.then_some(path));
         let (width, height) = source.band()?.block_size();

@@ -1,4 +1,4 @@
-//! What a DEM may be called: local files, archives, grids in containers; with `--allow-remote` files on a network too.
+//! What a DEM may be called: local files, archives, grids in containers; where they are allowed files on a network too.
 //!
 //! GDAL takes many strings for something else than a file: addresses, pipes, memory, connections, one inside another.
 //! Every name is taken apart here, as [`lossless`] text, and what is not understood to its end is refused; nothing is

@@ -12,7 +12,8 @@ use super::raster::Raster;
 use super::tally::{Tallies, merge};
 use crate::dem::tiling::gather;
 use crate::dem::{Tiles, Tiling, Window};
-use crate::error::{Error, Result};
+use crate::error::{Error, Message, Result, Setting};
+use crate::message;
 
 /// Some samples of a mosaic.
 pub(super) struct Part {
@@ -56,12 +57,17 @@ impl Part {
             Some(units) => Error::input(
                 self.mosaic.path(),
                 format!("{what} or above 100000 m"),
-                format!("if the heights are in another unit, add {units}"),
+                message!["if the heights are in another unit, add ", units],
             ),
             None => Error::input(
                 self.mosaic.path(),
                 what,
-                "check the band and its nodata value with `gdalinfo -stats`, choose another --band, or move --crop",
+                message![
+                    "check the band and its nodata value with `gdalinfo -stats`, choose another ",
+                    Setting::Band,
+                    ", or move ",
+                    Setting::Crop
+                ],
             ),
         }
     }
@@ -106,7 +112,7 @@ impl Tiles for Part {
         self.counted().tallies.values().map(|tally| tally.marks).sum()
     }
 
-    fn assumed(&self) -> Vec<String> {
+    fn assumed(&self) -> Vec<Message> {
         assumed(&self.mosaic.tallied(&self.counted().tallies), self.mosaic.is_of_several())
     }
 

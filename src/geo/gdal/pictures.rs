@@ -12,8 +12,9 @@ use super::glance::windows;
 use super::mosaic::block;
 use super::source::Source;
 use crate::dem::Window;
-use crate::error::Result;
+use crate::error::{Result, Setting};
 use crate::geo::Encoding;
+use crate::message;
 
 /// Share of samples whose heights must be on Earth.
 const ON_EARTH: f64 = 0.99;
@@ -63,10 +64,11 @@ impl Encoding {
         if !self.is_picture() || self.fits(source)? {
             return Ok(());
         }
-        let other = Self::of(source)?.map(|other| format!("give --encoding {}: it is that", other.name()));
-        let name = self.name();
-        let remedy = other.unwrap_or_else(|| "leave --encoding out, or give the picture that has elevations".into());
-        Err(source.error(format!("is no picture of elevations as {name} packs them"), remedy))
+        let remedy = match Self::of(source)? {
+            Some(other) => message!["give ", Setting::Encoding.at(other.name()), ": it is that"],
+            None => message!["leave ", Setting::Encoding, " out, or give the picture that has elevations"],
+        };
+        Err(source.error(format!("is no picture of elevations as {} packs them", self.name()), remedy))
     }
 
     /// Whether `source` has three bands of 8 bits that decode to land.

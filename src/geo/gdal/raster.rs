@@ -7,7 +7,8 @@ use glam::DVec2;
 use super::crs::Way;
 use super::grid::Grid;
 use super::lent::Lent;
-use crate::error::{Error, Result, without_end};
+use crate::error::{Error, Result, Setting, without_end};
+use crate::message;
 
 /// Farthest that GDAL fills from a sample with data, in samples: its own default.
 pub const FILL_REACH: u32 = 100;
@@ -83,7 +84,7 @@ fn out_of_memory(grid: &Grid, words: &str) -> Error {
     let words = words.lines().next().unwrap_or_default();
     Error::limit(
         format!("{} x {} samples cannot be held and warped in memory ({words})", grid.columns, grid.rows),
-        "use --crop to take a part, or --resample M for larger cells",
+        message!["use ", Setting::Crop, " to take a part, or ", Setting::Resample.at("M"), " for larger cells"],
     )
 }
 
@@ -99,6 +100,6 @@ mod tests {
         let grid = Grid { crs: Crs::unknown(), to_crs: DAffine2::IDENTITY, columns: 1 << 30, rows: 1 << 30 };
         let said = Raster::void(grid).err().map(|e| e.to_string()).unwrap_or_default();
         assert!(said.starts_with("1073741824 x 1073741824 samples cannot be held"), "{said}");
-        assert!(said.ends_with("use --crop to take a part, or --resample M for larger cells"), "{said}");
+        assert!(said.ends_with("use crop to take a part, or resample M for larger cells"), "{said}");
     }
 }

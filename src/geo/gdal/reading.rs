@@ -16,9 +16,10 @@ use super::raster::{FILL_REACH, Raster};
 use super::target::Target;
 use crate::dem::filed::exaggerate;
 use crate::dem::{Dem, Georeference, History, Tiles};
-use crate::error::{Error, Result, Setting};
+use crate::error::{Error, Message, Result, Setting};
 use crate::geo::info::name_of;
 use crate::geo::{ReadOptions, Stage};
+use crate::message;
 
 /// Largest exaggeration: above it the highest mountain stands higher than the Earth is wide.
 const MAX_EXAGGERATION: f64 = 1000.0;
@@ -136,12 +137,10 @@ fn hold(
 }
 
 /// What filling did, in words.
-fn filled(before: usize, after: usize) -> String {
-    let filled = format!("{} voids filled from up to {FILL_REACH} samples away (--fill-voids)", before - after);
-    match after {
-        0 => filled,
-        left => format!("{filled}, {left} farther away stay holes"),
-    }
+fn filled(before: usize, after: usize) -> Message {
+    let filled = format!("{} voids filled from up to {FILL_REACH} samples away (", before - after);
+    let left = if after > 0 { format!(", {after} farther away stay holes") } else { String::new() };
+    message![filled, Setting::FillVoids, ")", left]
 }
 
 fn check_options(options: &ReadOptions) -> Result<()> {
@@ -158,7 +157,8 @@ fn check_options(options: &ReadOptions) -> Result<()> {
     }
     if let (Some(encoding), Some(_)) = (options.encoding.filter(|encoding| encoding.is_picture()), options.band) {
         let what = format!("{} takes the three bands of a picture, not one", encoding.name());
-        return Err(Error::setting(Setting::Encoding, what, "leave out --band or --encoding"));
+        let remedy = message!["leave out ", Setting::Band, " or ", Setting::Encoding];
+        return Err(Error::setting(Setting::Encoding, what, remedy));
     }
     let Some([west, south, east, north]) = options.crop else { return Ok(()) };
     let finite = [west, south, east, north].iter().all(|edge| edge.is_finite());

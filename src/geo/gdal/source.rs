@@ -20,7 +20,8 @@ use super::archive::{self, Member};
 use super::formats::{self, FORMATS, VECTORS};
 use super::name::{Local, Name, Place};
 use super::{grids, hgt, lossless, mistaken, outside, vrt, vsi};
-use crate::error::{Error, Message, Result, shown};
+use crate::error::{Error, Message, Result, Setting, shown};
+use crate::message;
 
 thread_local! {
     /// The first complaint of GDAL on this thread since `heard` last began.
@@ -76,7 +77,7 @@ impl Source {
         self.dataset.rasterband(self.band).map_err(|_| {
             let count = self.dataset.raster_count();
             let bands = if count == 1 { "1 band".to_owned() } else { format!("{count} bands") };
-            let remedy = format!("give `--band N` with N from 1 to {count}");
+            let remedy = message!["give `", Setting::Band.at("N"), format!("` with N from 1 to {count}")];
             self.error(format!("has {bands}, none of them is band {}", self.band), remedy)
         })
     }
@@ -92,7 +93,13 @@ impl Source {
         if let Some(words) = words.filter(|words| lacks_memory(words)) {
             return Error::limit(
                 format!("{}: not enough memory to read it ({})", shown(&self.path), one_line(words, &self.path)),
-                "use a smaller --memory or a --crop, or allow more (`ulimit -v` says how much)",
+                message![
+                    "use a smaller ",
+                    Setting::Memory,
+                    " or a ",
+                    Setting::Crop,
+                    ", or allow more (`ulimit -v` says how much)"
+                ],
             );
         }
         let what = match words {
@@ -188,7 +195,7 @@ fn connection(path: &Path, allow_remote: bool) -> Result<Connection> {
             return Err(Error::input(
                 path,
                 "lies on a network",
-                "download it first, or add `--allow-remote` if you trust where it comes from",
+                message!["download it first, or add `", Setting::AllowRemote, "` if you trust where it comes from"],
             ));
         }
         Name::Other => {

@@ -17,8 +17,9 @@ use super::limits::{Whole, too_many};
 use super::mosaic::reach;
 use super::source::MIN_SIDE;
 use crate::dem::{Crs, History, MAX_SAMPLES, Window};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Setting};
 use crate::geo::ReadOptions;
+use crate::message;
 
 /// Pixels from the border of the files to where cubic convolution has all its samples.
 const BORDER: f64 = 1.5;
@@ -170,10 +171,11 @@ fn zone(files: &Grid, window: Window, path: &Path) -> Result<Crs> {
         return Err(Error::input(
             path,
             format!("spans {width:.0} x {height:.0} degrees, too much of the globe for one map in metres"),
-            format!(
-                "take at most {WIDEST} x {HIGHEST} degrees, for instance `--crop {}`",
-                middle_part(files, &part, degrees)
-            ),
+            message![
+                format!("take at most {WIDEST} x {HIGHEST} degrees, for instance `"),
+                Setting::Crop.at(middle_part(files, &part, degrees)),
+                "`"
+            ],
         ));
     }
     Crs::from_epsg(metric_epsg(middle))
@@ -243,7 +245,7 @@ fn check_sides([width, height]: [usize; 2], files: &Grid, path: &Path) -> Result
     let (cell, units) = (files.cell(), files.crs.units());
     Err(Error::input(
         path,
-        format!("--crop leaves {width} x {height} samples; a surface needs at least 2 x 2"),
+        message![Setting::Crop, format!(" leaves {width} x {height} samples; a surface needs at least 2 x 2")],
         format!("widen it: the samples are {} and {} {units} apart", cell.x, cell.y),
     ))
 }
@@ -274,11 +276,15 @@ fn too_small(files: &Grid, path: &Path, metres: f64, crs: &Crs) -> Error {
     Error::input(
         path,
         format!("no 2 x 2 cells of {metres} m lie inside the data"),
-        format!(
-            "give smaller cells with --resample M, more of the DEM, or warp it yourself with voids beside it: \
-             `gdalwarp -t_srs EPSG:{} -r cubic -dstnodata -32768 IN OUT.tif`",
-            crs.epsg().map_or("CODE".to_owned(), |code| code.to_string())
-        ),
+        message![
+            "give smaller cells with ",
+            Setting::Resample.at("M"),
+            format!(
+                ", more of the DEM, or warp it yourself with voids beside it: \
+                 `gdalwarp -t_srs EPSG:{} -r cubic -dstnodata -32768 IN OUT.tif`",
+                crs.epsg().map_or("CODE".to_owned(), |code| code.to_string())
+            )
+        ],
     )
 }
 
@@ -286,7 +292,7 @@ fn outside(files: &Grid, path: &Path) -> Error {
     let ([west, south, east, north], units) = (files.extent(), files.crs.units());
     Error::input(
         path,
-        "no sample lies inside --crop",
+        message!["no sample lies inside ", Setting::Crop],
         format!("give E0,N0,E1,N1 within {west},{south},{east},{north} {units}"),
     )
 }

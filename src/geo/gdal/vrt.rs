@@ -2,8 +2,8 @@
 //!
 //! A VRT is XML that names other files, and GDAL opens whatever it names: addresses, files anywhere, code. Each name in
 //! it must be a raster in the VRT's own folder, links followed; a VRT that it names is looked into in turn, and so are
-//! VRTs that stand beside a file as its mask (`.msk`) or overview (`.ovr`) and the metadata in `.aux.xml`. With
-//! `--allow-remote` names may lead anywhere, but never to code, connections or formats off the list. Cost: one parse
+//! VRTs that stand beside a file as its mask (`.msk`) or overview (`.ovr`) and the metadata in `.aux.xml`. Where
+//! remote files are allowed names may lead anywhere, but never to code, connections or formats off the list. Cost: one parse
 //! of each VRT, and for each file it names a look at its head. Not handled: VRTs in archives, steps that process
 //! (`VRTProcessedDataset`), options for drivers: they are refused; and VRTs beside a file on a network.
 
@@ -13,7 +13,8 @@ use std::path::{Component, Path, PathBuf};
 use super::archive;
 use super::name::{Name, Place, names_remote};
 use super::xml::{self, Entry};
-use crate::error::{Error, Result, shown};
+use crate::error::{Error, Message, Result, Setting, shown};
+use crate::message;
 
 /// VRTs in VRTs at most: nobody needs more, and recursion stays small.
 const MAX_DEPTH: usize = 8;
@@ -41,9 +42,6 @@ const KINDS: [&str; 7] = [
 const PLAIN: &str = "make a plain raster of it where you trust it, with `gdal_translate IN OUT.tif`";
 const RUN: &str = "make a plain raster of it where you trust that code, with \
                    `gdal_translate --config GDAL_VRT_ENABLE_PYTHON YES IN OUT.tif`";
-const OUTSIDE: &str = "which lies outside its folder";
-const TOGETHER: &str = "move both into one folder, or add `--allow-remote` if you trust the file";
-const DISTRUSTED: &str = "download it first, or add `--allow-remote` if you trust it";
 
 /// What an inspection finds.
 pub(super) struct Inspected {
@@ -191,7 +189,7 @@ impl Inspection<'_> {
         }
         // A way up through a link leads elsewhere by its text than on the disk: not even inside the folder.
         if !self.allow_remote && local.file.components().any(|part| part == Component::ParentDir) {
-            return names(OUTSIDE, TOGETHER);
+            return Err(self.outside(entry, vrt));
         }
         if !local.file.is_absolute() {
             return names("which means another file in each working folder", "write it with relativeToVRT=\"1\" there");
@@ -201,7 +199,7 @@ impl Inspection<'_> {
             return Err(self.refused(vrt, what, "copy or download it again"));
         };
         if !self.allow_remote && !self.folder.as_ref().is_some_and(|folder| file.starts_with(folder)) {
-            return names(OUTSIDE, TOGETHER);
+            return Err(self.outside(entry, vrt));
         }
         if !file.is_file() {
             return names("which is no file", "name the raster file itself");
@@ -231,11 +229,18 @@ impl Inspection<'_> {
     }
 
     fn away(&self, entry: &Entry, at: &Path) -> Error {
-        self.refused(at, format!("names {:?}, which lies on a network", entry.text), DISTRUSTED)
+        let what = format!("names {:?}, which lies on a network", entry.text);
+        self.refused(at, what, message!["download it first, or add `", Setting::AllowRemote, "` if you trust it"])
+    }
+
+    fn outside(&self, entry: &Entry, at: &Path) -> Error {
+        let what = format!("names {:?}, which lies outside its folder", entry.text);
+        let remedy = message!["move both into one folder, or add `", Setting::AllowRemote, "` if you trust the file"];
+        self.refused(at, what, remedy)
     }
 
     /// The error for what stands in `at`.
-    fn refused(&self, at: &Path, what: impl Into<String>, remedy: &str) -> Error {
+    fn refused(&self, at: &Path, what: impl Into<String>, remedy: impl Into<Message>) -> Error {
         let what = what.into();
         if at == self.first {
             return Error::input(self.path, what, remedy);

@@ -20,8 +20,8 @@ use crate::dem::{Band, Dem, Entry, OverviewBuilder, Overviews, Samples, Survey, 
 use crate::error::{Message, Result};
 
 /// Raise it when the survey or the overviews of the same samples come out otherwise, or when the bytes below mean something
-/// else.
-const FORMAT: u32 = 1;
+/// else: settings stand in them by the names that they have in the code.
+const FORMAT: u32 = 2;
 const KIND: Kind = Kind { name: "heights", format: FORMAT, words: WORDS };
 
 /// What stands before the thinned samples.
@@ -34,7 +34,7 @@ struct Header {
     patches: u64,
     thinned: u64,
     validity: u64,
-    /// Bytes of what was assumed, a line each, behind the index.
+    /// Bytes of what was assumed, JSON of messages, behind the index.
     assumed: u64,
 }
 
@@ -129,7 +129,8 @@ impl Heights {
 /// Writes what follows the blocks.
 fn finish(sheet: &mut Sheet, survey: &Survey, index: &[Entry]) {
     let Survey { range, voids, marks, assumed, patches, thinned, validity } = survey;
-    let assumed = assumed.join("\n");
+    // Words are always JSON; a file without them is damaged, and made anew.
+    let assumed = serde_json::to_vec(assumed).unwrap_or_default();
     let header = Header {
         range: range.unwrap_or([1.0, 0.0]),
         voids: *voids as u64,
@@ -149,7 +150,7 @@ fn finish(sheet: &mut Sheet, survey: &Survey, index: &[Entry]) {
     write(bytemuck::cast_slice(thinned));
     write(bytemuck::cast_slice(validity.words()));
     write(bytemuck::cast_slice(index));
-    write(assumed.as_bytes());
+    write(&assumed);
     let footer = Footer { header: begin, hash: hash.digest() };
     sheet.write(bytemuck::bytes_of(&footer));
 }
@@ -188,7 +189,7 @@ pub(super) fn recall(dem: &Dem, Kept { file, bytes: size, path }: Kept) -> io::R
     let range = Some(range).filter(|[low, high]| low <= high);
     let overviews = Overviews::new(dem, &path, file.into_inner(), index).ok_or_else(damaged)?;
     let validity = Validity::from_words(dem, valid).ok_or_else(damaged)?;
-    let assumed = String::from_utf8(words).map_err(|_| damaged())?.lines().map(str::to_owned).collect();
+    let assumed = serde_json::from_slice(&words).map_err(|_| damaged())?;
     let survey = Survey { range, voids: voids as usize, marks: marks as usize, assumed, patches, thinned, validity };
     Ok(Heights { survey, overviews: Some(overviews) })
 }
