@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use std::thread;
 use std::time::Instant;
 
-use clap::ValueEnum;
 use serde::Serialize;
 
 use super::cache::CacheArguments;
@@ -16,7 +15,7 @@ use super::talk::Talk;
 use super::terrain::{TerrainArguments, warn_of_survey};
 use super::values::{self, LevelChoice};
 use super::viewpoint::{View, ViewArguments, ViewReport};
-use super::{blank, cells};
+use super::{blank, cells, choices};
 use crate::dem::Dem;
 use crate::error::{Error, Result, shown};
 use crate::files::Taken;
@@ -73,18 +72,18 @@ pub struct DrawArguments {
     error_px: Option<f64>,
 
     /// How silhouettes are found
-    #[arg(long, default_value = "walk", help_heading = "Method")]
-    method: MethodName,
+    #[arg(long, value_parser = choices::family(), default_value = Method::default().entry().family, help_heading = "Method")]
+    method: Method,
     /// toward-away only: away surface counts wherever it touches the pixel or the neighbour it is compared with
     #[arg(long, help_heading = "Method")]
     wide: bool,
     #[arg(
-        long, help_heading = "Method",
-        help = format!("adjacency only: what neighbouring facets share [default: {}]", name(Share::default()))
+        long, value_parser = choices::share(), help_heading = "Method",
+        help = format!("adjacency only: what neighbouring facets share [default: {}]", choices::default_share())
     )]
     share: Option<Share>,
     /// Whether to draw the visible border of the DEM and of its voids
-    #[arg(long, default_value = "on", help_heading = "Method")]
+    #[arg(long, value_parser = choices::border(), default_value = choices::default_border(), help_heading = "Method")]
     border: Border,
 
     /// Say at which levels parts of the DEM are drawn, what the frame did without, why, and what that saved
@@ -94,21 +93,6 @@ pub struct DrawArguments {
     device: DeviceArguments,
     #[command(flatten)]
     cache: CacheArguments,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum MethodName {
-    /// Walk the lattice between neighbouring pixels: complete
-    Walk,
-    /// Compare toward and away depths: never a false line, but gaps
-    TowardAway,
-    /// Compare the facets of neighbouring pixels: floods small facets
-    Adjacency,
-}
-
-/// What is typed for a choice.
-fn name(choice: impl ValueEnum) -> String {
-    choice.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
 }
 
 /// `--json`.
@@ -237,17 +221,18 @@ impl DrawArguments {
         Ok(self.level.detail(self.error_px.unwrap_or(ERROR_PX)))
     }
 
+    /// The variant of the method that further flags ask for.
     fn method(&self) -> Result<Method> {
-        if self.wide && self.method != MethodName::TowardAway {
+        if self.wide && !matches!(self.method, Method::TowardAway { .. }) {
             return Err(Error::flag("--wide", "goes with toward-away only", "add --method toward-away"));
         }
-        if self.share.is_some() && self.method != MethodName::Adjacency {
+        if self.share.is_some() && !matches!(self.method, Method::Adjacency { .. }) {
             return Err(Error::flag("--share", "goes with adjacency only", "add --method adjacency"));
         }
         Ok(match self.method {
-            MethodName::Walk => Method::Walk,
-            MethodName::TowardAway => Method::TowardAway { wide: self.wide },
-            MethodName::Adjacency => Method::Adjacency { share: self.share.unwrap_or_default() },
+            Method::TowardAway { .. } => Method::TowardAway { wide: self.wide },
+            Method::Adjacency { .. } => Method::Adjacency { share: self.share.unwrap_or_default() },
+            plain => plain,
         })
     }
 
@@ -268,7 +253,7 @@ impl DrawArguments {
         Ok(Report {
             version: env!("CARGO_PKG_VERSION"),
             dem: DemReport::of(&self.terrain.dems, surface.dem()),
-            method: method.name(),
+            method: method.entry().family,
             level: self.detail()?.into(),
             facets: renderer.facets(),
             inked: page.marks.inked(),

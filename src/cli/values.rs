@@ -9,7 +9,7 @@ use crate::dem::{ElevationUnit, Encoding, LARGEST_SIDE as MOST_SAMPLES, Nodata};
 use crate::gpu::AdapterChoice;
 use crate::plan::pieces::LARGEST_PAGE;
 use crate::plan::{Detail, Method};
-use crate::report::compare::{LEAST_TRUTH_LEVEL, METHODS};
+use crate::report::compare::LEAST_TRUTH_LEVEL;
 use crate::surface::Level;
 
 /// No place on Earth has coordinates beyond this, in any unit.
@@ -243,9 +243,9 @@ pub fn repeat(text: &str) -> Result<u32, String> {
 }
 
 /// A method with all it takes, by the name that reports have for it.
-pub fn method(text: &str) -> Result<(&'static str, Method), String> {
-    let names = METHODS.map(|(name, _)| name).join(", ");
-    METHODS.into_iter().find(|(name, _)| *name == text).ok_or_else(|| format!("want some of {names}"))
+pub fn method(text: &str) -> Result<Method, String> {
+    let names = Method::ALL.map(|method| method.entry().name).join(", ");
+    Method::named(text).ok_or_else(|| format!("want some of {names}"))
 }
 
 /// `cpu`, `gpu` or words of an adapter's name.
