@@ -15,7 +15,7 @@ use crate::gpu::uniforms::{Counts, near_plane};
 use crate::gpu::work::Work;
 use crate::gpu::{Buffers, CameraUniform, Clock, Extent, Gpu};
 use crate::gpu::{border, facing, project, rasterize, seam, tessellate};
-use crate::ink::{InkRaster, Marks, marks};
+use crate::line::{InkRaster, Marks, marks};
 use crate::plan::left_out::{LeftOut, left_out};
 use crate::plan::{Batch, Border, Detail, Piece, Pieces, Plan, Thrift, Visibility, batches, detail};
 use crate::surface::rim::{RimEdge, rim, rim_length};

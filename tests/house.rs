@@ -4,8 +4,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Folders and files of `src` in the order in which the data flows; errors are everyone's.
-const ORDER: [&str; 13] =
-    ["error", "files", "cache", "dem", "surface", "view", "plan", "gpu", "ink", "truth", "render", "report", "cli"];
+const ORDER: [&str; 14] = [
+    "error", "files", "cache", "dem", "surface", "view", "plan", "gpu", "line", "ink", "truth", "render", "report",
+    "cli",
+];
 
 /// What truth may know.
 const TRUTH: [&str; 5] = ["error", "dem", "surface", "view", "truth"];

@@ -5,7 +5,7 @@
 //! tests follow from the entry.
 
 /// What is known of a method.
-#[derive(Debug, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Entry {
     /// Its name in comparisons and reports, unique; file names hold it.
     pub name: &'static str,
@@ -52,7 +52,7 @@ pub struct Look {
 }
 
 /// A mark at a point of a curve.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Marker {
     /// A filled circle.
     Disc,

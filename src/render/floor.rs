@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::gpu::clock::time_of;
 use crate::gpu::sizes::LIST_HEADER;
 use crate::gpu::{BareCopy, DepthDraw};
-use crate::ink::Kind;
+use crate::line::Kind;
 use crate::plan::Thrift;
 use crate::plan::cost::{PassCost, Quantities};
 use crate::plan::detail::across;

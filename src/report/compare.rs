@@ -9,6 +9,7 @@ use std::cell::Cell;
 use glam::DVec2;
 
 use super::pictures::{Picture, truth_picture};
+use super::rendered::try_plan;
 use super::results::{Convergence, DrawnLevel, LevelOffset, Run, TruthReport};
 use super::trial::{Trial, line, moved, picture_names};
 use super::truths::Kept;
@@ -86,7 +87,8 @@ struct Truths {
 impl Comparison {
     /// File names of a scene's pictures.
     pub fn picture_names(&self, scene: &str) -> Vec<String> {
-        let runs = self.levels.iter().flat_map(|level| self.methods.iter().map(move |method| (method.entry().name, *level)));
+        let runs =
+            self.levels.iter().flat_map(|level| self.methods.iter().map(move |method| (method.entry().name, *level)));
         let of_runs = runs.flat_map(|(method, level)| picture_names(scene, method, level.into()));
         of_runs.chain([truth_name(scene)]).collect()
     }
@@ -119,18 +121,16 @@ impl Comparison {
                 let words = format!("{name}: {method_name} at level {}", DrawnLevel::from(level));
                 (to.stage)(&words, TRUTH_SHARE + (1.0 - TRUTH_SHARE) * done);
                 let trial = Trial {
-                    gpu,
-                    surface: terrain.surface,
                     camera,
-                    plan: Plan::new(level, method, self.border),
                     scene: name,
                     method: method_name,
+                    level: level.into(),
                     repeat: self.repeat,
-                    floor: self.floor,
                     judge: &judge,
                     truth_pop: pop,
                 };
-                let (run, drawn) = trial.run()?;
+                let plan = Plan::new(level, method, self.border);
+                let (run, drawn) = try_plan(&trial, gpu, terrain.surface, plan, self.floor)?;
                 (to.say)(&line(&run))?;
                 (to.detail)(&format!("  masks of the warm frames: {}", run.mask_hashes.join(" ")))?;
                 runs.push(run);

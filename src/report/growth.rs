@@ -8,8 +8,7 @@ use std::fmt;
 use plotters::prelude::*;
 
 use super::chart::{
-    Area, Axis, Drawn, INK, MARKER, axes, draw_curve, draw_label, draw_line, label_page, place, plot,
-    segments,
+    Area, Axis, Drawn, INK, MARKER, axes, draw_curve, draw_label, draw_line, label_page, place, plot, segments,
 };
 use super::labels::{self, Choice, Rect};
 use super::words::milliseconds;

@@ -15,8 +15,9 @@ pub mod memory;
 pub mod pictures;
 pub mod plot;
 mod prepared;
+mod rendered;
 pub mod results;
-mod trial;
+pub mod trial;
 pub mod truths;
 mod words;
 

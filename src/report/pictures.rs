@@ -3,7 +3,7 @@
 use std::io;
 
 use crate::error::{Error, Result};
-use crate::ink::{self, InkRaster, Marks};
+use crate::ink;
 use crate::truth::Mask;
 use crate::truth::metrics::Measured;
 
@@ -22,12 +22,12 @@ pub struct Picture {
     pub png: Vec<u8>,
 }
 
-/// The mask of a frame: 1 bit a pixel.
+/// A mask: 1 bit a pixel.
 ///
 /// # Errors
 /// [`Error::Output`] where PNG cannot hold it.
-pub fn mask_picture(name: String, raster: &InkRaster) -> Result<Picture> {
-    picture(name, |png| ink::write_mask(&Marks::from(raster), png))
+pub fn mask_picture(name: String, mask: &Mask) -> Result<Picture> {
+    picture(name, |png| ink::write_mask(mask.size, mask.inked.iter().map(|pixel| [pixel.column, pixel.row]), png))
 }
 
 /// Truth drawn one pixel wide.
