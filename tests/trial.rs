@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use hachure::error::Result;
 use hachure::line::{Chain, ChainPoint, Line};
 use hachure::report::results::{DrawnLevel, PassFigures, Run};
-use hachure::report::trial::{Drawn, Draws, Trial};
+use hachure::report::trial::{Draws, Trial, Yield};
 use hachure::surface::{Level, Surface};
 use hachure::truth::metrics::Judge;
 use hachure::truth::{Mask, Piece, Terrain, Truth};
@@ -25,13 +25,13 @@ struct Curves<'a> {
 }
 
 /// The curves of a frame.
-struct Yield {
+struct Seen {
     truth: Truth,
     perspective: Perspective,
 }
 
 impl Draws for Curves<'_> {
-    type Drawn = Yield;
+    type Yield = Seen;
 
     fn time_of_frame(&mut self, camera: &Camera) -> Result<f64> {
         let start = Instant::now();
@@ -39,9 +39,9 @@ impl Draws for Curves<'_> {
         Ok(start.elapsed().as_secs_f64() * 1e3)
     }
 
-    fn drawn(&mut self) -> Result<Yield> {
+    fn yielded(&mut self) -> Result<Seen> {
         let (truth, perspective) = self.last.clone().expect("a frame");
-        Ok(Yield { truth, perspective })
+        Ok(Seen { truth, perspective })
     }
 
     fn passes(&mut self, camera: &Camera) -> Result<Vec<PassFigures>> {
@@ -57,7 +57,7 @@ impl Draws for Curves<'_> {
     }
 }
 
-impl Drawn for Yield {
+impl Yield for Seen {
     fn mask(&self) -> Mask {
         Mask::of_truth(&self.truth)
     }
@@ -117,7 +117,10 @@ fn curves_are_judged_as_ink_is() {
     assert_eq!([run.chamfer_px, run.h95_px], [direct.chamfer, direct.h95]);
     assert_eq!((run.chains, run.facets), (half.on_page().count(), half.facets));
     let place = run.place.as_ref().expect("curves have places");
-    assert_eq!(Some(place.p95_px), judge.offsets(&half.on_page().map(Piece::middle).collect::<Vec<_>>()).map(|o| o.p95));
+    assert_eq!(
+        Some(place.p95_px),
+        judge.offsets(&half.on_page().map(Piece::middle).collect::<Vec<_>>()).map(|o| o.p95)
+    );
     assert_eq!((run.mask_hashes.len(), run.passes.len()), (2, 1));
     let picture = image::load_from_memory(&png).expect("a PNG").to_luma8();
     assert!(picture.pixels().map(|pixel| pixel.0[0] == 0).eq(mask.pixels()), "the mask is that of the curves");

@@ -8,7 +8,7 @@ use super::floors::Floors;
 use super::memory;
 use super::pictures::Picture;
 use super::results::{Floor as FloorFigures, PassFigures, Run};
-use super::trial::{Drawn, Draws, Trial};
+use super::trial::{Draws, Trial, Yield};
 use crate::error::Result;
 use crate::gpu::Gpu;
 use crate::line::{Chain, InkRaster, Kind, Marks, Pixel, trace};
@@ -61,14 +61,14 @@ pub(super) fn try_plan(
 }
 
 impl Draws for Rendered<'_> {
-    type Drawn = Ink;
+    type Yield = Ink;
 
     fn time_of_frame(&mut self, camera: &Camera) -> Result<f64> {
         self.perspective = Perspective::new(camera, self.renderer.near());
         self.renderer.time_of_frame(camera)
     }
 
-    fn drawn(&mut self) -> Result<Ink> {
+    fn yielded(&mut self) -> Result<Ink> {
         let raster = self.renderer.read()?.raster;
         Ok(Ink { raster, perspective: self.perspective, method: self.method })
     }
@@ -100,7 +100,7 @@ impl Draws for Rendered<'_> {
     }
 }
 
-impl Drawn for Ink {
+impl Yield for Ink {
     fn mask(&self) -> Mask {
         let near = self.perspective.near();
         let inked = |([column, row], pixel): ([u32; 2], &Pixel)| Inked { column, row, distance: pixel.distance(near) };

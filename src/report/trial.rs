@@ -1,6 +1,6 @@
 //! One method at one level: drawn, timed over frames whose eye moves on, measured against truth.
 //!
-//! A method yields pixels of ink or curves: what is asked of either is [`Drawn`]. Each warm frame moves the eye 1 m along
+//! A method yields pixels of ink or curves: what is asked of either is [`Yield`]. Each warm frame moves the eye 1 m along
 //! the view axis, so that nothing of an earlier frame can be used again. The first frame, of the eye that was asked for,
 //! is the one that is judged.
 
@@ -23,7 +23,7 @@ const BANDS: [&str; 3] = ["near", "middle", "far"];
 /// A method that draws frames of cameras.
 pub trait Draws {
     /// What a frame yields.
-    type Drawn: Drawn;
+    type Yield: Yield;
 
     /// Draws a frame and says how long it took, ms.
     ///
@@ -35,7 +35,7 @@ pub trait Draws {
     ///
     /// # Errors
     /// Whatever keeps it from reading.
-    fn drawn(&mut self) -> Result<Self::Drawn>;
+    fn yielded(&mut self) -> Result<Self::Yield>;
 
     /// Draws a frame and says how long each of its passes took, and what it moved and computed.
     ///
@@ -64,7 +64,7 @@ pub trait Draws {
 }
 
 /// What a method yields of a frame, pixels of ink or curves, as a trial judges it.
-pub trait Drawn {
+pub trait Yield {
     /// The pixels of ink; of curves, those that they pass through.
     fn mask(&self) -> Mask;
 
@@ -94,9 +94,9 @@ pub struct Trial<'a> {
 }
 
 /// Frames and what they took.
-struct Timed<D> {
+struct Timed<Y> {
     /// The one that is judged.
-    first: D,
+    first: Y,
     /// The mask of the next eye.
     next: Mask,
     setup_ms: f64,
@@ -126,15 +126,15 @@ impl Trial<'_> {
         Ok((self.result(timed, &mask, &measured.scores(), names), pictures))
     }
 
-    fn time<D: Draws>(&self, method: &mut D, setup_ms: f64) -> Result<Timed<D::Drawn>> {
+    fn time<D: Draws>(&self, method: &mut D, setup_ms: f64) -> Result<Timed<D::Yield>> {
         let first_frame_ms = method.time_of_frame(self.camera)?;
-        let first = method.drawn()?;
+        let first = method.yielded()?;
         let passes = method.passes(&moved(self.camera, self.repeat + 1))?;
         let (mut times, mut mask_hashes, mut next) = (Vec::new(), Vec::new(), None);
         for step in 1..=self.repeat {
             let camera = moved(self.camera, step);
             times.push(method.time_of_frame(&camera)?);
-            let mask = method.drawn()?.mask();
+            let mask = method.yielded()?.mask();
             mask_hashes.push(hash(&mask));
             next.get_or_insert(mask);
             method.time_floor(&camera)?;
@@ -157,7 +157,7 @@ impl Trial<'_> {
 
     fn result(
         &self,
-        timed: Timed<impl Drawn>,
+        timed: Timed<impl Yield>,
         mask: &Mask,
         scores: &Scores,
         [mask_name, difference]: [String; 2],
