@@ -7,7 +7,7 @@
 
 use glam::{DVec2, DVec3};
 use hachure::gpu::Gpu;
-use hachure::ink::Kind;
+use hachure::line::Kind;
 use hachure::plan::{Border, Method};
 use hachure::render::Renderer;
 use hachure::surface::Surface;

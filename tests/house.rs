@@ -7,9 +7,9 @@ use clap::CommandFactory;
 use hachure::cli::Arguments;
 
 /// Folders and files of `src` in the order in which the data flows; errors are everyone's.
-const ORDER: [&str; 15] = [
-    "error", "files", "cache", "dem", "geo", "surface", "view", "plan", "gpu", "ink", "truth", "render", "measure",
-    "report", "cli",
+const ORDER: [&str; 16] = [
+    "error", "files", "cache", "dem", "geo", "surface", "view", "plan", "gpu", "line", "ink", "truth", "render",
+    "measure", "report", "cli",
 ];
 
 /// What truth may know.

@@ -13,14 +13,14 @@ use super::values::{self, LevelChoice, Size};
 use super::viewpoint::{View, ViewArguments};
 use super::views::{self, NamedView};
 use super::words::{flag, told};
-use super::{blank, cells};
+use super::{blank, cells, choices};
 use crate::cache::Cache;
 use crate::error::{Error, Result, Setting, shown};
 use crate::files::Taken;
 use crate::geo::Reading;
 use crate::gpu::Gpu;
 use crate::gpu::sizes::page_fits;
-use crate::measure::compare::{Compared, Comparison, Found, Hearing, METHODS};
+use crate::measure::compare::{Compared, Comparison, Found, Hearing};
 use crate::measure::depth_draw;
 use crate::measure::figures::Run;
 use crate::plan::detail::ERROR_PX;
@@ -33,10 +33,8 @@ use crate::report::{error_time_svg, report_html, write_csv};
 use crate::surface::{Level, Surface};
 use crate::truth::Terrain;
 
-/// The end of `hachure compare --help`.
+/// The end of `hachure compare --help`, below the names of the methods.
 const EXAMPLES: &str = "\
-Methods: walk, toward-away, toward-away-wide, adjacency (facets that share an edge), adjacency-corner.
-
 Times are medians of warm frames; each moves the eye 1 m along the view, the first frame stands apart. Truth is found on
 the CPU and kept in the user's folder for caches.
 
@@ -55,7 +53,7 @@ Examples:
 
 /// Flags of `hachure compare`, as typed.
 #[derive(Debug, clap::Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = format!("Methods: {}.\n\n{EXAMPLES}", choices::methods()))]
 pub struct CompareArguments {
     #[command(flatten)]
     terrain: TerrainArguments,
@@ -85,9 +83,9 @@ pub struct CompareArguments {
 
     /// Methods to compare [default: all]
     #[arg(long, value_name = "NAME,...", value_parser = values::method, value_delimiter = ',', help_heading = "Method")]
-    methods: Vec<(&'static str, Method)>,
+    methods: Vec<Method>,
     /// Whether the visible border of the DEM and of its voids is drawn and judged
-    #[arg(long, default_value = "on", help_heading = "Method")]
+    #[arg(long, value_parser = choices::border(), default_value = choices::default_border(), help_heading = "Method")]
     border: Border,
 
     /// Subdivisions of a cell's edge for truth: 8, 16, 32 or 64 [default: no visible cell's edge longer than a pixel]
@@ -123,7 +121,7 @@ pub fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
     let sizes = arguments.sizes();
     each_once(Setting::Sizes, sizes.iter().map(|size| format!("{}x{}", size.width, size.height)))?;
     each_once(Setting::Levels, arguments.levels.iter().map(LevelChoice::to_string))?;
-    each_once(Setting::Methods, arguments.methods.iter().map(|(name, _)| (*name).to_owned()))?;
+    each_once(Setting::Methods, arguments.methods.iter().map(|method| method.entry().name.to_owned()))?;
     sizes.iter().try_for_each(|size| page_fits([size.width, size.height]))?;
     arguments.view.check()?;
     let jobs = arguments.jobs(talk)?;
@@ -198,7 +196,7 @@ impl CompareArguments {
 
     fn comparison(&self) -> Comparison {
         Comparison {
-            methods: if self.methods.is_empty() { METHODS.to_vec() } else { self.methods.clone() },
+            methods: if self.methods.is_empty() { Method::ALL.to_vec() } else { self.methods.clone() },
             levels: self.levels.iter().map(|level| level.detail(self.error_px)).collect(),
             repeat: self.repeat,
             floor: self.floor,

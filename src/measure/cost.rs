@@ -153,7 +153,7 @@ impl Quantities {
         }
         costs.extend([self.facing(), times(self.project(), vertex_rounds)]);
         costs.extend([self.rasterize(method, visibility), times(self.rasterize_large(), rounds)]);
-        costs.extend(self.silhouettes(method));
+        costs.extend(method.entry().passes.iter().filter_map(|name| self.silhouette(name, method)));
         if self.rim > 0 {
             costs.push(cost("border", self.rim * (RIM_EDGE_BYTES + 2 * 3 * SAMPLE_BYTES), self.rim * EDGE));
         }
@@ -161,7 +161,7 @@ impl Quantities {
     }
 
     fn clear(&self, method: Method) -> PassCost {
-        cost("clear", self.pixels * (PIXEL_BYTES + WORD_BYTES + touched(method)) + self.chunks * WORD_BYTES, 0)
+        cost("clear", self.pixels * (PIXEL_BYTES + WORD_BYTES + of_its_own(method)) + self.chunks * WORD_BYTES, 0)
     }
 
     fn tessellate(&self) -> PassCost {
@@ -195,7 +195,7 @@ impl Quantities {
             // The depth both ways; then it is read, and the ID goes both ways.
             Visibility::Key32 => (2 * chunk, 5 * WORD_BYTES),
             // Of toward and away at least one.
-            Visibility::TwoDepths => (chunk + facing, 2 * (WORD_BYTES + touched(method))),
+            Visibility::TwoDepths => (chunk + facing, 2 * (WORD_BYTES + of_its_own(method))),
         };
         let bytes = self.drawn * of_chunk + self.land * of_pixel + self.queued * WORD_BYTES;
         let operations = self.drawn * u64::from(CHUNK_FACETS) * SET_UP + self.land * COVER;
@@ -206,42 +206,42 @@ impl Quantities {
         cost("rasterize_large", self.queued * (WORD_BYTES + 3 * VERTEX_BYTES), self.queued * CLIP)
     }
 
-    fn silhouettes(&self, method: Method) -> Vec<PassCost> {
+    /// What a pass of a method costs; `None` for a name that is none.
+    fn silhouette(&self, name: &str, method: Method) -> Option<PassCost> {
         let [candidates, pairs, rest] = self.listed;
         let facing = self.drawn * u64::from(CHUNK_WORDS) * WORD_BYTES;
         // Its own pixel, a neighbour, and the ink of one of them both ways.
         let walk = WORD_BYTES + 2 * (PIXEL_BYTES + POINT_BYTES) + 2 * WORD_BYTES;
-        match method {
-            Method::Walk => vec![
-                cost(
-                    "candidates",
-                    self.pixels * PIXEL_BYTES + self.drawn * WORD_BYTES + candidates * WORD_BYTES,
-                    self.pixels * LIST,
-                ),
-                cost(
-                    "pairs",
-                    candidates * (WORD_BYTES + 2 * PIXEL_BYTES + WORD_BYTES) + pairs * WORD_BYTES,
-                    candidates * LOOK,
-                ),
-                cost("walk", pairs * walk + rest * WORD_BYTES, pairs * WALK),
-                cost("walk_rest", rest * walk, rest * WALK),
-            ],
-            Method::TowardAway { .. } => vec![cost(
+        Some(match name {
+            "candidates" => cost(
+                "candidates",
+                self.pixels * PIXEL_BYTES + self.drawn * WORD_BYTES + candidates * WORD_BYTES,
+                self.pixels * LIST,
+            ),
+            "pairs" => cost(
+                "pairs",
+                candidates * (WORD_BYTES + 2 * PIXEL_BYTES + WORD_BYTES) + pairs * WORD_BYTES,
+                candidates * LOOK,
+            ),
+            "walk" => cost("walk", pairs * walk + rest * WORD_BYTES, pairs * WALK),
+            "walk_rest" => cost("walk_rest", rest * walk, rest * WALK),
+            "toward_away" => cost(
                 "toward_away",
-                self.pixels * (PIXEL_BYTES + touched(method) + WORD_BYTES),
+                self.pixels * (PIXEL_BYTES + of_its_own(method) + WORD_BYTES),
                 self.pixels * TOWARD_AWAY,
-            )],
-            Method::Adjacency { .. } => {
+            ),
+            "adjacency" => {
                 let bytes = self.pixels * (PIXEL_BYTES + WORD_BYTES) + self.drawn * CHUNK_BYTES + facing;
-                vec![cost("adjacency", bytes, self.land * ADJACENCY)]
+                cost("adjacency", bytes, self.land * ADJACENCY)
             }
-        }
+            _ => return None,
+        })
     }
 }
 
-/// Bytes of a pixel that only wide toward-away has: the nearest away depth that touches it.
-fn touched(method: Method) -> u64 {
-    if method == (Method::TowardAway { wide: true }) { WORD_BYTES } else { 0 }
+/// Bytes of a pixel that only this method has.
+fn of_its_own(method: Method) -> u64 {
+    method.entry().words.len() as u64 * WORD_BYTES
 }
 
 fn cost(name: &'static str, bytes: u64, operations: u64) -> PassCost {
