@@ -89,7 +89,7 @@ impl Trial<'_> {
         let one_more = moved(self.camera, self.repeat + 1);
         let passes = renderer.timed_frame(&one_more)?.passes;
         let costs = costs(&renderer, &one_more, &renderer.read()?)?;
-        let bytes = costs.iter().map(|pass| pass.bytes).sum();
+        let bytes = costs.iter().map(PassCost::bytes).sum();
         let mut floor = self.floor.then(|| Floor::new(&renderer, bytes)).transpose()?;
         let mut floors = self.floor.then(|| Floors::new(bytes));
         let (mut times, mut mask_hashes, mut next) = (Vec::new(), Vec::new(), None);
@@ -178,7 +178,7 @@ pub(super) fn moved(camera: &Camera, metres: u32) -> Camera {
 /// A pass's time beside what it cost.
 fn figures(PassTime { name, ms }: PassTime, costs: &[PassCost]) -> PassFigures {
     let cost = costs.iter().find(|cost| cost.name == name);
-    let (bytes, operations) = cost.map_or((0, 0), |cost| (cost.bytes, cost.operations));
+    let (bytes, operations) = cost.map_or((0, 0), |cost| (cost.bytes(), cost.operations));
     PassFigures { name, ms, bytes, operations }
 }
 
