@@ -22,7 +22,7 @@ use crate::tolerances::{HIDDEN_SHARE, REACH_PX, RECALL, TRUTH_PIECE_PX};
 
 const PAGE: [u32; 2] = [384, 288];
 /// Bit of a pixel's ink that a border line sets, also where a silhouette runs over it.
-const BORDER: u32 = 2;
+pub const BORDER: u32 = 2;
 
 /// A plane that rises to the north-east.
 const PLANE: Form = Form {

@@ -119,11 +119,7 @@ struct Job {
 /// Whatever went wrong; no page stands in the folder then.
 pub fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
     let sizes = arguments.sizes();
-    each_once(Setting::Sizes, sizes.iter().map(|size| format!("{}x{}", size.width, size.height)))?;
-    each_once(Setting::Levels, arguments.levels.iter().map(LevelChoice::to_string))?;
-    each_once(Setting::Methods, arguments.methods.iter().map(|method| method.entry().name.to_owned()))?;
-    sizes.iter().try_for_each(|size| page_fits([size.width, size.height]))?;
-    arguments.view.check()?;
+    arguments.check(&sizes)?;
     let jobs = arguments.jobs(talk)?;
     let comparison = arguments.comparison();
     let views = || jobs.iter().flat_map(|job| &job.views);
@@ -153,19 +149,10 @@ pub fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
     };
     let (mut scenes, mut runs) = (Vec::new(), Vec::new());
     for (job, reading) in jobs.iter().zip(readings) {
-        let dem = arguments.terrain.read(reading, talk)?;
-        // Truth looks at every sample again and again.
-        dem.held()?;
-        dem.check_patches()?;
-        cells::warn(&dem, arguments.exaggeration, talk);
-        let surface = Surface::new(dem);
+        let surface = arguments.surface(reading, talk)?;
         let terrain = Terrain::new(&surface);
         for (named, size) in job.views.iter().flat_map(|view| sizes.iter().map(move |size| (view, *size))) {
-            // Heights above ground are above the level of `hachure draw`.
-            let mut view = named.view.view(&surface, LevelChoice::Auto.near())?;
-            (view.camera.width, view.camera.height) = (size.width, size.height);
-            let name = scene_name(&named.name, size, &sizes);
-            view.warn_below_ground(&surface, LevelChoice::Auto.near(), talk);
+            let (name, view) = (scene_name(&named.name, size, &sizes), view_of(named, size, &surface, talk)?);
             let found = comparison.scene(&gpu, &name, &terrain, &view.camera, &hearing);
             let found = found.map_err(|error| blank::with_place(error, &surface, &view))?;
             let (scene, of_scene) = arguments.scene(name, &job.files, &surface, &view, found);
@@ -175,21 +162,51 @@ pub fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
         }
     }
     talk.progress("writing", 1.0);
-    let results = Results {
-        version: SCHEMA,
-        hachure: env!("CARGO_PKG_VERSION"),
-        command: std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect::<Vec<_>>().join(" "),
-        machine: machine(&gpu),
-        truth: least_sure(&scenes),
-        scenes,
-        runs,
-    };
     let (page, pictures) = (folder.page(), drawn.into_inner());
-    folder.publish(&contents(&results, &pictures)?, &pictures)?;
+    folder.publish(&contents(&results(&gpu, scenes, runs), &pictures)?, &pictures)?;
     talk.say(&format!("report: {}", shown(&page)))
 }
 
+/// The view of a file, or of flags, on a page of this size.
+fn view_of(named: &NamedView, size: Size, surface: &Surface, talk: &Talk) -> Result<View> {
+    // Heights above ground are above the level of `hachure draw`.
+    let mut view = named.view.view(surface, LevelChoice::Auto.near())?;
+    (view.camera.width, view.camera.height) = (size.width, size.height);
+    view.warn_below_ground(surface, LevelChoice::Auto.near(), talk);
+    Ok(view)
+}
+
+fn results(gpu: &Gpu, scenes: Vec<Scene>, runs: Vec<Run>) -> Results {
+    Results {
+        version: SCHEMA,
+        hachure: env!("CARGO_PKG_VERSION"),
+        command: std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect::<Vec<_>>().join(" "),
+        machine: machine(gpu),
+        truth: least_sure(&scenes),
+        scenes,
+        runs,
+    }
+}
+
 impl CompareArguments {
+    /// Whether files can be named after what is compared, pages drawn, and the view seen.
+    fn check(&self, sizes: &[Size]) -> Result<()> {
+        each_once(Setting::Sizes, sizes.iter().map(|size| format!("{}x{}", size.width, size.height)))?;
+        each_once(Setting::Levels, self.levels.iter().map(LevelChoice::to_string))?;
+        each_once(Setting::Methods, self.methods.iter().map(|method| method.entry().name.to_owned()))?;
+        sizes.iter().try_for_each(|size| page_fits([size.width, size.height]))?;
+        self.view.check()
+    }
+
+    fn surface(&self, reading: Reading, talk: &Talk) -> Result<Surface> {
+        let dem = self.terrain.read(reading, talk)?;
+        // Truth looks at every sample again and again.
+        dem.held()?;
+        dem.check_patches()?;
+        cells::warn(&dem, self.exaggeration, talk);
+        Ok(Surface::new(dem))
+    }
+
     fn sizes(&self) -> Vec<Size> {
         if self.sizes.is_empty() { vec![self.view.size] } else { self.sizes.clone() }
     }

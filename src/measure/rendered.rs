@@ -70,7 +70,7 @@ impl Draws for Rendered<'_> {
         let passes = self.renderer.timed_frame(camera)?.passes;
         let costs = costs(self.renderer, camera, &self.renderer.read()?)?;
         if self.wants_floor {
-            let bytes = costs.iter().map(|pass| pass.bytes).sum();
+            let bytes = costs.iter().map(PassCost::bytes).sum();
             self.floor = Some((Floor::new(self.renderer, bytes)?, Floors::new(bytes)));
         }
         Ok(passes.into_iter().map(|pass| figures(pass, &costs)).collect())
@@ -121,7 +121,7 @@ impl Yield for Ink {
 /// A pass's time beside what it cost.
 fn figures(PassTime { name, ms }: PassTime, costs: &[PassCost]) -> PassFigures {
     let cost = costs.iter().find(|cost| cost.name == name);
-    let (bytes, operations) = cost.map_or((0, 0), |cost| (cost.bytes, cost.operations));
+    let (bytes, operations) = cost.map_or((0, 0), |cost| (cost.bytes(), cost.operations));
     PassFigures { name, ms, bytes, operations }
 }
 
