@@ -92,7 +92,8 @@ pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Dem> {
 /// the list of formats, no Python in VRTs, a small cache. No other thread should be inside GDAL at that moment.
 ///
 /// # Errors
-/// [`Error::Setting`] for options that make no sense, [`Error::Limit`] for more samples than fit, [`Error::Input`] for a
+/// [`Error::Setting`](crate::error::Error::Setting) for options that make no sense,
+/// [`Error::Limit`](crate::error::Error::Limit) for more samples than fit, [`Error::Input`](crate::error::Error::Input) for a
 /// file that is missing, damaged, no raster, nowhere, without elevations, not to be trusted, or outside the crop.
 pub fn read_all(paths: &[PathBuf], options: &ReadOptions, progress: &dyn Fn(Stage, f64)) -> Result<Dem> {
     Reading::new(paths, options)?.finish(progress)
