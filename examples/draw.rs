@@ -2,7 +2,7 @@
 
 use std::{env, error::Error, fs::File, io::BufWriter};
 
-use hachure::dem::{ReadOptions, read};
+use hachure::geo::{ReadOptions, read};
 use hachure::gpu::{AdapterChoice, Gpu, Int64};
 use hachure::view::{Fixed, choose};
 use hachure::{ink, plan::Plan, render::Renderer, surface::Surface};

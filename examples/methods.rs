@@ -2,7 +2,7 @@
 
 use std::{env, error::Error, fs::File, io::BufWriter, path::PathBuf, time::Instant};
 
-use hachure::dem::{ReadOptions, read};
+use hachure::geo::{ReadOptions, read};
 use hachure::gpu::{AdapterChoice, Gpu, Int64};
 use hachure::plan::{Method, Plan, Share};
 use hachure::view::{Fixed, choose};

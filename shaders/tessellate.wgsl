@@ -11,7 +11,7 @@ fn store(chunk: Chunk, column_row: vec2<u32>, place: vec4<f32>, missing: bool) {
     out_places[vertex_index(chunk, column_row)] = select(place, vec4<f32>(0.0, 0.0, 0.0, NO_HEIGHT), none);
 }
 
-// Two samples of a column, one below the other, and whether they are void.
+// Two neighbouring samples of a row, and whether they are void.
 struct Pair {
     west: Sample,
     east: Sample,

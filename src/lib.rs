@@ -3,7 +3,7 @@
 //! A DEM to a picture:
 //!
 //! ```no_run
-//! use hachure::dem::{ReadOptions, read};
+//! use hachure::geo::{ReadOptions, read};
 //! use hachure::gpu::{AdapterChoice, Gpu, Int64};
 //! use hachure::view::{Fixed, choose};
 //! use hachure::{ink, plan::Plan, render::Renderer, surface::Surface};
@@ -21,7 +21,7 @@
 //!
 //! | stage | from | to | where |
 //! |---|---|---|---|
-//! | read | raster files | [`Dem`](dem::Dem): a north-up grid of metres, voids marked | [`dem::read()`], CPU |
+//! | read | raster files | [`Dem`](dem::Dem): a north-up grid of metres, voids marked | [`geo::read()`], CPU |
 //! | surface | the grid | [`Surface`](surface::Surface): one normal a sample, cubic PN triangles between them | CPU, once a DEM |
 //! | view | flags, or nothing | [`Camera`](view::Camera): eye, directions, page | CPU |
 //! | plan | what is asked | [`Plan`](plan::Plan): method, level, border | CPU |
@@ -33,7 +33,7 @@
 //! | write | the drawing | a PNG | [`ink::write_png`] |
 //! | truth | surface and camera | [`Truth`](truth::Truth): where the lines really are | [`Terrain::truth`](truth::Terrain::truth), CPU |
 //! | judge | ink and truth | [`Scores`](truth::metrics::Scores): how far apart they are | [`Judge`](truth::metrics::Judge) |
-//! | compare | methods and levels | [`Results`](report::Results): errors and times | [`Comparison`](report::Comparison) |
+//! | compare | methods and levels | [`Results`](report::Results): errors and times | [`Comparison`](measure::Comparison) |
 //!
 //! World coordinates are metres, x east, y north, z up and exaggerated; angles are degrees, azimuth clockwise from grid
 //! north; pages are pixels from the top left corner. [`Georeference`](dem::Georeference) leads from there to the
@@ -49,15 +49,17 @@
 //! |---|---|
 //! | [`files`] | outputs that are whole or not there; which names mean one file |
 //! | [`cache`] | a folder of what took long to make: found again, capped, made by one process at a time |
-//! | [`dem`] | reads and holds the grid; alone knows GDAL |
-//! | [`surface`] | vertex normals, PN patches, the lattice and its IDs, bounds of chunks |
+//! | [`dem`] | the grid: held in memory, or read as it is asked for |
+//! | [`geo`] | rasters and systems of coordinates; alone knows GDAL, without which (`--no-default-features`) it reads nothing |
+//! | [`surface`] | vertex normals, PN patches, the lattice and its IDs, bounds of chunks; what is kept of a DEM for them |
 //! | [`view`] | the camera, and a view where none is given |
 //! | [`plan`] | what a frame needs: method, batches |
 //! | [`gpu`] | device, buffers, one adapter a pass; the mathematics stands in `shaders/` |
 //! | [`ink`] | mask to chains to strokes to pictures |
 //! | [`truth`] | where the lines really are, in f64, and how far ink is from them; knows nothing of the GPU |
 //! | [`render`] | the whole algorithm on one screen |
-//! | [`report`] | comparisons as JSON, CSV, a plot and a page to read; what is kept of DEMs and truths |
+//! | [`measure`] | trials against truth, costs of passes, floors beside their times; truths that are kept |
+//! | [`report`] | comparisons as JSON, CSV, a plot and a page to read |
 //! | [`cli`] | flags as typed become options checked |
 
 #![deny(missing_docs)]
@@ -67,8 +69,10 @@ pub mod cli;
 pub mod dem;
 pub mod error;
 pub mod files;
+pub mod geo;
 pub mod gpu;
 pub mod ink;
+pub mod measure;
 pub mod plan;
 pub mod render;
 pub mod report;

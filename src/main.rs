@@ -4,6 +4,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use hachure::cli::{Arguments, memory, threads, words};
+use hachure::files::signals;
 
 /// Says in a line that memory has ended.
 #[global_allocator]
@@ -14,12 +15,7 @@ fn main() -> ExitCode {
     threads::prepare();
     let arguments = Arguments::parse();
     let talk = arguments.talk();
-    let handled = ctrlc::set_handler(|| {
-        hachure::files::discard_all();
-        // SAFETY: it ends the process and touches nothing. Destructors of drivers would run while their threads draw.
-        unsafe { libc::_exit(words::TRY_AGAIN.into()) }
-    });
-    if let Err(error) = handled {
+    if let Err(error) = signals::end_when_asked(words::TRY_AGAIN.into()) {
         talk.warn(&format!("a signal may leave temporary files behind ({error})"));
     }
     match arguments.run(&talk) {

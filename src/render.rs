@@ -1,7 +1,5 @@
 //! The whole algorithm on one screen: plan, passes, readback.
 
-mod floor;
-
 use std::cell::{Ref, RefCell};
 use std::time::Instant;
 
@@ -24,7 +22,6 @@ use crate::surface::{Lattice, Surface};
 use crate::view::Camera;
 
 pub use crate::gpu::clock::{FrameTime, PassTime};
-pub use floor::Floor;
 
 /// What a frame leaves to read, and what was counted on the way.
 #[derive(Debug, Clone)]
@@ -111,6 +108,36 @@ impl<'a> Renderer<'a> {
         renderer.load(&mut renderer.loaded.borrow_mut())?;
         dem.check()?;
         Ok(renderer)
+    }
+
+    /// The device that draws.
+    pub fn gpu(&self) -> &Gpu {
+        self.gpu
+    }
+
+    /// What is drawn.
+    pub fn surface(&self) -> &Surface {
+        self.surface
+    }
+
+    /// How it is drawn.
+    pub fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    /// How many chunks of the lattice, in the first slots, may appear.
+    pub fn seen(&self) -> u32 {
+        self.seen_of(&self.loaded.borrow())
+    }
+
+    /// Vertex batches of a frame.
+    pub fn batches(&self) -> usize {
+        self.loaded.borrow().batches.len()
+    }
+
+    /// Edges of the rim that is drawn.
+    pub fn rim_edges(&self) -> usize {
+        self.rim.len()
     }
 
     /// The lattice whose facets are drawn, of an adaptive one that of the last frame.
@@ -245,7 +272,7 @@ impl<'a> Renderer<'a> {
         let fresh = loaded.buffers.fresh();
         let made = [(vertices, tessellate::invocations(fresh)), (seams, seam::invocations(fresh))];
         let made = made.into_iter().filter(|_| fresh > 0);
-        for (stage, extent) in made.chain([(projection, project::invocations(self.seen(&loaded)))]) {
+        for (stage, extent) in made.chain([(projection, project::invocations(self.seen_of(&loaded)))]) {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
             stage.pass.record(&mut pass, &stage.groups[0], extent);
         }
@@ -322,7 +349,7 @@ impl<'a> Renderer<'a> {
         let group = i * self.visibility.rounds() as usize + round as usize;
         let [tessellate_stage, seam_stage, facing_stage, project_stage, small, large] = &loaded.stages.per_batch;
         let several = loaded.batches.len() > 1;
-        let (seen, fresh) = (batch.seen(self.seen(loaded)), loaded.buffers.fresh().min(batch.chunks));
+        let (seen, fresh) = (batch.seen(self.seen_of(loaded)), loaded.buffers.fresh().min(batch.chunks));
         work.empty("queue", "empty_queue")?;
         if fresh > 0 && (round == 0 || several) {
             work.record(tessellate_stage, group, tessellate::invocations(fresh))?;
@@ -347,11 +374,11 @@ impl<'a> Renderer<'a> {
     fn camera_uniform(&self, loaded: &Loaded, camera: &Camera) -> Result<CameraUniform> {
         let uniform = CameraUniform::new(self.surface.dem(), camera)?;
         let (chunks, fresh) = (loaded.lattice.chunks().len() as u32, loaded.buffers.fresh());
-        Ok(CameraUniform { chunks, seen: self.seen(loaded), fresh, ..uniform })
+        Ok(CameraUniform { chunks, seen: self.seen_of(loaded), fresh, ..uniform })
     }
 
     /// How many chunks, in the first slots, may appear. Hidden away facets count where depths of both sides are compared.
-    fn seen(&self, loaded: &Loaded) -> u32 {
+    fn seen_of(&self, loaded: &Loaded) -> u32 {
         if self.plan.thrift == Thrift::Nothing || self.visibility == Visibility::TwoDepths {
             return loaded.lattice.chunks().len() as u32;
         }

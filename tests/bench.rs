@@ -15,9 +15,10 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use glam::DVec3;
-use hachure::dem::read;
 use hachure::error::{Error, Result};
-use hachure::gpu::{AdapterChoice, DepthDraw, Gpu, Int64, depth_draw};
+use hachure::geo::read;
+use hachure::gpu::{AdapterChoice, Gpu, Int64};
+use hachure::measure::{DepthDraw, depth_draw};
 use hachure::plan::{Border, Method, Plan, Share};
 use hachure::render::Renderer;
 use hachure::surface::{Level, Surface};

@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use glam::DVec3;
 use hachure::cache::Cache;
-use hachure::dem::{ReadOptions, read, write::write};
+use hachure::geo::{ReadOptions, read, write};
 use hachure::plan::{Border, Detail, Method, Plan};
 use hachure::render::Renderer;
 use hachure::surface::{Level, Surface};

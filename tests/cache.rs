@@ -11,7 +11,8 @@ use gdal::raster::Buffer;
 use gdal::{DriverManager, Metadata};
 use hachure::cache::{Cache, Hearing, Kept, Key, Kind, Sheet};
 use hachure::cli::words::told;
-use hachure::dem::{Dem, ReadOptions, read};
+use hachure::dem::Dem;
+use hachure::geo::{ReadOptions, read};
 use tempfile::TempDir;
 
 use crate::cli::stderr;
@@ -347,7 +348,7 @@ fn making_warns_of_numbers_as_drawing_does() {
         let high = |c: usize| 2000.0 + 50.0 * ((c + 2 * r) as f32 / 9.0).sin();
         (0..SIDE).map(|c| if c < 20 && r < 20 { -9999.0 } else { high(c) }).collect()
     };
-    hachure::dem::write::write(&place.path("marked.tif"), [SIDE; 2], 30.0, row, &|_| ()).expect("a file");
+    hachure::geo::write(&place.path("marked.tif"), [SIDE; 2], 30.0, row, &|_| ()).expect("a file");
     let make = || {
         let output = place.run(&["cache", "--cache", "cache", "--make", "marked.tif", "--memory", "64KiB"]);
         assert!(output.status.success(), "{}", stderr(&output));

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use glam::{DVec2, DVec3};
-use hachure::dem::{Dem, read};
+use hachure::dem::Dem;
+use hachure::geo::read;
 use hachure::plan::{Border, Method};
 use hachure::surface::Surface;
 use hachure::view::{Camera, Fixed, choose};

@@ -2,7 +2,8 @@
 
 use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
-use hachure::plan::cost::{PassCost, Quantities};
+use hachure::measure::cost::{PassCost, Quantities};
+use hachure::measure::costs;
 use hachure::plan::{Border, Detail, Method, Plan, Share, Visibility};
 use hachure::render::Renderer;
 use hachure::surface::{Lattice, Surface};
@@ -146,7 +147,7 @@ fn every_pass_that_is_timed_has_a_cost() {
                 let renderer = Renderer::new(gpu, &surface, plan, [camera.width, camera.height]).expect("a renderer");
                 let timed = renderer.timed_frame(&camera).expect("a timed frame");
                 let frame = renderer.read().expect("its ink");
-                let costs = renderer.costs(&camera, &frame).expect("costs");
+                let costs = costs(&renderer, &camera, &frame).expect("costs");
                 let names: Vec<_> = costs.iter().map(|cost| cost.name).collect();
                 assert_eq!(names, timed.passes.iter().map(|pass| pass.name).collect::<Vec<_>>(), "{name}, {detail:?}");
                 for cost in &costs {

@@ -2,7 +2,8 @@
 //! facets but for ties; and our three kinds of raster against each other, to the bit.
 
 use glam::{DVec2, DVec3};
-use hachure::dem::{Dem, read};
+use hachure::dem::Dem;
+use hachure::geo::read;
 use hachure::gpu::{AdapterChoice, Gpu, Int64};
 use hachure::plan::Method;
 use hachure::render::Renderer;

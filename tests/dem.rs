@@ -20,7 +20,8 @@ use gdal::raster::{Buffer, GdalType};
 use gdal::spatial_ref::SpatialRef;
 use gdal::{Dataset, DatasetOptions, DriverManager, GdalOpenFlags};
 use glam::{DVec2, DVec3};
-use hachure::dem::{Dem, Info, ReadOptions, info, read};
+use hachure::dem::Dem;
+use hachure::geo::{Info, ReadOptions, info, read};
 use tempfile::TempDir;
 
 use crate::common::words;

@@ -3,10 +3,11 @@
 use std::sync::OnceLock;
 
 use glam::DVec3;
-use hachure::gpu::depth_draw::{self, shows_facets};
-use hachure::gpu::{AdapterChoice, BareCopy, Clock, Gpu, Int64};
+use hachure::gpu::{AdapterChoice, Clock, Gpu, Int64};
+use hachure::measure::depth_draw::{self, shows_facets};
+use hachure::measure::{BareCopy, Floor};
 use hachure::plan::{Border, Detail, Method, Plan};
-use hachure::render::{Floor, Renderer};
+use hachure::render::Renderer;
 use hachure::surface::Surface;
 use hachure::view::Camera;
 

@@ -1,6 +1,7 @@
 //! What the benchmark of scaling relies on: terrain resampled, and growth judged and plotted.
 
-use hachure::report::{Growth, Promise};
+use hachure::measure::{Growth, Promise};
+use hachure::report::growth_svg;
 
 use crate::resample::resampled;
 
@@ -58,8 +59,8 @@ fn a_promise_is_broken_by_any_size() {
 #[test]
 fn the_plot_of_growth_shows_every_time_and_the_promise() {
     let kept = growth(Promise::Below(1.6), [20.0, 25.54, 31.0]);
-    let svg = kept.svg().expect("a plot");
-    assert_eq!(svg, kept.svg().expect("a plot"));
+    let svg = growth_svg(&kept).expect("a plot");
+    assert_eq!(svg, growth_svg(&kept).expect("a plot"));
     // Sizes, times beside their points, and what is promised, each once, on a page that other programs can read.
     for text in [
         "256",
@@ -74,10 +75,10 @@ fn the_plot_of_growth_shows_every_time_and_the_promise() {
         assert_eq!(svg.matches(&format!(">\n{text}\n<")).count(), 1, "{text}");
     }
     assert!(svg.starts_with("<svg role=\"img\"") && svg.contains("a &lt; b") && !svg.contains("more than promised"));
-    let broken = growth(Promise::Linear, [20.0, 85.0, 100.0]).svg().expect("a plot");
+    let broken = growth_svg(&growth(Promise::Linear, [20.0, 85.0, 100.0])).expect("a plot");
     assert_eq!(broken.matches("more than promised").count(), 1);
     assert!(broken.contains("1024: 85.0 ms, 4.25 times the first, more than promised."));
     assert!(broken.contains("promised: at most linear"));
     let nothing = Growth { points: Vec::new(), ..growth(Promise::Linear, [1.0; 3]) };
-    assert!(nothing.is_kept() && nothing.svg().expect("a plot").contains("</svg>"));
+    assert!(nothing.is_kept() && growth_svg(&nothing).expect("a plot").contains("</svg>"));
 }

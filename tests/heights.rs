@@ -13,7 +13,8 @@ use gdal::raster::{Buffer, ColorInterpretation, GdalType};
 use gdal::spatial_ref::SpatialRef;
 use gdal::{DriverManager, Metadata};
 use hachure::cli::values;
-use hachure::dem::{Dem, ReadOptions, read, read_all};
+use hachure::dem::Dem;
+use hachure::geo::{ReadOptions, read, read_all};
 use tempfile::TempDir;
 
 use crate::common::words;

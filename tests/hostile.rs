@@ -129,5 +129,5 @@ fn write_hill(path: &Path, size: usize) {
         (400.0 + 300.0 * (-20.0 * (x * x + y * y)).exp() + 20.0 * (31.0 * x).sin() * (23.0 * y).cos()) as f32
     };
     let row = |r| (0..size).map(|c| height(c, r)).collect();
-    hachure::dem::write::write(path, [size; 2], 30.0, row, &|_| ()).expect("a DEM");
+    hachure::geo::write(path, [size; 2], 30.0, row, &|_| ()).expect("a DEM");
 }

@@ -20,7 +20,18 @@ use crate::scenes::{Random, gpu, level};
 /// Walk units in a lattice step of the finest level.
 pub const UNITS: i32 = 256;
 pub const WALK: &str = concat!(
-    hachure::shader!("scene", "lattice", "surface", "vertex_anew", "wide", "ink", "list", "levels", "walk"),
+    hachure::shader!(
+        "scene",
+        "lattice",
+        "surface",
+        "vertex_anew",
+        "wide",
+        "ink",
+        "list",
+        "levels",
+        "walk_between",
+        "walk"
+    ),
     include_str!("kernels/walk_probe.wgsl")
 );
 const WIDE: &str = concat!(hachure::shader!("wide"), include_str!("kernels/wide_probe.wgsl"));

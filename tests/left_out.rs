@@ -75,7 +75,7 @@ fn what_is_left_out_changes_no_bit() {
 #[test]
 fn what_is_left_out_of_real_terrain_changes_no_bit() {
     let Some(dems) = shared_dems() else { return };
-    let read = |name: &str| hachure::dem::read(dems.join(name), &Default::default()).expect(name);
+    let read = |name: &str| hachure::geo::read(dems.join(name), &Default::default()).expect(name);
     let surface = Surface::new(read("west_temple_50m.tif"));
     assert!(compare(&surface, level(4).into(), Method::Walk, FRAMES, 77) > 1000);
 }
@@ -115,7 +115,7 @@ fn what_is_left_out_of_views_of_real_terrain_changes_no_bit() {
         ("SainteHelens.dem", DVec3::new(561_000.0, 5_121_500.0, 2700.0), 172.0, -3.0),
     ];
     for (name, eye, azimuth, altitude) in views {
-        let dem = hachure::dem::read(dems.join(name), &Default::default()).expect(name);
+        let dem = hachure::geo::read(dems.join(name), &Default::default()).expect(name);
         let surface = Surface::new(dem);
         let camera = Camera { eye, azimuth, altitude, fov: 60.0, width: 640, height: 360 };
         let [thrifty, whole] = [Thrift::LeaveOut, Thrift::Nothing].map(|thrift| {

@@ -36,7 +36,7 @@ mod process {
     use std::hint::black_box;
     use std::process::Command;
 
-    use hachure::report::memory::{peak, reset_peak};
+    use hachure::measure::memory::{peak, reset_peak};
 
     use crate::tolerances::RESIDENT_BYTES;
 

@@ -8,7 +8,7 @@ use std::process::{Command, Output};
 use gdal::raster::{Buffer, RasterCreationOptions};
 use gdal::spatial_ref::SpatialRef;
 use gdal::{Dataset, DriverManager};
-use hachure::dem::{ReadOptions, read};
+use hachure::geo::{ReadOptions, read};
 use tempfile::TempDir;
 
 use crate::cli::stderr;

@@ -90,7 +90,7 @@ fn pieces_change_no_bit_without_int64_and_of_real_terrain() {
     let whole = page_in(gpu(), &narrow, PAGE, |piece| piece);
     assert_eq!(different(&whole, &page_in(gpu_without_int64(), &narrow, [50, 50], |piece| piece)), 0);
     let Some(dems) = shared_dems() else { return };
-    let dem: Dem = hachure::dem::read(dems.join("west_temple_50m.tif"), &Default::default()).expect("west-temple");
+    let dem: Dem = hachure::geo::read(dems.join("west_temple_50m.tif"), &Default::default()).expect("west-temple");
     let surface = Surface::new(dem);
     let eye = DVec3::new(325_249.0, 4_117_889.0, 2000.0);
     let camera = Camera { eye, azimuth: 310.0, altitude: 0.0, fov: 60.0, width: 1280, height: 720 };

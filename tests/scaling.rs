@@ -19,9 +19,10 @@ use hachure::dem::{Dem, fractal};
 use hachure::error::{Error, Result};
 use hachure::files::{Output, output};
 use hachure::gpu::{AdapterChoice, Gpu, Int64};
+use hachure::measure::{Growth, Promise};
 use hachure::plan::{Border, Detail, Method, Plan};
 use hachure::render::Renderer;
-use hachure::report::{Growth, Promise};
+use hachure::report::growth_svg;
 use hachure::surface::{Level, Surface};
 use hachure::view::Camera;
 use repeat::{median, moved};
@@ -189,7 +190,7 @@ fn judge(name: &str, growth: &Growth) -> Result<bool> {
     if !folder.is_dir() {
         output::make_folder(&folder).map_err(failed)?;
     }
-    let (svg, mut out) = (growth.svg()?, Output::create(&path)?);
+    let (svg, mut out) = (growth_svg(growth)?, Output::create(&path)?);
     out.write(|file| file.write_all(svg.as_bytes()))?;
     out.publish()?;
     for ([size, _], (times, broken)) in growth.points.iter().zip(growth.growth()) {

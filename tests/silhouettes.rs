@@ -4,7 +4,8 @@
 use std::path::Path;
 
 use glam::{DVec2, DVec3};
-use hachure::dem::{Dem, ReadOptions, read};
+use hachure::dem::Dem;
+use hachure::geo::{ReadOptions, read};
 use hachure::ink::Kind;
 use hachure::plan::{Border, Method, Share};
 use hachure::surface::Surface;

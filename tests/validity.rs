@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec2;
 use hachure::cli::words::line;
-use hachure::dem::{BLOCK_SIDE, Dem, ReadOptions, Validity, read, write::write};
+use hachure::dem::{BLOCK_SIDE, Dem, Validity};
+use hachure::geo::{ReadOptions, read, write};
 use hachure::gpu::sizes::{LARGEST_BINDING, rim_fits, valid_fits};
 use hachure::surface::Surface;
 use hachure::surface::rim::{RimEdge, rim, rim_length};

@@ -108,63 +108,60 @@ impl Cache {
     ) -> Result<T> {
         let Some(path) = self.path(key) else { return make(None, hearing.progress) };
         let mut damaged = false;
-        let find = || match entry::open(&path, key) {
-            Ok(None) => Ok(None),
-            Ok(Some(kept)) => match recall(kept) {
-                Ok(found) => Ok(Some(found)),
-                Err(_) => Err(None),
-            },
-            Err(entry::Fault::Damaged) => Err(None),
-            Err(entry::Fault::Strange(what)) => Err(Some(what)),
-        };
         loop {
-            match find() {
-                Ok(Some(found)) => {
+            match found(&path, key, &recall) {
+                Found::Whole(artefact) => {
                     self.trim(Some(&path));
-                    return Ok(found);
+                    return Ok(artefact);
                 }
-                Ok(None) => {}
-                Err(None) if damaged => {}
-                Err(None) => {
-                    (hearing.warn)(&format!("{} is damaged: it is made anew", key.kind.words[1]).into());
-                    damaged = true;
-                }
-                Err(Some(what)) => {
+                Found::Strange(what) => {
                     (hearing.warn)(&strange(&path, what));
                     return make(None, hearing.progress);
                 }
+                Found::Damaged if !damaged => {
+                    (hearing.warn)(&format!("{} is damaged: it is made anew", key.kind.words[1]).into());
+                    damaged = true;
+                }
+                Found::Damaged | Found::Nothing => {}
             }
-            let taken = match lock::Lock::take(&path) {
+            let lock = match lock::Lock::take(&path) {
+                Ok(lock) => Ok(lock),
+                Err(lock::Refused::Impossible(what)) => Err(what),
                 Err(lock::Refused::Held(held)) => match held.wait(hearing.progress) {
                     Ok(()) => continue,
                     Err(error) => Err(error.to_string()),
                 },
-                Err(lock::Refused::Impossible(error)) => Err(error),
-                Ok(lock) => Ok(lock),
             };
-            match taken {
-                Ok(lock) => {
+            return match lock {
+                Ok(lock) => match found(&path, key, &recall) {
                     // Another may have made it between the look and the lock.
-                    if !damaged && let Ok(Some(found)) = find() {
-                        return Ok(found);
-                    }
-                    let sheet = Sheet::create(&path, key);
-                    if let Err(error) = &sheet {
-                        (hearing.warn)(&not_kept(key, error));
-                    }
-                    let made = make(sheet.ok(), &|share| {
-                        lock.tell(share);
-                        (hearing.progress)(share);
-                    });
-                    self.trim(Some(&path));
-                    return made;
+                    Found::Whole(artefact) if !damaged => Ok(artefact),
+                    _ => self.make(&path, key, &lock, hearing, make),
+                },
+                Err(what) => {
+                    (hearing.warn)(&not_kept(key, &Error::Output { path, what }));
+                    make(None, hearing.progress)
                 }
-                Err(error) => {
-                    (hearing.warn)(&not_kept(key, &Error::Output { path, what: error }));
-                    return make(None, hearing.progress);
-                }
-            }
+            };
         }
+    }
+
+    /// Makes an artefact under its lock, and keeps it where it can be kept.
+    fn make<T>(
+        &self,
+        path: &Path,
+        key: &Key,
+        lock: &lock::Lock,
+        hearing: Hearing<'_>,
+        make: impl FnOnce(Option<Sheet>, &dyn Fn(f64)) -> Result<T>,
+    ) -> Result<T> {
+        let sheet = Sheet::create(path, key).inspect_err(|error| (hearing.warn)(&not_kept(key, error)));
+        let made = make(sheet.ok(), &|share| {
+            lock.tell(share);
+            (hearing.progress)(share);
+        });
+        self.trim(Some(path));
+        made
     }
 
     /// An artefact that is there, safe from removal as long as it is open: who needs several holds all of them first.
@@ -176,6 +173,25 @@ impl Cache {
     pub fn remove(&self, key: &Key) {
         // One that cannot be removed is found damaged again.
         let _ = self.path(key).map(std::fs::remove_file);
+    }
+}
+
+/// What stands where an artefact belongs.
+enum Found<T> {
+    Whole(T),
+    Nothing,
+    /// Bytes that are not those that were written.
+    Damaged,
+    /// Something else than a file, in words.
+    Strange(&'static str),
+}
+
+fn found<T>(path: &Path, key: &Key, recall: impl Fn(Kept) -> std::io::Result<T>) -> Found<T> {
+    match entry::open(path, key) {
+        Ok(None) => Found::Nothing,
+        Ok(Some(kept)) => recall(kept).map_or(Found::Damaged, Found::Whole),
+        Err(entry::Fault::Damaged) => Found::Damaged,
+        Err(entry::Fault::Strange(what)) => Found::Strange(what),
     }
 }
 

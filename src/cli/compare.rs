@@ -1,6 +1,6 @@
 //! `hachure compare`: methods at levels, their errors against truth and their times, as a report.
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::thread::available_parallelism;
@@ -15,17 +15,20 @@ use super::views::{self, NamedView};
 use super::words::{flag, told};
 use super::{blank, cells};
 use crate::cache::Cache;
-use crate::dem::Reading;
 use crate::error::{Error, Result, Setting, shown};
 use crate::files::Taken;
+use crate::geo::Reading;
+use crate::gpu::Gpu;
 use crate::gpu::sizes::page_fits;
-use crate::gpu::{Gpu, depth_draw};
+use crate::measure::compare::{Compared, Comparison, Found, Hearing, METHODS};
+use crate::measure::depth_draw;
+use crate::measure::figures::Run;
 use crate::plan::detail::ERROR_PX;
 use crate::plan::{Border, Method};
-use crate::report::compare::{Compared, Comparison, Hearing, METHODS};
 use crate::report::folder::{Contents, Folder};
-use crate::report::pictures::Picture;
-use crate::report::results::{Machine, Results, Run, SCHEMA, Scene, TruthSummary};
+use crate::report::lines::lines;
+use crate::report::pictures::{self, Picture};
+use crate::report::results::{Machine, Results, SCHEMA, Scene, TruthSummary};
 use crate::report::{error_time_svg, report_html, write_csv};
 use crate::surface::{Level, Surface};
 use crate::truth::Terrain;
@@ -136,13 +139,21 @@ pub fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
     let scenes_asked = (views().count() * sizes.len()) as f64;
     let extra = if arguments.floor { depth_draw::FEATURE } else { wgpu::Features::empty() };
     let (done, gpu) = (Cell::new(0.0), arguments.device.open_with(extra, talk)?);
+    let drawn = RefCell::new(Vec::new());
     let hearing = Hearing {
         stage: &|stage, share| talk.progress(stage, (done.get() + share) / scenes_asked),
         warn: &|message| talk.warn(&told(message)),
-        say: &|line| talk.say(line),
-        detail: &|line| talk.detail(line),
+        found: &|found| {
+            let [said, detail] = lines(&found);
+            said.iter().try_for_each(|line| talk.say(line))?;
+            detail.iter().try_for_each(|line| talk.detail(line))?;
+            if let Found::Picture(name, shown) = found {
+                drawn.borrow_mut().push(pictures::of_shown(name.to_owned(), shown)?);
+            }
+            Ok(())
+        },
     };
-    let (mut scenes, mut runs, mut pictures) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut scenes, mut runs) = (Vec::new(), Vec::new());
     for (job, reading) in jobs.iter().zip(readings) {
         let dem = arguments.terrain.read(reading, talk)?;
         // Truth looks at every sample again and again.
@@ -159,11 +170,10 @@ pub fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
             view.warn_below_ground(&surface, LevelChoice::Auto.near(), talk);
             let found = comparison.scene(&gpu, &name, &terrain, &view.camera, &hearing);
             let found = found.map_err(|error| blank::with_place(error, &surface, &view))?;
-            let (scene, of_scene, drawn) = arguments.scene(name, &job.files, &surface, &view, found);
+            let (scene, of_scene) = arguments.scene(name, &job.files, &surface, &view, found);
             scenes.push(scene);
             done.set(scenes.len() as f64);
             runs.extend(of_scene);
-            pictures.extend(drawn);
         }
     }
     talk.progress("writing", 1.0);
@@ -176,7 +186,7 @@ pub fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
         scenes,
         runs,
     };
-    let page = folder.page();
+    let (page, pictures) = (folder.page(), drawn.into_inner());
     folder.publish(&contents(&results, &pictures)?, &pictures)?;
     talk.say(&format!("report: {}", shown(&page)))
 }
@@ -239,7 +249,7 @@ impl CompareArguments {
         surface: &Surface,
         view: &View,
         found: Compared,
-    ) -> (Scene, Vec<Run>, Vec<Picture>) {
+    ) -> (Scene, Vec<Run>) {
         let (dem, camera) = (surface.dem(), &view.camera);
         let scene = Scene {
             name,
@@ -260,7 +270,7 @@ impl CompareArguments {
             convergence: found.convergence,
             picture: found.picture,
         };
-        (scene, found.runs, found.pictures)
+        (scene, found.runs)
     }
 }
 

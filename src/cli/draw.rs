@@ -23,11 +23,11 @@ use crate::error::{Error, Result, Setting, shown};
 use crate::files::Taken;
 use crate::gpu::Gpu;
 use crate::ink::{self, Style};
+use crate::measure::figures::DrawnLevel;
 use crate::plan::detail::ERROR_PX;
 use crate::plan::left_out::{LeftOut, levels};
 use crate::plan::{Border, Detail, Method, Plan, Share};
 use crate::render::{Page, PassTime, Renderer};
-use crate::report::results::DrawnLevel;
 use crate::surface::Surface;
 
 /// Warm frames behind the median of `--json`; a page in pieces, which may take minutes, has one.

@@ -9,9 +9,10 @@ use clap_mangen::Man;
 
 use super::talk::Talk;
 use super::{Arguments, values};
-use crate::dem::{fractal, write};
+use crate::dem::fractal;
 use crate::error::Result;
 use crate::files::Output;
+use crate::geo;
 
 /// Flags of `hachure generate`.
 #[derive(Debug, clap::Args)]
@@ -68,10 +69,11 @@ pub fn run(arguments: &GenerateArguments, talk: &Talk) -> Result<()> {
             out.publish()
         }),
         What::Dem { output, size } => {
+            geo::available()?;
             let mut out = Output::create(output)?;
             let progress = |share| talk.progress("writing", share);
             let row = |r| fractal::row(size[0], r);
-            out.write_by_name(|path| write::write(path, *size, fractal::CELL, row, &progress))?;
+            out.write_by_name(|path| geo::write(path, *size, fractal::CELL, row, &progress))?;
             out.publish()
         }
     }

@@ -3,8 +3,8 @@
 use super::talk::Talk;
 use super::terrain::{TerrainArguments, words};
 use super::words::told;
-use crate::dem;
 use crate::error::Result;
+use crate::geo;
 
 /// The end of `hachure info --help`.
 const EXAMPLES: &str = "\
@@ -22,9 +22,9 @@ pub struct InfoArguments {
 /// Prints size, CRS, extent, cell, range, voids, and what was converted and assumed.
 ///
 /// # Errors
-/// As [`dem::info()`].
+/// As [`geo::info()`].
 pub fn run(arguments: &InfoArguments, talk: &Talk) -> Result<()> {
     let terrain = &arguments.terrain;
-    let info = dem::info(&terrain.dems, &terrain.options(1.0), &|stage, share| talk.progress(words(stage), share))?;
+    let info = geo::info(&terrain.dems, &terrain.options(1.0), &|stage, share| talk.progress(words(stage), share))?;
     talk.answer(&info.told(told))
 }

@@ -12,7 +12,12 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::error::copes_without;
-use crate::files::output;
+use crate::files::signals;
+#[cfg(unix)]
+use crate::gpu::memory::limit;
+
+/// Exit code for "failed".
+const FAILED: i32 = 1;
 
 /// The system's allocator, which says so when memory ends.
 pub struct Allocator;
@@ -52,7 +57,19 @@ unsafe impl GlobalAlloc for Allocator {
 /// Lets the process end in words where a limit of the system is reached. To be called first of all.
 pub fn prepare() {
     #[cfg(unix)]
-    unix::prepare();
+    {
+        signals::refuse_large_files();
+        if limit().is_none() {
+            return;
+        }
+        // Each thread would set apart 64 MiB of addresses.
+        #[cfg(all(target_os = "linux", target_env = "gnu"))]
+        // SAFETY: it sets a number, and no other thread is there yet.
+        unsafe {
+            libc::mallopt(libc::M_ARENA_MAX, 1)
+        };
+        signals::fail_through(|| end(None));
+    }
 }
 
 /// Says that memory ended, removes what was begun, and ends the process. Asks for no memory itself.
@@ -68,10 +85,8 @@ fn end(bytes: Option<usize>) -> ! {
         }
         line.push(b"; use a --crop, a smaller --memory or --size, or allow more (`ulimit -v` says how much)\n");
         line.print();
-        output::discard_now();
     }
-    // SAFETY: it ends the process and touches nothing.
-    unsafe { libc::_exit(1) }
+    signals::end_now(FAILED)
 }
 
 /// A line made without memory of its own.
@@ -102,53 +117,5 @@ impl Line {
     fn print(&self) {
         // SAFETY: so many bytes are there; where nobody reads them there is nowhere left to say so.
         unsafe { libc::write(2, self.bytes.as_ptr().cast(), self.length as _) };
-    }
-}
-
-#[cfg(unix)]
-mod unix {
-    use std::mem::{transmute, zeroed};
-    use std::ptr::null_mut;
-
-    use crate::gpu::memory;
-
-    pub fn prepare() {
-        // SAFETY: ignoring a signal touches nothing else.
-        unsafe { libc::signal(libc::SIGXFSZ, libc::SIG_IGN) };
-        if memory::limit().is_none() {
-            return;
-        }
-        // Each thread would set apart 64 MiB of addresses.
-        #[cfg(all(target_os = "linux", target_env = "gnu"))]
-        // SAFETY: it sets a number, and no other thread is there yet.
-        unsafe {
-            libc::mallopt(libc::M_ARENA_MAX, 1)
-        };
-        for signal in [libc::SIGABRT, libc::SIGSEGV, libc::SIGBUS] {
-            // SAFETY: `ended` asks for no memory, and nothing returns from it.
-            unsafe {
-                let mut action: libc::sigaction = zeroed();
-                action.sa_sigaction = ended as *const () as usize;
-                action.sa_flags = libc::SA_ONSTACK | libc::SA_RESETHAND;
-                libc::sigaction(signal, &action, null_mut());
-            }
-        }
-        // `std::set_terminate`: C++ would print the name of its exception first.
-        // SAFETY: where the name is known it is this function of the C++ library, whichever is loaded.
-        unsafe {
-            let set = libc::dlsym(libc::RTLD_DEFAULT, c"_ZSt13set_terminatePFvvE".as_ptr());
-            if !set.is_null() {
-                let set: unsafe extern "C" fn(extern "C" fn()) -> *const () = transmute(set);
-                set(terminated);
-            }
-        }
-    }
-
-    extern "C" fn ended(_: libc::c_int) {
-        super::end(None)
-    }
-
-    extern "C" fn terminated() {
-        super::end(None)
     }
 }

@@ -5,8 +5,9 @@ use std::path::PathBuf;
 use super::talk::Talk;
 use super::values;
 use super::words::told;
-use crate::dem::{Dem, ElevationUnit, Encoding, Nodata, ReadOptions, Reading, Stage};
+use crate::dem::Dem;
 use crate::error::Result;
+use crate::geo::{ElevationUnit, Encoding, Nodata, ReadOptions, Reading, Stage};
 
 /// Which files, and what of them.
 #[derive(Debug, clap::Args)]

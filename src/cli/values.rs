@@ -5,11 +5,12 @@ use std::ops::RangeInclusive;
 
 use glam::DVec2;
 
-use crate::dem::{ElevationUnit, Encoding, LARGEST_SIDE as MOST_SAMPLES, Nodata};
+use crate::dem::LARGEST_SIDE as MOST_SAMPLES;
+use crate::geo::{ElevationUnit, Encoding, Nodata};
 use crate::gpu::AdapterChoice;
+use crate::measure::compare::{LEAST_TRUTH_LEVEL, METHODS};
 use crate::plan::pieces::LARGEST_PAGE;
 use crate::plan::{Detail, Method};
-use crate::report::compare::{LEAST_TRUTH_LEVEL, METHODS};
 use crate::surface::Level;
 
 /// No place on Earth has coordinates beyond this, in any unit.

@@ -2,40 +2,32 @@
 //!
 //! Tiles read are kept while they fit a budget; the one that was asked for longest ago goes first, the last one stays. Any number of threads
 //! may ask at once: a tile that two want is read by one, the other waits. No core's work is stolen by a reading (nothing
-//! in it is parallel), so that waiting cannot turn in a circle. Memory beside the budget: GDAL's own cache (32 MiB) and
-//! a few tiles on their way.
+//! in it is parallel), so that waiting cannot turn in a circle. Memory beside the budget: what the tiles take (those of
+//! GDAL 32 MiB) and a few tiles on their way.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 use std::fmt::{self, Debug, Formatter};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
-use xxhash_rust::xxh3::Xxh3;
-
-use super::assumed::{assumed, units};
-use super::grid::Window;
-use super::mosaic::Mosaic;
 use super::overviews::Overviews;
-use super::raster::Raster;
-use super::tally::{Tallies, merge};
+use super::tiles::Tiles;
 use super::tiling::{Tiling, gather};
-use crate::error::{Error, Message, Result, Setting};
-use crate::message;
+use super::window::Window;
+use crate::error::{Error, Result};
 
 /// Most bytes of tiles that are kept: frames ask for samples place by place.
 const MOST_KEPT: usize = 128 << 20;
 
-/// A window of a mosaic whose samples are read on demand.
+/// Tiles that are read on demand.
 pub(super) struct Filed {
-    mosaic: Arc<Mosaic>,
-    window: Window,
+    tiles: Arc<dyn Tiles>,
     exaggeration: f64,
     tiling: Tiling,
     /// Bytes of memory that all work with the samples may take.
     budget: usize,
     stamp: OnceLock<Option<u128>>,
     kept: Mutex<Kept>,
-    counted: Mutex<Counted>,
     overviews: OnceLock<Overviews>,
     failure: OnceLock<Error>,
     /// How many samples were read from the files.
@@ -53,39 +45,31 @@ struct Kept {
     bytes: usize,
 }
 
-/// The numbers of the tiles read so far.
-#[derive(Default)]
-struct Counted {
-    of: HashSet<[usize; 2]>,
-    tallies: Tallies,
-}
-
 impl Filed {
-    /// `window` of `mosaic`, with up to half of `budget` bytes of tiles kept, [`MOST_KEPT`] at most.
-    pub fn new(mosaic: Mosaic, window: Window, exaggeration: f64, budget: usize) -> Self {
-        Self::of(Arc::new(mosaic), window, exaggeration, budget)
-    }
-
-    /// The same samples of the same files without exaggeration, nothing read yet.
-    pub fn plain(&self) -> Self {
-        Self::of(self.mosaic.clone(), self.window, 1.0, self.budget)
-    }
-
-    fn of(mosaic: Arc<Mosaic>, window: Window, exaggeration: f64, budget: usize) -> Self {
-        let tiling = mosaic.tiling(window);
+    /// All of `tiles`, of which up to half of `budget` bytes are kept, [`MOST_KEPT`] at most.
+    pub fn new(tiles: Arc<dyn Tiles>, exaggeration: f64, budget: usize) -> Self {
+        let tiling = tiles.tiling();
         Self {
-            mosaic,
-            window,
+            tiles,
             exaggeration,
             tiling,
             budget,
             stamp: OnceLock::new(),
             kept: Mutex::default(),
-            counted: Mutex::default(),
             overviews: OnceLock::new(),
             failure: OnceLock::new(),
             samples_read: AtomicU64::new(0),
         }
+    }
+
+    /// The same samples without exaggeration, nothing read yet.
+    pub fn plain(&self) -> Self {
+        Self::new(self.tiles.clone(), 1.0, self.budget)
+    }
+
+    /// Where the samples come from.
+    pub fn tiles(&self) -> &dyn Tiles {
+        &*self.tiles
     }
 
     /// Rows of a tile.
@@ -95,7 +79,7 @@ impl Filed {
 
     /// Whether several threads gain by reading at once.
     pub fn is_parallel(&self) -> bool {
-        self.mosaic.is_parallel()
+        self.tiles.is_parallel()
     }
 
     /// Bytes of memory that all work with the samples may take.
@@ -108,29 +92,15 @@ impl Filed {
         self.exaggeration
     }
 
-    /// What tells one state of the files, one way of reading them and one window from any other, whatever the exaggeration;
-    /// `None` where a part is not on the disk. Cost: the first time, a look into each file.
+    /// The stamp of the tiles, whatever the exaggeration. Cost: the first time, a look into each file.
     pub fn stamp(&self) -> Option<u128> {
-        *self.stamp.get_or_init(|| {
-            let mut hash = Xxh3::new();
-            hash.update(format!("{:?}", self.window).as_bytes());
-            self.mosaic.hash(&mut hash).map(|()| hash.digest128())
-        })
-    }
-
-    /// All samples, metres, and a tally of the files' numbers. `progress` hears the share done.
-    pub fn raster(&self, progress: &dyn Fn(f64)) -> Result<(Raster, Tallies)> {
-        if self.mosaic.apart().is_some() {
-            return self.mosaic.read(self.window, progress);
-        }
-        let metres = self.read(Window { first: [0, 0], ..self.window }, progress)?;
-        Ok((Raster { grid: self.mosaic.grid.part(self.window), metres }, self.tallies()))
+        *self.stamp.get_or_init(|| self.tiles.stamp())
     }
 
     /// Exaggerated metres of `window`, counted from the first sample, NaN at voids. `progress` hears the share done.
     pub fn read(&self, window: Window, progress: &dyn Fn(f64)) -> Result<Vec<f32>> {
         let tiles = self.tiling.tiles(window);
-        gather(window, &tiles, self.mosaic.is_parallel(), |tile| self.tile(tile), progress)
+        gather(window, &tiles, self.tiles.is_parallel(), |tile| self.tile(tile), progress)
     }
 
     /// Exaggerated metres of one sample, NaN at a void.
@@ -170,16 +140,6 @@ impl Filed {
         self.samples_read.load(Ordering::Relaxed)
     }
 
-    /// The numbers read so far.
-    pub fn tallies(&self) -> Tallies {
-        lock(&self.counted).tallies.clone()
-    }
-
-    /// What had to be assumed of the numbers tallied, in words as those of a history.
-    pub fn assumed(&self, tallies: &Tallies) -> Vec<Message> {
-        assumed(&self.mosaic.tallied(tallies), self.mosaic.is_of_several())
-    }
-
     /// Keeps the first error of those who could not return it.
     pub fn fail(&self, error: Error) {
         let _ = self.failure.set(error);
@@ -187,41 +147,14 @@ impl Filed {
 
     /// The first error of those who could not return it, and whether the files are still those that were opened.
     pub fn check(&self) -> Result<()> {
-        let noticed = self.failure.get().cloned().map_or_else(|| self.mosaic.check(), Err);
+        let noticed = self.failure.get().cloned().map_or_else(|| self.tiles.check(), Err);
         noticed.inspect_err(|error| self.fail(error.clone()))
-    }
-
-    /// The error for files without any elevation among `samples`; a unit that would make elevations of their numbers is
-    /// named.
-    pub fn all_void(&self, samples: usize, tallies: &Tallies) -> Error {
-        let inside = if self.window == self.mosaic.grid.whole() { "" } else { " inside the crop" };
-        let what = format!("holds no elevation{inside}, all {samples} samples are void");
-        match units(&self.mosaic.tallied(tallies)) {
-            Some(units) => Error::input(
-                self.mosaic.path(),
-                format!("{what} or above 100000 m"),
-                message!["if the heights are in another unit, add ", units],
-            ),
-            None => Error::input(
-                self.mosaic.path(),
-                what,
-                message![
-                    "check the band and its nodata value with `gdalinfo -stats`, choose another ",
-                    Setting::Band,
-                    ", or move ",
-                    Setting::Crop
-                ],
-            ),
-        }
     }
 
     fn tile(&self, window: Window) -> Result<Arc<[f32]>> {
         self.kept(1, window, || {
-            let first = [0, 1].map(|i| self.window.first[i] + window.first[i]);
-            let (raster, tallies) = self.mosaic.read(Window { first, ..window }, &|_| ())?;
+            let mut metres = self.tiles.read(window)?;
             self.samples_read.fetch_add(window.samples(), Ordering::Relaxed);
-            lock(&self.counted).add(window.first, tallies);
-            let mut metres = raster.metres;
             exaggerate(&mut metres, self.exaggeration);
             Ok(metres.into())
         })
@@ -260,23 +193,14 @@ impl Kept {
     }
 }
 
-impl Counted {
-    fn add(&mut self, tile: [usize; 2], tallies: Tallies) {
-        // A tile may come more than once.
-        if self.of.insert(tile) {
-            merge(&mut self.tallies, tallies);
-        }
-    }
-}
-
 impl Debug for Filed {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Filed").field("path", &self.mosaic.path()).field("window", &self.window).finish_non_exhaustive()
+        f.debug_struct("Filed").field("tiles", &self.tiles).finish_non_exhaustive()
     }
 }
 
 /// Multiplies metres by the exaggeration.
-pub(super) fn exaggerate(metres: &mut [f32], exaggeration: f64) {
+pub(crate) fn exaggerate(metres: &mut [f32], exaggeration: f64) {
     metres.iter_mut().for_each(|height| *height = (f64::from(*height) * exaggeration) as f32);
 }
 

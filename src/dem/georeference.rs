@@ -1,28 +1,39 @@
 //! Where a DEM lies on Earth: its world coordinates beside those of its file, and longitude and latitude.
 
+use std::sync::Arc;
+
 use glam::DVec2;
 
-use super::crs::{Crs, Way};
+use super::systems::{Crs, Transform};
 use crate::error::Result;
 
 /// Two systems of coordinates: that of the file as it came, and that in which the DEM stands north-up in metres.
 ///
 /// World coordinates are metres: those of the world's system times its unit.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Georeference {
     file: Crs,
     world: Crs,
+    /// Nothing where nobody placed the grid.
+    transform: Option<Arc<dyn Transform>>,
+}
+
+/// Whether the systems are the same, whoever leads from one to another.
+impl PartialEq for Georeference {
+    fn eq(&self, other: &Self) -> bool {
+        self.file == other.file && self.world == other.world
+    }
 }
 
 impl Georeference {
-    /// `world` must be a system of lengths, not of angles.
-    pub(super) fn new(file: Crs, world: Crs) -> Self {
-        Self { file, world }
+    /// `world` must be a system of lengths, not of angles. `transform` leads from these to other systems.
+    pub fn new(file: Crs, world: Crs, transform: Arc<dyn Transform>) -> Self {
+        Self { file, world, transform: Some(transform) }
     }
 
     /// Of a grid that nobody placed.
     pub fn unknown() -> Self {
-        Self::new(Crs::unknown(), Crs::unknown())
+        Self { file: Crs::unknown(), world: Crs::unknown(), transform: None }
     }
 
     /// The system of the file, of the first one where there are several.
@@ -37,22 +48,30 @@ impl Georeference {
 
     /// World place in metres of a place in `crs`; `None` where there is no such place or the DEM's system is unknown.
     pub fn world_place(&self, crs: &Crs, place: DVec2) -> Option<DVec2> {
-        Some(Way::between(crs, &self.world)?.place(place)? * self.world.metres_per_unit()?)
+        Some(self.carried(crs, &self.world, place)? * self.world.metres_per_unit()?)
     }
 
     /// Place in `crs` of a world place in metres; `None` as for [`Self::world_place`].
     pub fn place_in(&self, crs: &Crs, world: DVec2) -> Option<DVec2> {
-        Way::between(&self.world, crs)?.place(world / self.world.metres_per_unit()?)
+        self.carried(&self.world, crs, world / self.world.metres_per_unit()?)
     }
 
     /// Degrees of longitude and latitude (WGS 84) of a world place in metres; `None` where the system is unknown.
     ///
     /// # Errors
-    /// Those of [`Crs::lonlat`].
+    /// Those of [`Transform::lonlat`].
     pub fn lonlat(&self, world: DVec2) -> Result<Option<DVec2>> {
-        if self.world.wkt().is_empty() {
-            return Ok(None);
+        match &self.transform {
+            Some(transform) if !self.world.wkt().is_empty() => Ok(self.place_in(&transform.lonlat()?, world)),
+            _ => Ok(None),
         }
-        Ok(self.place_in(&Crs::lonlat()?, world))
+    }
+
+    /// The place in one system of a place in another; the same place where both are one, known or not.
+    fn carried(&self, from: &Crs, to: &Crs, place: DVec2) -> Option<DVec2> {
+        if from == to {
+            return place.is_finite().then_some(place);
+        }
+        self.transform.as_ref()?.place(from, to, place)
     }
 }

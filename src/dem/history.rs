@@ -29,20 +29,23 @@ impl History {
         &self.usual
     }
 
-    pub(super) fn convert(&mut self, clause: impl Into<Message>) {
+    /// One more clause on what was changed.
+    pub fn convert(&mut self, clause: impl Into<Message>) {
         self.converted.push(clause.into().plain());
     }
 
-    pub(super) fn assume(&mut self, clause: impl Into<Message>) {
+    /// One more clause on what was taken as given.
+    pub fn assume(&mut self, clause: impl Into<Message>) {
         self.assumed.push(clause.into().plain());
     }
 
-    pub(super) fn assume_as_usual(&mut self, clause: impl Into<Message>) {
+    /// One more on what few files say.
+    pub fn assume_as_usual(&mut self, clause: impl Into<Message>) {
         self.usual.push(clause.into());
     }
 
     /// Takes over what holds for one of several files: `path` is named where it is not the first and says more.
-    pub(super) fn take(&mut self, of_file: Self, path: Option<&Path>) {
+    pub fn take(&mut self, of_file: Self, path: Option<&Path>) {
         let add = |list: &mut Vec<Message>, clauses: Vec<Message>| {
             let clauses: Vec<_> = clauses.into_iter().filter(|clause| !list.contains(clause)).collect();
             list.extend(clauses.into_iter().map(|clause| match path {

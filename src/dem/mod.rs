@@ -1,56 +1,20 @@
-//! The elevation grid: what every later stage reads. GDAL is known in this folder alone.
+//! The elevation grid: what every later stage reads. It knows files and systems of coordinates by traits alone:
+//! [`Tiles`] and [`Transform`], which [`geo`](crate::geo) has for whatever GDAL opens.
 
-mod archive;
-mod assumed;
 mod bands;
-mod choice;
-mod crop;
-mod crs;
-mod depth;
-mod doubt;
-mod elevation;
-mod encoding;
-mod filed;
-mod formats;
+pub(crate) mod filed;
 pub mod fractal;
 mod georeference;
-mod glance;
-mod grid;
-mod grids;
-mod handles;
-mod hgt;
+mod held;
 mod history;
-pub mod info;
-mod inscribed;
-mod labels;
-mod lie;
-mod limits;
-mod listed;
-mod lossless;
-mod mistaken;
-mod mosaic;
-mod name;
-mod nodata;
-mod outside;
 mod overviews;
-mod quiet;
-mod raster;
-pub mod read;
-mod register;
-mod said;
 mod samples;
-mod shell;
-mod source;
 mod survey;
-mod tally;
-mod target;
-mod tiling;
+mod systems;
+mod tiles;
+pub(crate) mod tiling;
 mod validity;
-mod vrt;
-mod vsi;
-pub mod write;
-mod xml;
-mod zip;
+mod window;
 
 use std::sync::{Arc, OnceLock};
 
@@ -58,22 +22,19 @@ use glam::{DVec2, DVec3};
 
 use crate::error::{Error, Result};
 use filed::Filed;
-use grid::Window;
 
 pub use bands::Band;
-pub use crs::Crs;
-pub use elevation::ElevationUnit;
-pub use encoding::Encoding;
 pub use georeference::Georeference;
+pub use held::{LARGEST_SIDE, MAX_SAMPLES, held_bytes};
 pub use history::History;
-pub use info::{Info, info};
-pub use limits::{LARGEST_SIDE, MAX_SAMPLES};
-pub use nodata::Nodata;
 pub use overviews::{Entry, OverviewBuilder, Overviews};
-pub use read::{ReadOptions, Reading, Stage, read, read_all};
 pub use samples::Samples;
 pub use survey::{Survey, SurveyBuilder};
+pub use systems::{Crs, Transform, Unit};
+pub use tiles::Tiles;
+pub use tiling::Tiling;
 pub use validity::{BLOCK_SIDE, Validity};
+pub use window::Window;
 
 /// A north-up grid of elevations in metres.
 ///
@@ -117,6 +78,17 @@ impl Dem {
         Self::new(size, cell, origin, Store::Held(samples))
     }
 
+    /// A grid of the samples of `tiles`, filed: they are read as they are asked for. `cell` and `origin` as those of
+    /// [`Self::from_heights`]; `exaggeration` is a factor on every height. Half of `budget` bytes keep what was read last.
+    ///
+    /// # Panics
+    /// When there are fewer than 2 x 2 samples.
+    pub fn from_tiles(tiles: Arc<dyn Tiles>, cell: DVec2, origin: DVec2, exaggeration: f64, budget: usize) -> Self {
+        let size = tiles.size();
+        assert!(size.iter().all(|side| *side >= 2));
+        Self::new(size, cell, origin, Store::Filed(Arc::new(Filed::new(tiles, exaggeration, budget))))
+    }
+
     fn new([columns, rows]: [usize; 2], cell: DVec2, origin: DVec2, store: Store) -> Self {
         let (georeference, history) = (Georeference::unknown(), History::default());
         Self {
@@ -133,12 +105,12 @@ impl Dem {
     }
 
     /// The same grid with where it lies on Earth and how it came about.
-    fn with_source(self, georeference: Georeference, history: History) -> Self {
+    pub fn with_source(self, georeference: Georeference, history: History) -> Self {
         Self { georeference, history, ..self }
     }
 
-    /// The same, read from this.
-    fn with_label(self, label: String) -> Self {
+    /// The same, read from this, in words for people.
+    pub fn with_label(self, label: String) -> Self {
         Self { label, ..self }
     }
 
@@ -185,7 +157,7 @@ impl Dem {
 
     /// The error of those who need all samples in memory.
     pub(crate) fn not_held(&self) -> Error {
-        limits::not_held([self.columns, self.rows])
+        held::not_held([self.columns, self.rows])
     }
 
     /// Whether the samples stay in their files.

@@ -17,8 +17,8 @@ use bytemuck::{Pod, Zeroable};
 use rayon::prelude::*;
 use xxhash_rust::xxh3::xxh3_64;
 
-use super::grid::Window;
 use super::tiling::Tiling;
+use super::window::Window;
 use super::{Dem, Samples, Store};
 use crate::error::{Error, Result};
 

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::grid::Window;
+use super::window::Window;
 
 /// Words of validity that one core makes at a time: 65 536 samples.
 const WORDS: usize = 2048;

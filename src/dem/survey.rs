@@ -6,9 +6,9 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::filed::exaggerate;
-use super::grid::Window;
 use super::validity::{Validity, ValidityBuilder};
-use super::{Band, Dem, Samples, Store, limits};
+use super::window::Window;
+use super::{Band, Dem, Samples, Store, held};
 use crate::error::{Error, Message, Result};
 
 /// Most samples that are kept of a filed DEM to stand for all, about: 16 MiB.
@@ -91,12 +91,11 @@ impl<'a> SurveyBuilder<'a> {
         let Store::Filed(filed) = &dem.store else {
             return Ok(Survey { range, voids, marks: 0, assumed: Vec::new(), patches, thinned, validity });
         };
-        let tallies = filed.tallies();
+        let tiles = filed.tiles();
         if range.is_none() {
-            return Err(filed.all_void(voids, &tallies));
+            return Err(tiles.all_void());
         }
-        let marks = tallies.values().map(|tally| tally.marks).sum();
-        Ok(Survey { range, voids, marks, assumed: filed.assumed(&tallies), patches, thinned, validity })
+        Ok(Survey { range, voids, marks: tiles.marks(), assumed: tiles.assumed(), patches, thinned, validity })
     }
 }
 
@@ -162,7 +161,7 @@ impl Dem {
                 self.columns() * self.rows()
             )
             .into(),
-            remedy: limits::to_fill([self.columns(), self.rows()], self.is_filed()),
+            remedy: held::to_fill([self.columns(), self.rows()], self.is_filed()),
         })
     }
 

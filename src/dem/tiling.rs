@@ -1,11 +1,9 @@
 //! The tiles in which samples are read from their files and kept: whole blocks of the file, so that none is unpacked
 //! twice.
 
-use std::sync::Arc;
-
 use rayon::prelude::*;
 
-use super::grid::Window;
+use super::window::Window;
 use crate::error::Result;
 
 /// Shortest side of a tile where the file's blocks are smaller, samples: 1 MiB of heights in all.
@@ -17,7 +15,7 @@ const TILES_A_CORE: usize = 4;
 
 /// A grid laid over a window's samples, which cuts it at the borders of the file's blocks.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Tiling {
+pub struct Tiling {
     /// Columns and rows of a whole tile.
     pub size: [usize; 2],
     /// Columns and rows of the first tile that lie beyond the window.
@@ -67,11 +65,11 @@ impl Tiling {
 
 /// Puts a window together from its `tiles`; `load` reads one, on several threads if `parallel`. `progress` hears the share
 /// done.
-pub(super) fn gather(
+pub(crate) fn gather<T: AsRef<[f32]> + Send>(
     window: Window,
     tiles: &[Window],
     parallel: bool,
-    load: impl Fn(Window) -> Result<Arc<[f32]>> + Sync,
+    load: impl Fn(Window) -> Result<T> + Sync,
     progress: &dyn Fn(f64),
 ) -> Result<Vec<f32>> {
     let mut samples = vec![f32::NAN; window.size[0] * window.size[1]];
@@ -82,7 +80,7 @@ pub(super) fn gather(
             [tile] => vec![load(*tile)?],
             _ => batch.par_iter().map(|tile| load(*tile)).collect::<Result<_>>()?,
         };
-        batch.iter().zip(&loaded).for_each(|(tile, loaded)| copy(*tile, loaded, window, &mut samples));
+        batch.iter().zip(&loaded).for_each(|(tile, loaded)| copy(*tile, loaded.as_ref(), window, &mut samples));
         done += batch.len();
         progress(done as f64 / tiles.len() as f64);
     }
@@ -126,7 +124,7 @@ mod tests {
         let window = Window { first: [323, 90], size: [700, 600] };
         let tiles = tiling.tiles(window);
         assert_eq!(tiles.len(), 9);
-        let load = |tile: Window| Ok(vec![1.0; tile.samples() as usize].into());
+        let load = |tile: Window| Ok(vec![1.0; tile.samples() as usize]);
         let samples = gather(window, &tiles, true, load, &|_| ()).expect("no error");
         assert!(samples.iter().all(|sample| *sample == 1.0), "a sample that no tile covers");
         assert!(

@@ -3,6 +3,7 @@
 
 pub mod identity;
 pub mod output;
+pub mod signals;
 
 pub use identity::{Identity, Taken};
-pub use output::{Output, discard_all};
+pub use output::Output;

@@ -2,7 +2,7 @@
 //!
 //! [`Output::create`] opens a temporary file beside the final one before the work starts, so that a folder that cannot
 //! be written fails in the first second; [`Output::write`] fills it, [`Output::publish`] renames it. A dropped output
-//! leaves nothing behind; one ended by a signal neither, if its handler calls [`discard_all`]. [`Output::stdout`] holds
+//! leaves nothing behind; one ended by a signal neither, with [`signals`](super::signals). [`Output::stdout`] holds
 //! its bytes in memory instead until they are published.
 //!
 //! Does not handle: power cuts. Nothing is synced to disk, the file may be missing then, as with any other writer.
@@ -194,7 +194,7 @@ pub fn forget(path: &Path) {
 }
 
 /// The same for a process that has no memory left: asks for none, and leaves what another thread is at.
-pub fn discard_now() {
+pub(super) fn discard_now() {
     if let Ok(list) = UNDER_WAY.try_lock() {
         list.iter().rev().for_each(|path| drop(fs::remove_file(path).or_else(|_| fs::remove_dir(path))));
         std::mem::forget(list);
@@ -203,7 +203,7 @@ pub fn discard_now() {
 
 /// Removes the temporary files of all outputs under way, and folders made for them where they are empty then: for a
 /// process about to be ended by a signal. Whoever makes or names another output from here on waits for that end.
-pub fn discard_all() {
+pub(super) fn discard_all() {
     let mut list = UNDER_WAY.lock().unwrap_or_else(PoisonError::into_inner);
     let remove = |path: &PathBuf| fs::remove_file(path).or_else(|_| fs::remove_dir(path));
     list.drain(..).rev().for_each(|path| drop(remove(&path)));

@@ -6,8 +6,6 @@ pub mod buffers;
 pub mod candidates;
 pub mod clock;
 pub mod compose;
-pub mod copy;
-pub mod depth_draw;
 pub mod device;
 pub mod facing;
 pub mod memory;
@@ -30,8 +28,6 @@ pub mod work;
 
 pub use buffers::Buffers;
 pub use clock::Clock;
-pub use copy::BareCopy;
-pub use depth_draw::DepthDraw;
 pub use device::{AdapterChoice, Gpu, Int64};
 pub use pass::{Extent, Pass};
 pub use uniforms::CameraUniform;

@@ -5,13 +5,23 @@ use super::uniforms::{ChunkUniform, Counts};
 use crate::error::{Error, Message, Result, Setting};
 use crate::message;
 use crate::plan::batches::{BATCH_CHUNKS, PART_CHUNKS};
-use crate::plan::cost::{PIXEL_BYTES, RIM_EDGE_BYTES, VERTEX_BYTES, WORD_BYTES};
 use crate::plan::pieces::{LARGEST_PIECE, LONGEST_PIECE};
 use crate::surface::lattice::{CHUNK_FACETS, CHUNK_VERTICES, CHUNK_WORDS};
+use crate::surface::rim::RimEdge;
 use crate::surface::tile::TILE_SAMPLES;
 
 /// The largest storage binding every WebGPU device grants, in bytes.
 pub const LARGEST_BINDING: u64 = 128 << 20;
+/// Bytes of a vertex on the surface, and of one on the page.
+pub const VERTEX_BYTES: u64 = 16;
+/// Bytes of a chunk as shaders read it.
+pub const CHUNK_BYTES: u64 = size_of::<ChunkUniform>() as u64;
+/// Bytes of a pixel: depth and ID, or two depths.
+pub const PIXEL_BYTES: u64 = 8;
+/// Bytes of a word: the ink of a pixel, an item of a list, 32 facing bits, the summary of a chunk, a height.
+pub const WORD_BYTES: u64 = 4;
+/// Bytes of an edge of the rim.
+pub const RIM_EDGE_BYTES: u64 = size_of::<RimEdge>() as u64;
 /// Pixels across and down that one invocation of `candidates` or `toward_away` works off.
 pub const BLOCK: [u32; 2] = [4, 8];
 /// Bytes of a list before its items: workgroups along x, y and z, and the count.
@@ -51,7 +61,7 @@ pub fn written(room: Room, [width, height]: [u32; 2]) -> Result<Vec<(&'static st
     let facing = (0..).map(|i| chunks.saturating_sub(i * part).min(part) * u64::from(CHUNK_WORDS) * 4);
     let mut sizes: Vec<_> = FACING.into_iter().zip(facing).collect();
     sizes.extend([
-        ("chunks", chunks * size_of::<ChunkUniform>() as u64),
+        ("chunks", chunks * CHUNK_BYTES),
         ("nodes", room.nodes as u64 * 4),
         ("heights", tiles),
         ("gradients_east", patched),

@@ -1,4 +1,4 @@
-//! Pass `tessellate`: the vertices of a batch, on the surface and on the page.
+//! Pass `tessellate`: the vertices on the surface of chunks that have none yet; no camera counts.
 
 use super::{Gpu, Pass};
 use crate::error::Result;

@@ -5,10 +5,8 @@ use glam::{DVec2, DVec3};
 
 use crate::dem::Dem;
 use crate::error::{Error, Result, Setting};
-use crate::plan::cost::{CHUNK_BYTES, RIM_EDGE_BYTES};
 use crate::plan::pieces::Rectangle;
 use crate::surface::pyramid::Relief;
-use crate::surface::rim::RimEdge;
 use crate::surface::{Chunk, Lattice, Pyramid};
 use crate::view::Camera;
 
@@ -88,9 +86,6 @@ pub struct ChunkUniform {
     /// Fills to 8 bytes.
     pub pad: u32,
 }
-
-// What costs are counted with.
-const _: () = assert!(size_of::<ChunkUniform>() as u64 == CHUNK_BYTES && size_of::<RimEdge>() as u64 == RIM_EDGE_BYTES);
 
 /// `Batch` of scene.wgsl.
 #[repr(C)]

@@ -6,7 +6,8 @@ use crate::error::Result;
 /// The composed shader, for frames whose vertices are all at hand, or those of one batch at a time.
 pub fn source(keeps_vertices: bool) -> String {
     let vertices = if keeps_vertices { crate::shader!("vertex_kept") } else { crate::shader!("vertex_anew") };
-    [crate::shader!("scene", "lattice", "surface", "wide", "ink", "list", "levels", "walk"), vertices].concat()
+    [crate::shader!("scene", "lattice", "surface", "wide", "ink", "list", "levels", "walk_between", "walk"), vertices]
+        .concat()
 }
 
 /// One invocation a pixel with open pairs.

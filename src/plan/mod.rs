@@ -1,7 +1,6 @@
-//! What a frame needs: which method over which facets, in which batches, in how many pieces of the page, and what it costs.
+//! What a frame needs: which method over which facets, in which batches, in how many pieces of the page.
 
 pub mod batches;
-pub mod cost;
 pub mod detail;
 mod horizon;
 pub mod left_out;

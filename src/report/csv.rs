@@ -11,8 +11,8 @@ use std::io::{self, Write};
 
 use serde_json::{Map, Value};
 
-use super::results::{Place, Run};
 use super::{Results, merge};
+use crate::measure::figures::{Place, Run};
 
 /// Writes a line of names and a line for each run; nothing where there is none.
 ///

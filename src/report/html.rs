@@ -16,10 +16,10 @@ use minijinja::{AutoEscape, Environment, HtmlEscape, UndefinedBehavior, Value};
 use serde::Serialize;
 
 use super::pictures::Picture;
-use super::results::{PassFigures, Run};
 use super::words::{Words, milliseconds, words};
 use super::{Results, merge};
 use crate::error::{Error, Result};
+use crate::measure::figures::{PassFigures, Run};
 
 /// What the template sees.
 #[derive(Serialize)]

@@ -1,28 +1,22 @@
 //! Reports of comparisons: JSON, CSV, a plot, and a page to read with every picture in it.
 //!
-//! [`Comparison`] compares, [`Results`] is what it found; the writers turn that into text and know nothing else.
-//! [`Growth`] is time against size, judged by what was promised, with its plot.
+//! [`Results`] is what a [`Comparison`](crate::measure::Comparison) found; the writers turn that into text and know
+//! nothing else.
 
 mod chart;
-pub mod compare;
 pub mod csv;
-mod floors;
 pub mod folder;
 pub mod growth;
 pub mod html;
 mod labels;
-pub mod memory;
+pub mod lines;
 pub mod pictures;
 pub mod plot;
-mod prepared;
 pub mod results;
-mod trial;
-pub mod truths;
 mod words;
 
-pub use compare::Comparison;
 pub use csv::write_csv;
-pub use growth::{Growth, Promise};
+pub use growth::growth_svg;
 pub use html::report_html;
 pub use pictures::Picture;
 pub use plot::error_time_svg;

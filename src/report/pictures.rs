@@ -4,6 +4,7 @@ use std::io;
 
 use crate::error::{Error, Result};
 use crate::ink::{self, InkRaster, Marks};
+use crate::measure::compare::Shown;
 use crate::truth::Mask;
 use crate::truth::metrics::Measured;
 
@@ -22,27 +23,30 @@ pub struct Picture {
     pub png: Vec<u8>,
 }
 
-/// The mask of a frame: 1 bit a pixel.
+/// What a comparison shows, as a file of this name.
 ///
 /// # Errors
 /// [`Error::Output`] where PNG cannot hold it.
-pub fn mask_picture(name: String, raster: &InkRaster) -> Result<Picture> {
+pub fn of_shown(name: String, shown: Shown<'_>) -> Result<Picture> {
+    match shown {
+        Shown::Truth(truth) => truth_picture(name, truth),
+        Shown::Mask(raster) => mask_picture(name, raster),
+        Shown::Difference(mask, measured) => difference_picture(name, mask, measured),
+    }
+}
+
+/// The mask of a frame: 1 bit a pixel.
+fn mask_picture(name: String, raster: &InkRaster) -> Result<Picture> {
     picture(name, |png| ink::write_mask(&Marks::from(raster), png))
 }
 
 /// Truth drawn one pixel wide.
-///
-/// # Errors
-/// As [`mask_picture`].
-pub fn truth_picture(name: String, truth: &Mask) -> Result<Picture> {
+fn truth_picture(name: String, truth: &Mask) -> Result<Picture> {
     picture(name, |png| write_palette(truth.size, &painted(truth, |_| AGREED), png))
 }
 
 /// Ink within a pixel of truth, truth without ink within a pixel, ink farther from truth, in three inks.
-///
-/// # Errors
-/// As [`mask_picture`].
-pub fn difference_picture(name: String, mask: &Mask, measured: &Measured<'_>) -> Result<Picture> {
+fn difference_picture(name: String, mask: &Mask, measured: &Measured<'_>) -> Result<Picture> {
     let agrees: Vec<bool> = measured.agrees().collect();
     let mut indices = painted(mask, |i| if agrees[i] { AGREED } else { SPURIOUS });
     for (index, missed) in indices.iter_mut().zip(measured.missed().pixels()) {

@@ -15,8 +15,9 @@ use super::chart::{
     whole,
 };
 use super::labels::{self, Choice, Page, Rect};
-use super::results::{Run, Scene};
+use super::results::Scene;
 use crate::error::Result;
+use crate::measure::figures::Run;
 
 /// Least 1 - F that is told from 0: truth is some thousand pixels long.
 const FLOOR: f64 = 1e-4;

@@ -7,8 +7,8 @@
 
 use serde::Serialize;
 
-use super::results::{DrawnLevel, Floor, Run};
 use super::{Results, merge};
+use crate::measure::figures::{DrawnLevel, FloorFigures, Run};
 
 /// F from which on a drawing is good enough to be chosen by its speed.
 const GOOD_F: f64 = 0.99;
@@ -139,8 +139,9 @@ fn advice(results: &Results, candidates: &[Candidate], best: Option<&Candidate>)
 /// How the best line's frames stand beside a bare copy and a depth draw, where those were timed.
 fn limits(best: &Candidate) -> Option<String> {
     let floors = best.runs.iter().map(|run| run.floor.as_ref()).collect::<Option<Vec<_>>>()?;
-    let most =
-        |per: fn(&Floor) -> Option<f64>| floors.iter().try_fold(0.0, |most: f64, floor| Some(most.max(per(floor)?)));
+    let most = |per: fn(&FloorFigures) -> Option<f64>| {
+        floors.iter().try_fold(0.0, |most: f64, floor| Some(most.max(per(floor)?)))
+    };
     let beside = |what: &str, per: Option<f64>| per.map(|per| format!("{per:.1} times as long as {what}"));
     let copy = beside("a bare copy of as many bytes", most(|floor| floor.frame_per_copy));
     let draw = beside("a hardware depth draw of its facets", most(|floor| floor.frame_per_draw));

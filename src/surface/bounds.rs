@@ -144,7 +144,7 @@ fn of_cells(north: &Corners, south: &Corners, first: usize, cell: DVec2) -> [Bou
 fn side((a, n): &(Lanes, Vectors), (b, m): &(Lanes, Vectors), [x, y]: [f64; 2]) -> [Vectors; 2] {
     let leaves = |n: &Vectors, sign: f64| {
         let third: Lanes = from_fn(|i| (x * n[0][i] + y * n[1][i] + (b[i] - a[i]) * n[2][i]) * (sign / 3.0));
-        from_fn(|axis| from_fn(|i| n[axis][i] * third[i]))
+        vectors(|axis, i| n[axis][i] * third[i])
     };
     [leaves(n, 1.0), leaves(m, -1.0)]
 }
@@ -153,45 +153,55 @@ fn side((a, n): &(Lanes, Vectors), (b, m): &(Lanes, Vectors), [x, y]: [f64; 2]) 
 /// corner to which it goes east, and north.
 fn of_patch(heights: [Lanes; 3], sides: [[Vectors; 2]; 3], legs: [[usize; 2]; 2], cell: DVec2) -> BoundsOfCells {
     let [[m01, m10], [m12, m21], [m20, m02]] = sides;
-    let sum: Vectors = from_fn(|k| from_fn(|i| m01[k][i] + m10[k][i] + m12[k][i] + m21[k][i] + m20[k][i] + m02[k][i]));
-    let [mut limit, mut bend, mut change] = [[0.0; LANES]; 3];
-    for [from, to, beside, beyond] in [[m01, m10, m02, m12], [m12, m21, m10, m20], [m20, m02, m21, m01]] {
-        let ends: [Vectors; 3] = [
-            from_fn(|k| from_fn(|i| 2.0 * from[k][i] - to[k][i])),
-            from_fn(|k| from_fn(|i| 2.0 * to[k][i] - from[k][i])),
-            from_fn(|k| from_fn(|i| 0.5 * sum[k][i] - beside[k][i] - beyond[k][i])),
-        ];
-        let [a, b, c] = &ends;
-        let mean: Vectors = from_fn(|k| from_fn(|i| (a[k][i] + b[k][i] + c[k][i]) * (1.0 / 3.0)));
-        let widest: Vectors = from_fn(|k| {
-            from_fn(|i| most(most((a[k][i] - b[k][i]).abs(), (b[k][i] - c[k][i]).abs()), (c[k][i] - a[k][i]).abs()))
-        });
-        for end in &ends {
-            limit = longer(limit, end);
-        }
-        (bend, change) = (longer(bend, &mean), longer(change, &widest));
-    }
-    let (mut low, mut high) = (heights[0], heights[0]);
-    let [p, q, r] = &heights;
-    let mut take = |z: Lanes| {
-        low = from_fn(|i| least(low[i], z[i]));
-        high = from_fn(|i| most(high[i], z[i]));
-    };
-    take(*q);
-    take(*r);
-    for (from, to, [m, n]) in [(p, q, [m01, m10]), (q, r, [m12, m21]), (r, p, [m20, m02])] {
-        let third: Lanes = from_fn(|i| (to[i] - from[i]) * (1.0 / 3.0));
-        take(from_fn(|i| from[i] + third[i] - m[2][i]));
-        take(from_fn(|i| to[i] - third[i] - n[2][i]));
-    }
-    take(from_fn(|i| (p[i] + q[i] + r[i]) * (1.0 / 3.0) - 0.25 * sum[2][i]));
-    let limit = limit.map(|squared| 0.75 * squared.sqrt());
-    let flat = from_fn(|i| 0.75 * bend[i].sqrt() + 0.05 * change[i].sqrt());
+    let sum = vectors(|k, i| m01[k][i] + m10[k][i] + m12[k][i] + m21[k][i] + m20[k][i] + m02[k][i]);
+    let [limit, flat] = bulge(&sides, &sum);
+    let [low, high] = range(&heights, &sides, &sum);
     let none = [[0.0; LANES]; 3];
     let leaves = [[none, m01, m02], [m10, none, m12], [m20, m21, none]];
-    let centre: Vectors = from_fn(|k| from_fn(|i| 0.25 * sum[k][i]));
+    let centre = vectors(|k, i| 0.25 * sum[k][i]);
     let slopes = from_fn(|axis| slopes(&heights, &leaves, &centre, legs[axis], axis, cell));
     BoundsOfCells { low, high, limit, flat, slopes }
+}
+
+/// Both numbers of a [`Bulge`](super::patch::Bulge), from the second differences of the control points: those along a side
+/// at either end, and those at the third corner. `sum` is that of all `sides`.
+fn bulge([[m01, m10], [m12, m21], [m20, m02]]: &[[Vectors; 2]; 3], sum: &Vectors) -> [Lanes; 2] {
+    let [mut limit, mut bend, mut change] = [[0.0; LANES]; 3];
+    for [from, to, beside, beyond] in [[m01, m10, m02, m12], [m12, m21, m10, m20], [m20, m02, m21, m01]] {
+        let a = vectors(|k, i| 2.0 * from[k][i] - to[k][i]);
+        let b = vectors(|k, i| 2.0 * to[k][i] - from[k][i]);
+        let c = vectors(|k, i| 0.5 * sum[k][i] - beside[k][i] - beyond[k][i]);
+        let mean = vectors(|k, i| (a[k][i] + b[k][i] + c[k][i]) * (1.0 / 3.0));
+        let widest =
+            vectors(|k, i| most(most((a[k][i] - b[k][i]).abs(), (b[k][i] - c[k][i]).abs()), (c[k][i] - a[k][i]).abs()));
+        limit = longer(longer(longer(limit, &a), &b), &c);
+        (bend, change) = (longer(bend, &mean), longer(change, &widest));
+    }
+    let limit = limit.map(|squared| 0.75 * squared.sqrt());
+    [limit, from_fn(|i| 0.75 * bend[i].sqrt() + 0.05 * change[i].sqrt())]
+}
+
+/// Heights below and above all ten control points: corners, a third along each side from either end, the middle.
+fn range(
+    [p, q, r]: &[Lanes; 3],
+    [[m01, m10], [m12, m21], [m20, m02]]: &[[Vectors; 2]; 3],
+    sum: &Vectors,
+) -> [Lanes; 2] {
+    let with = |[low, high]: [Lanes; 2], z: Lanes| -> [Lanes; 2] {
+        [from_fn(|i| least(low[i], z[i])), from_fn(|i| most(high[i], z[i]))]
+    };
+    let mut range = with(with([*p, *p], *q), *r);
+    for (from, to, m, n) in [(p, q, m01, m10), (q, r, m12, m21), (r, p, m20, m02)] {
+        let third: Lanes = from_fn(|i| (to[i] - from[i]) * (1.0 / 3.0));
+        range = with(range, from_fn(|i| from[i] + third[i] - m[2][i]));
+        range = with(range, from_fn(|i| to[i] - third[i] - n[2][i]));
+    }
+    with(range, from_fn(|i| (p[i] + q[i] + r[i]) * (1.0 / 3.0) - 0.25 * sum[2][i]))
+}
+
+/// A vector of each cell from its components.
+fn vectors(component: impl Fn(usize, usize) -> f64) -> Vectors {
+    from_fn(|k| from_fn(|i| component(k, i)))
 }
 
 /// Least and largest slope along a leg, from corner a to corner b, of patches. Facets have sides along

@@ -4,6 +4,7 @@ mod bounds;
 pub mod lattice;
 pub mod normals;
 pub mod patch;
+mod prepared;
 pub mod pyramid;
 pub mod quadtree;
 pub mod rim;

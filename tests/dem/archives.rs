@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use hachure::dem::{ReadOptions, read};
+use hachure::geo::{ReadOptions, read};
 
 use super::refused::{refused, refused_with};
 use super::{copy, folder, hill, read_all, sized_vrt, told};

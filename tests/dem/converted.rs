@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use glam::{DVec2, DVec3};
-use hachure::dem::{Crs, Dem, ElevationUnit, ReadOptions, Stage, read, read_all as read_files};
+use hachure::dem::{Crs, Dem};
+use hachure::geo::{ElevationUnit, ReadOptions, Stage, read, read_all as read_files};
 
 use super::{Raster, TRANSFORM, cropped, folder, hill, read_all, sized_vrt, vrt};
 use crate::common::words;

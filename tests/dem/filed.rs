@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use std::slice;
 
 use glam::DVec2;
-use hachure::dem::{Dem, ReadOptions, read_all};
+use hachure::dem::Dem;
+use hachure::geo::{ReadOptions, read_all};
 use hachure::surface::Surface;
 use hachure::surface::normals::gradients;
 use hachure::surface::rim::rim;
@@ -225,7 +226,7 @@ fn what_must_be_held_is_refused_beyond_the_budget() {
     assert!(error.contains("beside.tif is warped to the grid of the first file"), "{error}");
     let void = Raster { nodata: Some(-1.0), ..Raster::new(100, vec![-1.0f32; 10_000]) };
     let void = void.write("GTiff", &dir.path().join("void.tif"));
-    let told = hachure::dem::info(&[void], &options, &|_, _| ()).unwrap_err().to_string();
+    let told = hachure::geo::info(&[void], &options, &|_, _| ()).unwrap_err().to_string();
     assert!(told.contains("holds no elevation, all 10000 samples are void"), "{told}");
 }
 
@@ -234,7 +235,7 @@ fn info_of_a_filed_dem_says_the_same() {
     let dir = folder();
     let path = rough().write("GTiff", &dir.path().join("rough.tif"));
     let [held, filed] = [1 << 30, TINY].map(|memory| {
-        hachure::dem::info(slice::from_ref(&path), &ReadOptions { memory, ..Default::default() }, &|_, _| ()).unwrap()
+        hachure::geo::info(slice::from_ref(&path), &ReadOptions { memory, ..Default::default() }, &|_, _| ()).unwrap()
     });
     assert_eq!(held, filed);
     assert!(held.to_string().contains("1 samples at or below -32767"), "{held}");

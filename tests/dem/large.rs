@@ -3,8 +3,9 @@
 use std::process::Command;
 use std::time::Instant;
 
-use hachure::dem::{ReadOptions, fractal, read, write::write};
-use hachure::report::memory::peak;
+use hachure::dem::fractal;
+use hachure::geo::{ReadOptions, read, write};
+use hachure::measure::memory::peak;
 use hachure::surface::Surface;
 
 use super::folder;
@@ -86,7 +87,7 @@ fn child_reads_a_filed_dem() {
     let row = |r: usize| (0..5200).map(|c| ((c * 7 + r * 3) % 1000) as f32).collect();
     write(&path, [5200, 5200], fractal::CELL, row, &|_| ()).unwrap();
     let grown = |memory: u64| {
-        hachure::report::memory::reset_peak();
+        hachure::measure::memory::reset_peak();
         let before = peak().unwrap();
         let surface = Surface::new(read(&path, &ReadOptions { memory, ..Default::default() }).unwrap());
         assert_eq!(surface.dem().survey(&|_| ()).unwrap().range, Some([0.0, 999.0]));

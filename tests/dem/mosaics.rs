@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use glam::DVec2;
 use hachure::cli::words::line;
-use hachure::dem::{Dem, ReadOptions, read_all};
+use hachure::dem::Dem;
+use hachure::geo::{ReadOptions, read_all};
 
 use super::{Raster, TRANSFORM, folder, hill};
 use crate::common::words;

@@ -4,7 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use hachure::cli::words::{self, exit_code};
-use hachure::dem::{Dem, ReadOptions, read};
+use hachure::dem::Dem;
+use hachure::geo::{ReadOptions, read};
 
 use super::archives::{Member, tile, zip};
 use super::refused::{refused, refused_with};
@@ -234,7 +235,7 @@ fn the_file_without_a_system_is_the_one_named() {
     let [one, other] = named;
     for order in [[&bare, &one, &other], [&one, &bare, &other], [&one, &other, &bare]] {
         let paths = order.map(PathBuf::clone);
-        let error = hachure::dem::read_all(&paths, &ReadOptions::default(), &|_, _| ()).unwrap_err().to_string();
+        let error = hachure::geo::read_all(&paths, &ReadOptions::default(), &|_, _| ()).unwrap_err().to_string();
         assert!(error.starts_with(&format!("{}: lies in no named coordinate system", bare.display())), "{error}");
         assert!(error.contains("`gdal_translate -a_srs EPSG:32610 IN OUT.tif`"), "{error}");
     }

@@ -6,7 +6,8 @@ use std::process::Command;
 
 use gdal::Dataset;
 use hachure::cli::words::{exit_code, line};
-use hachure::dem::{LARGEST_SIDE, MAX_SAMPLES, ReadOptions, info, read};
+use hachure::dem::{LARGEST_SIDE, MAX_SAMPLES};
+use hachure::geo::{ReadOptions, info, read};
 
 use super::{Raster, copy, cropped, folder, hill, read_all, sized_vrt, vrt};
 /// Reading `path` fails with one line that names the file, holds all `words`, and exit code 1; so does `info`.

@@ -206,7 +206,7 @@ fn numbers_and_limits() {
     let code = super::refused::refused(&sized_vrt(&at("python.vrt"), 4, 3, "", python), &["holds code"]);
     assert!(code.ends_with("`gdal_translate --config GDAL_VRT_ENABLE_PYTHON YES IN OUT.tif`"), "{code}");
     let larger =
-        super::refused::refused_with(&degrees, &hachure::dem::ReadOptions { memory: 1024, ..Default::default() }, &[]);
+        super::refused::refused_with(&degrees, &hachure::geo::ReadOptions { memory: 1024, ..Default::default() }, &[]);
     let flag = larger.split("give --memory ").nth(1).unwrap().split(' ').next().unwrap();
     let case = Case::new("file", &degrees).with(&["--memory", flag]);
     let ran = Command::new(env!("CARGO_BIN_EXE_hachure")).arg("info").args(&case.arguments).output().unwrap();

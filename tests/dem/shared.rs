@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 
 use gdal::Dataset;
 use glam::DVec2;
-use hachure::dem::{Dem, Info, ReadOptions, info, read};
+use hachure::dem::Dem;
+use hachure::geo::{Info, ReadOptions, info, read};
 
 use super::{read_all, refused::refused, told};
 use crate::common::shared_dems;

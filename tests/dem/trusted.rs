@@ -8,7 +8,8 @@ use std::path::Path;
 use std::process::Command;
 
 use gdal::{Dataset, DriverManager, config};
-use hachure::dem::{Dem, ReadOptions, read};
+use hachure::dem::Dem;
+use hachure::geo::{ReadOptions, read};
 use server::Server;
 
 use super::refused::{refused, refused_with};

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use gdal::Metadata;
 use gdal::raster::GdalDataType::Float32;
-use hachure::dem::{Encoding, ReadOptions, read};
+use hachure::geo::{Encoding, ReadOptions, read};
 
 use super::{Bands, SIDE, assumed, cured, folder, land, one, same};
 use crate::common::words;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use hachure::cli::words::line;
-use hachure::dem::{ReadOptions, read, read_all};
+use hachure::geo::{ReadOptions, read, read_all};
 
 use super::{Bands, SIDE, assumed, cured, doubt, folder, land, marked, one, same};
 use crate::common::{shared_dems, words};

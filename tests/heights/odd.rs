@@ -9,7 +9,7 @@ use gdal::raster::{Buffer, RasterCreationOptions};
 use gdal::spatial_ref::SpatialRef;
 use hachure::cli::values;
 use hachure::cli::words::line;
-use hachure::dem::{Encoding, ReadOptions, read};
+use hachure::geo::{Encoding, ReadOptions, read};
 
 use super::{Bands, SIDE, assumed, cured, doubt, folder, land, marked, one, same};
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use hachure::cli::words::line;
-use hachure::dem::{ReadOptions, read};
+use hachure::geo::{ReadOptions, read};
 
 use super::{Bands, FILED, SIDE, assumed, folder, land, one, same};
 use crate::common::words;

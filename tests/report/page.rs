@@ -3,7 +3,8 @@
 use std::io::Cursor;
 
 use hachure::error::Error;
-use hachure::report::results::{DrawnLevel, Results};
+use hachure::measure::figures::DrawnLevel;
+use hachure::report::results::Results;
 use hachure::report::{Picture, error_time_svg, report_html};
 use image::{GrayImage, ImageFormat, Luma};
 use serde_json::Value;

@@ -1,9 +1,9 @@
 //! Results of a comparison that never was: two scenes, every method, and all that is awkward to write down.
 
-use hachure::report::results::{
-    AtDistance, Band, Convergence, DrawnLevel, Floor, LevelOffset, Machine, PassFigures, Place, Results, Run, SCHEMA,
-    Scene, TruthReport, TruthSummary,
+use hachure::measure::figures::{
+    AtDistance, Band, Convergence, DrawnLevel, FloorFigures, LevelOffset, PassFigures, Place, Run, TruthReport,
 };
+use hachure::report::results::{Machine, Results, SCHEMA, Scene, TruthSummary};
 
 /// A name that HTML, CSV, SVG and the shell each have to quote.
 pub const AWKWARD: &str = "a<b & c, \"d's\"";
@@ -59,7 +59,7 @@ pub fn with_floors(width: u32, height: u32) -> Results {
     let mut results = results(width, height);
     for (i, run) in results.runs.iter_mut().enumerate() {
         let draw_ms = (i > 0).then_some(run.frame_ms / 1.6);
-        run.floor = Some(Floor {
+        run.floor = Some(FloorFigures {
             bytes: 40_000_000,
             copy_ms: Some(run.frame_ms / 3.2),
             draw_ms,

@@ -5,9 +5,9 @@ use std::process::Command;
 use std::time::Instant;
 
 use glam::DVec3;
-use hachure::dem::{ReadOptions, read};
+use hachure::geo::{ReadOptions, read};
+use hachure::measure::memory::peak;
 use hachure::plan::{Border, Method, Share};
-use hachure::report::memory::peak;
 use hachure::surface::Surface;
 use hachure::truth::metrics::{Agreement, Judge};
 use hachure::truth::{Mask, Terrain};

@@ -1,0 +1,165 @@
+//! Coordinate reference systems: what files and the register say of them, and the way from one to another.
+//!
+//! PROJ does the mathematics, through GDAL. Coordinates always stand x first, east or longitude, whatever order the
+//! system's register gives. Not handled: heights, epochs, datum grids that are not on the machine.
+
+use gdal::spatial_ref::{AxisMappingStrategy, CoordTransform, SpatialRef};
+use glam::DVec2;
+
+use super::register;
+use super::source::heard;
+use crate::dem::{Crs, Transform, Unit};
+use crate::error::{Error, Result, Setting, plain};
+
+/// Longitude and latitude, in the register of EPSG.
+const WGS84: u32 = 4326;
+/// Metres from the middle of the Earth to its equator, and how much another ellipsoid of the Earth may differ.
+const EARTH_RADIUS: f64 = 6_378_137.0;
+const EARTH_SHARE: f64 = 0.01;
+
+impl Crs {
+    /// Longitude and latitude in degrees, WGS 84.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] when PROJ cannot find its register of coordinate systems.
+    pub fn lonlat() -> Result<Self> {
+        Self::from_epsg(WGS84)
+    }
+
+    /// The system that the register of EPSG gives this number.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] when there is none, or none of places on a map or the globe; [`Error::Limit`] when PROJ cannot
+    /// find the register.
+    pub fn from_epsg(code: u32) -> Result<Self> {
+        let wrong = |what: String| {
+            let remedy = "give the number of a system of map coordinates, for instance EPSG:32611 or EPSG:4326";
+            Error::setting(Setting::Crs, what, remedy)
+        };
+        let (found, words) = heard(|| SpatialRef::from_epsg(code));
+        let Ok(found) = found else {
+            // Without a register every code is unknown; one that has WGS 84 is whole.
+            let whole = code != WGS84 && heard(|| SpatialRef::from_epsg(WGS84)).0.is_ok();
+            return Err(if whole { wrong(format!("EPSG:{code} is unknown")) } else { register::error(words) });
+        };
+        Self::of(found).ok_or_else(|| wrong(format!("EPSG:{code} is no system of places on a map")))
+    }
+
+    /// Of GDAL's handle; `None` for systems that are neither a map nor longitude and latitude.
+    pub(super) fn of(mut reference: SpatialRef) -> Option<Self> {
+        if reference.is_geocentric() || (reference.is_vertical() && !reference.is_compound()) {
+            return None;
+        }
+        reference.set_axis_mapping_strategy(AxisMappingStrategy::TraditionalGisOrder);
+        let geographic = reference.is_geographic() || reference.is_derived_geographic();
+        let unit = if geographic {
+            Unit::Angle(reference.angular_units())
+        } else {
+            let metres = reference.linear_units();
+            Unit::Length(metres, plain(reference.linear_units_name().unwrap_or_else(|| format!("{metres} m"))))
+        };
+        let wkt = heard(|| reference.to_wkt()).0.ok()?;
+        let (name, epsg) = identity(reference);
+        Some(Self::new(wkt, plain(name), epsg, unit))
+    }
+
+    /// Whether its ellipsoid has about the size of the Earth's, or nobody names one.
+    pub(super) fn is_of_earth(&self) -> bool {
+        let radius = self.reference().and_then(|reference| heard(|| reference.semi_major()).0.ok());
+        radius.is_none_or(|radius| (radius / EARTH_RADIUS - 1.0).abs() < EARTH_SHARE)
+    }
+
+    /// `x` taken round the globe, where it is a longitude, to within half a turn of `middle`.
+    pub(super) fn near(&self, x: f64, middle: f64) -> f64 {
+        self.turn().map_or(x, |turn| x + turn * ((middle - x) / turn).round())
+    }
+
+    /// West, south, east and north of the area that it is made for, degrees, where the register tells.
+    pub(super) fn area(&self) -> Option<[f64; 4]> {
+        let (area, _) = heard(|| SpatialRef::from_epsg(self.epsg()?).ok()?.area_of_use());
+        let area = area?;
+        Some([area.west_lon_degree, area.south_lat_degree, area.east_lon_degree, area.north_lat_degree])
+    }
+
+    /// GDAL's handle, x first; `None` when unknown.
+    pub(super) fn reference(&self) -> Option<SpatialRef> {
+        if self.wkt().is_empty() {
+            return None;
+        }
+        let mut reference = heard(|| SpatialRef::from_wkt(self.wkt())).0.ok()?;
+        reference.set_axis_mapping_strategy(AxisMappingStrategy::TraditionalGisOrder);
+        Some(reference)
+    }
+}
+
+/// What leads from one system to another: PROJ.
+#[derive(Debug)]
+pub(super) struct Proj;
+
+impl Transform for Proj {
+    fn place(&self, from: &Crs, to: &Crs, place: DVec2) -> Option<DVec2> {
+        Way::between(from, to)?.place(place)
+    }
+
+    fn lonlat(&self) -> Result<Crs> {
+        Crs::lonlat()
+    }
+}
+
+/// Fails where PROJ has no register of coordinate systems: then files seem to name none.
+pub(super) fn check_register() -> Result<()> {
+    Crs::lonlat().map(drop)
+}
+
+/// The way from the coordinates of one system to those of another.
+pub(super) struct Way {
+    /// Nothing where both are the same.
+    transform: Option<CoordTransform>,
+}
+
+impl Way {
+    /// `None` where PROJ knows none, or one of the two is unknown.
+    pub fn between(from: &Crs, to: &Crs) -> Option<Self> {
+        if from == to {
+            return Some(Self { transform: None });
+        }
+        let (from, to) = (from.reference()?, to.reference()?);
+        let transform = heard(|| CoordTransform::new(&from, &to)).0.ok()?;
+        Some(Self { transform: Some(transform) })
+    }
+
+    /// Carries all places over; NaN where there is no such place.
+    pub fn carry(&self, places: &mut [DVec2]) {
+        let Some(transform) = &self.transform else { return };
+        let (mut x, mut y): (Vec<_>, Vec<_>) = places.iter().map(|p| (p.x, p.y)).unzip();
+        // It fails as a whole where a single place fails, and marks those that do as infinite.
+        let _ = heard(|| transform.transform_coords(&mut x, &mut y, &mut []));
+        for (place, (x, y)) in places.iter_mut().zip(x.into_iter().zip(y)) {
+            *place = if x.is_finite() && y.is_finite() { DVec2::new(x, y) } else { DVec2::NAN };
+        }
+    }
+
+    /// One place, `None` where there is no such place.
+    pub fn place(&self, place: DVec2) -> Option<DVec2> {
+        let mut places = [place];
+        self.carry(&mut places);
+        places[0].is_finite().then_some(places[0])
+    }
+}
+
+/// Name and EPSG code of a CRS. Old formats give its parameters alone; those of UTM are recognised.
+fn identity(mut reference: SpatialRef) -> (String, Option<u32>) {
+    let name = reference.name().unwrap_or_default();
+    if let Some(code) = epsg(&reference) {
+        return (name, Some(code));
+    }
+    let (recognised, _) = heard(|| reference.auto_identify_epsg());
+    let code = recognised.ok().and_then(|()| epsg(&reference));
+    let (registered, _) = heard(|| code.and_then(|code| SpatialRef::from_epsg(code).ok()?.name()));
+    (registered.unwrap_or(name), code)
+}
+
+fn epsg(reference: &SpatialRef) -> Option<u32> {
+    let known = reference.auth_name().is_some_and(|name| name == "EPSG");
+    known.then(|| reference.auth_code().ok()?.try_into().ok()).flatten()
+}

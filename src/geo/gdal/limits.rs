@@ -1,0 +1,169 @@
+//! Whether the samples of a DEM are held in memory or stay in their files.
+//!
+//! What fits the budget is held. Larger DEMs stay in their files, unless GDAL must have all samples at once: where they
+//! are warped (a warp of parts gives other bits than one of the whole) or voids are filled (from a hundred samples
+//! away). These are refused.
+
+use std::path::{Path, PathBuf};
+
+use super::grid::Grid;
+use super::mosaic::Mosaic;
+use super::target::Target;
+use crate::dem::{LARGEST_SIDE, MAX_SAMPLES, held_bytes};
+use crate::error::{Error, Message, Result, Setting, shown};
+use crate::geo::ReadOptions;
+use crate::message;
+
+/// Most samples that are read to be warped: 1 GiB.
+const MAX_READ: u64 = 1 << 28;
+/// Bytes a sample of the files at work.
+const READ_BYTES: u64 = 4;
+
+/// Why GDAL must have all samples at once.
+pub(super) enum Whole {
+    /// The files' grid is warped to metres.
+    Warped,
+    /// This file is warped to the grid of the first.
+    Apart(PathBuf),
+    /// Voids are filled.
+    Filled,
+}
+
+/// Whether the samples of `target` are to be held. Fails where they can be neither held nor filed, or memory is short.
+pub(super) fn are_held(mosaic: &Mosaic, target: &Target, options: &ReadOptions) -> Result<bool> {
+    let (grid, path) = (&target.grid, mosaic.path());
+    let samples = grid.columns as u64 * grid.rows as u64;
+    mosaic.warped_parts(target.window).try_for_each(|(path, read)| check_read(path, read, samples))?;
+    let why = match mosaic.apart() {
+        _ if target.warps => Some(Whole::Warped),
+        Some(apart) => Some(Whole::Apart(apart.to_owned())),
+        None => options.fill_voids.then_some(Whole::Filled),
+    };
+    if samples > MAX_SAMPLES as u64 || held_bytes(samples) > options.memory {
+        return match why {
+            Some(why) if samples > MAX_SAMPLES as u64 => {
+                Err(too_many(path, grid, &why, target.metres_to_fit(MAX_SAMPLES as u64)))
+            }
+            Some(why) => Err(over_budget(path, grid, &why, options.memory)),
+            None => check_longest(path, grid, target.metres_to_fit(MAX_SAMPLES as u64)).map(|()| false),
+        };
+    }
+    let work = if target.warps { target.window.samples() } else { 0 };
+    if target.warps {
+        check_read(path, work, 0)?;
+    }
+    check_memory(path, ((work + samples) * READ_BYTES).max(held_bytes(samples)), available_memory())?;
+    Ok(true)
+}
+
+impl Whole {
+    /// The reason, after `fit` or `must be held`.
+    fn reason(&self) -> String {
+        match self {
+            Self::Warped => "where they are warped".into(),
+            Self::Apart(path) => format!("where {} is warped to the grid of the first file", shown(path)),
+            Self::Filled => "where voids are filled".into(),
+        }
+    }
+
+    /// What to do first, so that the samples can stay in their files.
+    fn remedy(&self, grid: &Grid) -> String {
+        let code = grid.crs.epsg().map_or("CODE".to_owned(), |code| code.to_string());
+        match self {
+            Self::Warped => format!("warp it first: `gdalwarp -t_srs EPSG:{code} -r cubic IN OUT.tif`"),
+            Self::Apart(_) => "lay them together first: `gdalwarp -r cubic IN... OUT.tif`".into(),
+            Self::Filled => "fill them first: `gdal_fillnodata.py IN OUT.tif`".into(),
+        }
+    }
+}
+
+/// The error for a grid of more than [`MAX_SAMPLES`] that must be held; cells of `metres` make few enough.
+pub(super) fn too_many(path: &Path, grid: &Grid, why: &Whole, metres: f64) -> Error {
+    let Grid { columns, rows, .. } = grid;
+    let samples = *columns as u64 * *rows as u64;
+    let reason = why.reason();
+    Error::limit(
+        format!("{}: {columns} x {rows} = {samples} samples, at most {MAX_SAMPLES} fit {reason}", shown(path)),
+        message![why.remedy(grid), ", ", coarser(metres)],
+    )
+}
+
+fn over_budget(path: &Path, grid: &Grid, why: &Whole, memory: u64) -> Error {
+    let samples = grid.columns as u64 * grid.rows as u64;
+    let (needed, reason) = (held_bytes(samples).div_ceil(1 << 20), why.reason());
+    Error::limit(
+        message![
+            format!("{}: needs {needed} MiB of memory {reason}, more than ", shown(path)),
+            Setting::Memory,
+            " allows"
+        ],
+        message![
+            "give ",
+            Setting::Memory.at(format!("{needed}MiB")),
+            format!(" (it is {} MiB), or {}", memory >> 20, why.remedy(grid))
+        ],
+    )
+}
+
+fn check_longest(path: &Path, grid: &Grid, metres: f64) -> Result<()> {
+    let Grid { columns, rows, .. } = grid;
+    if *columns.max(rows) <= LARGEST_SIDE {
+        return Ok(());
+    }
+    Err(Error::limit(
+        format!("{}: {columns} x {rows} samples, at most {LARGEST_SIDE} along a side fit", shown(path)),
+        coarser(metres),
+    ))
+}
+
+/// Fewer samples: a part of them, or cells of so many metres.
+fn coarser(metres: f64) -> Message {
+    let cells = format!(" for cells of {metres} m");
+    message!["use ", Setting::Crop, " to take a part, or ", Setting::Resample.at(metres), cells]
+}
+
+/// As many samples of a file as may be read to be warped, beside `held` others.
+fn check_read(path: &Path, read: u64, held: u64) -> Result<()> {
+    if read > MAX_READ {
+        return Err(Error::limit(
+            format!("{}: {read} samples would be read to be warped, at most {MAX_READ} fit", shown(path)),
+            message![
+                "use ",
+                Setting::Crop,
+                " to take a part, or make it coarser: `gdal_translate -outsize 10% 10% -r average IN OUT.tif`"
+            ],
+        ));
+    }
+    check_memory(path, (read + held) * READ_BYTES, available_memory())
+}
+
+fn check_memory(path: &Path, needed: u64, available: Option<u64>) -> Result<()> {
+    match available {
+        Some(available) if available < needed => Err(Error::limit(
+            format!("{}: needs {} MiB of memory, {} MiB are free", shown(path), needed >> 20, available >> 20),
+            message!["use ", Setting::Crop, " to take a part, or ", Setting::Resample.at("M"), " for larger cells"],
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// Bytes of memory that new work may take, where the system says so (Linux).
+fn available_memory() -> Option<u64> {
+    let text = std::fs::read_to_string("/proc/meminfo").ok()?;
+    let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
+    line.trim().trim_end_matches(" kB").parse::<u64>().ok().map(|kib| kib * 1024)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn memory_is_checked_before_it_is_taken() {
+        let path = Path::new("a.tif");
+        assert!(check_memory(path, 100 << 20, Some(100 << 20)).is_ok());
+        assert!(check_memory(path, 100 << 20, None).is_ok());
+        let said = check_memory(path, 200 << 20, Some(100 << 20)).unwrap_err().to_string();
+        assert_eq!(said.split(';').next(), Some("a.tif: needs 200 MiB of memory, 100 MiB are free"));
+    }
+}

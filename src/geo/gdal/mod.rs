@@ -1,0 +1,47 @@
+//! Whatever GDAL opens, as a DEM: files are found, checked, understood, laid together and warped here.
+
+mod archive;
+mod assumed;
+mod choice;
+mod crop;
+mod crs;
+mod depth;
+mod doubt;
+mod elevation;
+mod formats;
+mod glance;
+mod grid;
+mod grids;
+mod handles;
+mod hgt;
+mod inscribed;
+mod labels;
+mod lent;
+mod lie;
+mod limits;
+mod listed;
+mod lossless;
+mod mistaken;
+mod mosaic;
+mod name;
+mod outside;
+mod part;
+mod pictures;
+mod quiet;
+mod raster;
+mod reading;
+mod register;
+mod said;
+mod shell;
+mod source;
+mod stored;
+mod tally;
+mod target;
+mod vrt;
+mod vsi;
+mod write;
+mod xml;
+mod zip;
+
+pub use reading::Reading;
+pub use write::{available, write};

@@ -1,0 +1,409 @@
+//! Several rasters as one grid: that of the first, run on over the others.
+//!
+//! Each file's numbers become metres by its own rules, voids marked, before anything is laid over anything: a tile in
+//! feet may stand beside one in metres, and a void covers nothing. Of files that overlap the last wins. A file whose
+//! samples fall on those of the first is copied; another is warped, by cubic convolution. Only what a window needs is
+//! read, on the thread that asks; several may ask at once.
+
+use std::path::{Path, PathBuf};
+
+use gdal::raster::{GdalType, RasterBand};
+use glam::DVec2;
+use xxhash_rust::xxh3::Xxh3;
+
+use super::assumed::Tallied;
+use super::crop;
+use super::crs::Way;
+use super::elevation::{Elevation, Reading};
+use super::grid::{Grid, span};
+use super::handles::{Handles, Opening};
+use super::lie::Lie;
+use super::raster::Raster;
+use super::source::{Source, heard};
+use super::tally::{Tallies, Tally};
+use crate::dem::{Crs, History, Tiling, Window};
+use crate::error::{Error, Result, shown};
+use crate::geo::{Encoding, ReadOptions};
+
+/// Samples read at once: 8 MiB of f64.
+const BLOCK_SAMPLES: usize = 1 << 20;
+/// Formats whose blocks are unpacked one by one and cost time: there, threads gain by reading at once. Others are read
+/// as fast by one thread, or only in the order in which they are written.
+const PARALLEL: [&str; 3] = ["GTiff", "COG", "VRT"];
+/// Samples around a window that cubic convolution reaches, and one more.
+const MARGIN: usize = 3;
+
+/// Files on one grid.
+pub(super) struct Mosaic {
+    /// North-up wherever that takes no resampling.
+    pub grid: Grid,
+    /// The format of the first file, in GDAL's words.
+    pub format: String,
+    sources: Vec<Placed>,
+}
+
+/// A file and where it lies in the mosaic.
+struct Placed {
+    handles: Handles,
+    elevation: Elevation,
+    grid: Grid,
+    lie: Lie,
+    /// Columns and rows of the blocks in which the file stores its samples.
+    stored: [usize; 2],
+    /// Whether several threads gain by reading it at once.
+    parallel: bool,
+    /// The format in GDAL's words.
+    format: String,
+}
+
+impl Mosaic {
+    /// Opens `paths`, at least one, and checks all that can be checked without reading samples.
+    pub fn open(paths: &[PathBuf], options: &ReadOptions, history: &mut History) -> Result<Self> {
+        let mut sources: Vec<Placed> = Vec::with_capacity(paths.len());
+        let mut opening = Opening::default();
+        for path in paths {
+            let base = sources.first().map(|first| (first.handles.path(), first.grid.north_up()));
+            let placed = Placed::open(path, options, base, paths.len() == 1, &mut opening, history)?;
+            sources.push(placed);
+        }
+        if let [path] = paths {
+            let twin = Placed::beside_itself(path, options, &sources[0], &mut opening)?;
+            sources.extend(twin);
+        }
+        let Some(first) = sources.first() else {
+            let none = Error::input(Path::new("DEM"), "no file is named", "name at least one raster");
+            return Err(none);
+        };
+        let base = first.grid.north_up();
+        if base.to_crs != first.grid.to_crs {
+            history.convert("rows and columns are read backwards, north up");
+        }
+        let lies = sources.iter().map(|placed| placed.lie.bounds(&placed.grid));
+        let (low, end) = lies.fold(([0; 2], [0; 2]), |(low, end), (first, last)| {
+            ([0, 1].map(|i| first[i].min(low[i])), [0, 1].map(|i| last[i].max(end[i])))
+        });
+        sources.iter_mut().for_each(|placed| placed.lie = placed.lie.moved(low));
+        let to_crs = base.to_crs * glam::DAffine2::from_translation(DVec2::new(low[0] as f64, low[1] as f64));
+        let [columns, rows] = [0, 1].map(|i| (end[i] - low[i]) as usize);
+        if paths.len() > 1 {
+            history.convert(format!("{} files laid together: {columns} x {rows} samples", sources.len()));
+        }
+        let format = sources[0].format.clone();
+        Ok(Self { grid: Grid { to_crs, columns, rows, ..base }, format, sources })
+    }
+
+    /// The first file, for messages.
+    pub fn path(&self) -> &Path {
+        self.sources[0].handles.path()
+    }
+
+    /// A file whose samples lie between those of the mosaic, so that it must be warped as a whole.
+    pub fn apart(&self) -> Option<&Path> {
+        let apart = self.sources.iter().find(|placed| matches!(placed.lie, Lie::Apart { .. }));
+        apart.map(|placed| placed.handles.path())
+    }
+
+    /// Whether several threads gain by reading at once.
+    pub fn is_parallel(&self) -> bool {
+        self.sources.iter().all(|placed| placed.parallel)
+    }
+
+    /// The tiles in which a window is best read: about those of the first file.
+    pub fn tiling(&self, window: Window) -> Tiling {
+        let Placed { lie, grid, stored, .. } = &self.sources[0];
+        let (first, _) = lie.bounds(grid);
+        Tiling::of(*stored, [0, 1].map(|i| window.first[i] as i64 - first[i]), window.size)
+    }
+
+    /// What it was opened from, in a few words.
+    pub fn label(&self) -> String {
+        let first = shown(self.path());
+        match self.sources.len() {
+            1 => first,
+            more => format!("{first} and {} more", more - 1),
+        }
+    }
+
+    /// Every file on the disk that it is made of.
+    pub fn files(&self) -> impl Iterator<Item = &Path> {
+        self.sources.iter().flat_map(|placed| placed.handles.listed().paths())
+    }
+
+    /// The error where one of its files is another than when it was opened: a look at each, none inside.
+    pub fn check(&self) -> Result<()> {
+        self.sources.iter().try_for_each(|placed| placed.handles.check())
+    }
+
+    /// Takes what tells one state of the files from any other, and how they are read and laid, into a hash; `None` where a
+    /// part is not on the disk.
+    pub fn hash(&self, hash: &mut Xxh3) -> Option<()> {
+        hash.update(format!("{:?}", self.grid).as_bytes());
+        for Placed { handles, elevation, lie, grid, .. } in &self.sources {
+            hash.update(format!("{elevation:?} {lie:?} {grid:?}\n").as_bytes());
+            handles.hash(hash)?;
+        }
+        Some(())
+    }
+
+    /// Samples to be read of each file that is warped, for `window` of the mosaic.
+    pub fn warped_parts(&self, window: Window) -> impl Iterator<Item = (&Path, u64)> {
+        let target = self.grid.part(window);
+        self.sources.iter().filter(|placed| matches!(placed.lie, Lie::Apart { .. })).map(move |placed| {
+            let samples = reach(&target, &placed.grid).map_or(0, Window::samples);
+            (placed.handles.path(), samples)
+        })
+    }
+
+    /// Reads the samples of `window`, with a tally of the files' numbers. `progress` hears the share done.
+    pub fn read(&self, window: Window, progress: &dyn Fn(f64)) -> Result<(Raster, Tallies)> {
+        let mut raster = Raster::void(self.grid.part(window))?;
+        let mut tallies = Tallies::new();
+        for (i, placed) in self.sources.iter().enumerate() {
+            let share = |done: f64| progress((i as f64 + done) / self.sources.len() as f64);
+            let mut tally = Tally::new(&placed.elevation);
+            placed.read(window, &mut raster, &mut tally, &share)?;
+            if tally.samples > 0 {
+                tallies.insert(i, tally);
+            }
+        }
+        progress(1.0);
+        Ok((raster, tallies))
+    }
+
+    /// The files of which numbers are tallied, each with its rules and its tally.
+    pub fn tallied<'a>(&'a self, tallies: &'a Tallies) -> Vec<Tallied<'a>> {
+        let of = |(i, tally): (&usize, &'a Tally)| {
+            let placed = self.sources.get(*i)?;
+            Some(Tallied { path: placed.handles.path(), elevation: &placed.elevation, tally })
+        };
+        tallies.iter().filter_map(of).collect()
+    }
+
+    /// Whether there is more than one file.
+    pub fn is_of_several(&self) -> bool {
+        self.sources.len() > 1
+    }
+}
+
+impl Placed {
+    /// `base` is the first file and the grid that it lays; the first itself has none before it.
+    fn open(
+        path: &Path,
+        options: &ReadOptions,
+        base: Option<(&Path, Grid)>,
+        alone: bool,
+        opening: &mut Opening,
+        history: &mut History,
+    ) -> Result<Self> {
+        let mut own = History::default();
+        let source = Source::open(path, options.band.unwrap_or(1), options.allow_remote)?;
+        let source = source.with_chosen_band(options, &mut own)?;
+        if let Some(member) = &source.member {
+            own.convert(format!("{member} is taken of the archive, its only raster"));
+        }
+        let grid = Grid::of(&source, options.cell, alone, &mut own)?;
+        let elevation = Elevation::of(&source, &grid.crs, options, &mut own)?;
+        let later = base.is_some();
+        let (first, onto) = base.unwrap_or_else(|| (path, grid.north_up()));
+        let lie = Lie::of(&grid, &onto).ok_or_else(|| no_way([(path, &grid), (first, &onto)]))?;
+        if matches!(lie, Lie::Apart { .. }) {
+            own.convert("warped to the grid of the first file, cubic");
+        }
+        history.take(own, later.then_some(path));
+        let (width, height) = source.band()?.block_size();
+        let driver = source.dataset.driver();
+        let (parallel, format) = (PARALLEL.contains(&driver.short_name().as_str()), driver.long_name());
+        let handles = Handles::new(source, options.allow_remote, opening);
+        Ok(Self { handles, elevation, grid, lie, stored: [width, height], parallel, format })
+    }
+
+    /// The only file a second time, a turn farther, where it runs round the globe and the crop crosses its outer edges.
+    fn beside_itself(path: &Path, options: &ReadOptions, first: &Self, opening: &mut Opening) -> Result<Option<Self>> {
+        let (grid, flipped) = (first.grid.north_up(), first.lie.bounds(&first.grid));
+        let crop = crop::on(&grid, options.crop)?;
+        let Some(columns) = crop::round_the_globe(&grid, crop) else { return Ok(None) };
+        let mut twin = Self::open(path, options, Some((path, grid)), true, opening, &mut History::default())?;
+        twin.lie = first.lie.moved([flipped.0[0] - columns, 0]);
+        Ok(Some(twin))
+    }
+
+    /// Lays what falls into `window` of the mosaic over `raster`, which holds just that, and counts it in `tally`.
+    fn read(&self, window: Window, raster: &mut Raster, tally: &mut Tally, progress: &dyn Fn(f64)) -> Result<()> {
+        match self.lie {
+            Lie::Aligned { first, flip } => {
+                let first = [0, 1].map(|i| first[i] - window.first[i] as i64);
+                let (own, there) = ([self.grid.columns, self.grid.rows], window.size);
+                if (0..2).any(|i| first[i] >= there[i] as i64 || first[i] + own[i] as i64 <= 0) {
+                    // Not even opened: there may be thousands of files.
+                    return Ok(());
+                }
+                self.handles.read(|source| self.copy(source, first, flip, raster, tally, progress))
+            }
+            Lie::Apart { .. } => {
+                let Some(part) = reach(&raster.grid, &self.grid) else { return Ok(()) };
+                let mut own = Raster::void(self.grid.part(part))?;
+                let first = part.first.map(|first| -(first as i64));
+                let share = |done: f64| progress(done / 2.0);
+                self.handles.read(|source| self.copy(source, first, [false; 2], &mut own, tally, &share))?;
+                raster.lay(&own, &|done| progress((1.0 + done) / 2.0))
+            }
+        }
+    }
+
+    /// Copies the samples, as metres, to where `raster` has them: the file's first column and row, after flipping, at
+    /// `first`. Voids cover nothing.
+    fn copy(
+        &self,
+        source: &Source,
+        first: [i64; 2],
+        flip: [bool; 2],
+        raster: &mut Raster,
+        tally: &mut Tally,
+        progress: &dyn Fn(f64),
+    ) -> Result<()> {
+        let band = source.band()?;
+        let (mask, words) = heard(|| match band.mask_flags()?.is_per_dataset() {
+            true => band.open_mask_band().map(Some),
+            // GDAL takes no transparency for a mask that is not of whole numbers.
+            false => Ok(source.alpha()),
+        });
+        // Without it what is masked would pass for land.
+        let mask = mask.map_err(|_| source.unreadable(words.as_deref()))?;
+        let (own, there) = ([self.grid.columns, self.grid.rows], [raster.grid.columns, raster.grid.rows]);
+        let low = [0, 1].map(|i| first[i].max(0));
+        let end = [0, 1].map(|i| (first[i] + own[i] as i64).min(there[i] as i64));
+        let window = Window { first: low.map(|v| v as usize), size: [0, 1].map(|i| (end[i] - low[i]) as usize) };
+        let mut done = 0;
+        for Window { first: at, size } in window.blocks(block_size(self.stored, own[0])) {
+            // The first sample of the block in the file, counted backwards where flipped.
+            let from = [0, 1].map(|i| {
+                let offset = (at[i] as i64 - first[i]) as usize;
+                if flip[i] { own[i] - offset - size[i] } else { offset }
+            });
+            let mut raw = numbers(source, &band, mask.as_ref(), self.elevation.picture(), from, size)?;
+            turn(&mut raw, size[0], flip);
+            for (row, raw) in raw.chunks_exact(size[0]).enumerate() {
+                let place = (at[1] + row) * there[0] + at[0];
+                self.cover(&mut raster.metres[place..place + size[0]], raw, tally);
+            }
+            done += size[0] * size[1];
+            progress(done as f64 / window.samples() as f64);
+        }
+        Ok(())
+    }
+
+    /// Covers `metres` with those of the numbers `raw`, and counts them in `tally`.
+    fn cover(&self, metres: &mut [f32], raw: &[f64], tally: &mut Tally) {
+        for (metres, raw) in metres.iter_mut().zip(raw) {
+            let reading = self.elevation.reading(*raw);
+            tally.add(self.elevation.number(*raw), reading);
+            if let Reading::Metres(value) = reading {
+                *metres = value as f32;
+            }
+        }
+    }
+}
+
+/// A block of a file's numbers, decoded where it is a picture, NaN where the file masks them.
+fn numbers(
+    source: &Source,
+    band: &RasterBand,
+    mask: Option<&RasterBand>,
+    picture: Option<Encoding>,
+    from: [usize; 2],
+    size: [usize; 2],
+) -> Result<Vec<f64>> {
+    let mut raw = match picture {
+        Some(encoding) => encoding.decode(source, from, size)?,
+        None => block::<f64>(source, band, from, size)?,
+    };
+    if let Some(mask) = mask {
+        let seen = block::<f32>(source, mask, from, size)?;
+        raw.iter_mut().zip(seen).filter(|(_, seen)| *seen == 0.0).for_each(|(raw, _)| *raw = f64::NAN);
+    }
+    Ok(raw)
+}
+
+/// One block of numbers, or the error for a damaged file.
+pub(super) fn block<T: GdalType + Copy>(
+    source: &Source,
+    band: &RasterBand,
+    from: [usize; 2],
+    size: [usize; 2],
+) -> Result<Vec<T>> {
+    let (place, size) = ((from[0] as isize, from[1] as isize), (size[0], size[1]));
+    let (block, complaint) = heard(|| band.read_as::<T>(place, size, size, None));
+    match (block, complaint) {
+        (Ok(block), None) => Ok(block.into_shape_and_vec().1),
+        // A driver that complains and goes on has made the numbers up.
+        (_, words) => Err(source.unreadable(words.as_deref())),
+    }
+}
+
+/// The samples of `source` that cubic convolution needs for all of `target`; `None` where they do not meet.
+pub(super) fn reach(target: &Grid, source: &Grid) -> Option<Window> {
+    let mut places = target.outline(target.whole());
+    Way::between(&target.crs, &source.crs)?.carry(&mut places);
+    source.pixels(&mut places);
+    places.retain(|place| place.is_finite());
+    let [low, high] = span(&places);
+    // Larger cells gather from as many more samples.
+    let ratio = (high - low) / DVec2::new(target.columns as f64, target.rows as f64);
+    let margin = MARGIN as f64 * ratio.max_element().max(1.0);
+    let sizes = [source.columns as f64, source.rows as f64];
+    let [low, end] = [(low - margin).floor().to_array(), (high + margin).ceil().to_array()];
+    let first = [0, 1].map(|i| low[i].clamp(0.0, sizes[i]));
+    let end = [0, 1].map(|i| end[i].clamp(0.0, sizes[i]));
+    let meet = first[0] < end[0] && first[1] < end[1];
+    meet.then(|| Window { first: first.map(|v| v as usize), size: [0, 1].map(|i| (end[i] - first[i]) as usize) })
+}
+
+/// Columns and rows to read at once of a file of `columns` stored in such blocks: whole ones, about [`BLOCK_SAMPLES`] in
+/// all, so that none is unpacked twice.
+fn block_size([width, height]: [usize; 2], columns: usize) -> [usize; 2] {
+    let height = height.clamp(1, BLOCK_SAMPLES / width.clamp(1, BLOCK_SAMPLES));
+    let across = (BLOCK_SAMPLES / height / width.max(1)).max(1) * width;
+    let across = across.min(columns);
+    [across, (BLOCK_SAMPLES / height / across).max(1) * height]
+}
+
+/// Turns a block of rows of `width` numbers round, along the rows and down the columns.
+fn turn(raw: &mut [f64], width: usize, [along, down]: [bool; 2]) {
+    if along && down {
+        raw.reverse();
+    } else if along {
+        raw.chunks_mut(width).for_each(<[f64]>::reverse);
+    } else if down {
+        let rows = raw.len() / width;
+        for r in 0..rows / 2 {
+            let (upper, lower) = raw.split_at_mut((rows - 1 - r) * width);
+            upper[r * width..(r + 1) * width].swap_with_slice(&mut lower[..width]);
+        }
+    }
+}
+
+/// The error for two files, each with its grid, between whose systems no way is known: it is about the one that names
+/// none, else about the first.
+fn no_way([one, other]: [(&Path, &Grid); 2]) -> Error {
+    let nameless = |(_, grid): (&Path, &Grid)| grid.crs.wkt().is_empty();
+    let [(path, grid), (beside, base)] = if nameless(other) && !nameless(one) { [other, one] } else { [one, other] };
+    let name = |crs: &Crs| match crs.label() {
+        label if label.is_empty() => "no named coordinate system".to_owned(),
+        label if ["unknown", "unnamed"].contains(&label.to_lowercase().as_str()) => "an unnamed system".to_owned(),
+        label => label,
+    };
+    let what = format!(
+        "lies in {}, and no way from there to {}, that of {}, is known",
+        name(&grid.crs),
+        name(&base.crs),
+        shown(beside)
+    );
+    let code = base.crs.epsg().map_or("CODE".to_owned(), |code| code.to_string());
+    let remedy = match grid.crs.wkt().is_empty() {
+        true => {
+            format!("draw it alone, or where it is in that too, say so: `gdal_translate -a_srs EPSG:{code} IN OUT.tif`")
+        }
+        false => "draw each alone".to_owned(),
+    };
+    Error::input(path, what, remedy)
+}

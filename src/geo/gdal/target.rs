@@ -1,0 +1,342 @@
+//! The grid that is drawn: north-up, in metres, and which samples of the files it takes.
+//!
+//! A projected north-up grid is taken as it is. Degrees, turned grids and grids to be resampled are warped: degrees to
+//! the UTM zone of the middle of what is drawn, polar stereographic near the poles, others in their own system; square
+//! cells, at whole multiples of their size, as many as fit into the largest rectangle inside the data. Not handled: DEMs
+//! so wide that one map cannot show them.
+
+use std::path::Path;
+
+use glam::DVec2;
+
+use super::crop;
+use super::crs::Way;
+use super::grid::{Grid, span};
+use super::inscribed::largest;
+use super::limits::{Whole, too_many};
+use super::mosaic::reach;
+use super::source::MIN_SIDE;
+use crate::dem::{Crs, History, MAX_SAMPLES, Window};
+use crate::error::{Error, Result, Setting};
+use crate::geo::ReadOptions;
+use crate::message;
+
+/// Pixels from the border of the files to where cubic convolution has all its samples.
+const BORDER: f64 = 1.5;
+/// Samples along a side from which something is left when it is warped.
+const WARPED_SIDE: usize = 5;
+/// A map whose metres differ from those on the ground by more than this share gets a warning.
+const TRUE_SCALE: f64 = 0.01;
+/// Latitude where UTM ends in the north and in the south, degrees.
+const UTM_NORTH: f64 = 84.0;
+const UTM_SOUTH: f64 = -80.0;
+/// Widest and highest DEM in degrees that a zone of UTM shows within two percent of its true size.
+const WIDEST: f64 = 20.0;
+const HIGHEST: f64 = 30.0;
+
+/// What is drawn of the files' grid.
+#[derive(Debug)]
+pub(super) struct Target {
+    /// North-up, in a system of lengths.
+    pub grid: Grid,
+    /// The samples to read for it.
+    pub window: Window,
+    /// Whether it must be warped; else `window` is the grid.
+    pub warps: bool,
+}
+
+impl Target {
+    /// For the grid of the files; `path` is the first, for messages. Fails when too little is left.
+    pub fn of(files: &Grid, path: &Path, options: &ReadOptions, history: &mut History) -> Result<Self> {
+        let crop = crop::on(files, options.crop)?;
+        let window = match crop {
+            None => files.whole(),
+            Some(crop) => files.window(crop).ok_or_else(|| outside(files, path))?,
+        };
+        check_sides(window.size, files, path)?;
+        let target = if files.is_north_up() && !files.crs.is_geographic() && options.resample.is_none() {
+            Self { grid: files.part(window), window, warps: false }
+        } else {
+            Self::warped(files, window, path, crop, options, history)?
+        };
+        check_sides([target.grid.columns, target.grid.rows], files, path)?;
+        if let Some(stretch) = target.stretch().filter(|stretch| (stretch - 1.0).abs() > TRUE_SCALE) {
+            let wrong = if stretch > 1.0 { "too flat" } else { "too steep" };
+            history.assume(format!(
+                "map metres are metres on the ground (this projection shows them {stretch:.2} x as long here, so slopes \
+                 are drawn {wrong}; for true ones warp to UTM: `gdalwarp -t_srs EPSG:{} -r cubic IN OUT.tif`)",
+                target.middle_epsg().unwrap_or(3857)
+            ));
+        }
+        Ok(target)
+    }
+
+    /// How long a metre on the ground is on the map, at the middle; `None` where the place on the globe is unknown.
+    fn stretch(&self) -> Option<f64> {
+        let middle = self.grid.centre(self.grid.whole());
+        let mut places = [middle, middle + DVec2::X * self.grid.cell().x];
+        let ground = Crs::from_epsg(self.middle_epsg()?).ok()?;
+        let length = self.grid.cell().x * self.grid.crs.metres_per_unit()?;
+        Way::between(&self.grid.crs, &ground)?.carry(&mut places);
+        Some(length / (places[1] - places[0]).length()).filter(|stretch| stretch.is_finite())
+    }
+
+    /// EPSG code of the map in metres that is true around the middle.
+    fn middle_epsg(&self) -> Option<u32> {
+        let middle = Way::between(&self.grid.crs, &Crs::lonlat().ok()?)?.place(self.grid.centre(self.grid.whole()))?;
+        Some(metric_epsg(middle))
+    }
+
+    fn warped(
+        files: &Grid,
+        window: Window,
+        path: &Path,
+        crop: Option<[f64; 4]>,
+        options: &ReadOptions,
+        history: &mut History,
+    ) -> Result<Self> {
+        let crs = if files.crs.is_geographic() { zone(files, window, path)? } else { files.crs.clone() };
+        let way = Way::between(&files.crs, &crs).ok_or_else(|| lost(path))?;
+        let back = Way::between(&crs, &files.crs).ok_or_else(|| lost(path))?;
+        let unit = crs.metres_per_unit().ok_or_else(|| lost(path))?;
+        let cell = match options.resample {
+            Some(metres) => metres / unit,
+            None => cell_like(files, window, &way).ok_or_else(|| lost(path))?,
+        };
+        let all = lattice_around(files, window, &way, &crs, cell).ok_or_else(|| lost(path))?;
+        let region = Region { files, crop, back };
+        let inside =
+            |at: &[[usize; 2]]| region.holds(at.iter().map(|[c, r]| all.sample(*c as f64, *r as f64)).collect());
+        check_extent(&all, cell * unit, path)?;
+        let part = largest(all.columns, all.rows, inside).ok_or_else(|| too_small(files, path, cell * unit, &crs))?;
+        let grid = all.part(part);
+        let window = reach(&grid, files).ok_or_else(|| lost(path))?;
+        history.convert(format!(
+            "warped from {} to {}, cubic, {} x {} square cells of {} m, the largest rectangle inside the data",
+            turned(files),
+            if files.crs == crs { "north-up".to_owned() } else { crs.label() },
+            grid.columns,
+            grid.rows,
+            rounded(cell * unit, 6),
+        ));
+        Ok(Self { grid, window, warps: true })
+    }
+
+    /// Cell size in metres at which no more than `fit` samples are left.
+    pub fn metres_to_fit(&self, fit: u64) -> f64 {
+        let cell = self.grid.cell() * self.grid.crs.metres_per_unit().unwrap_or(1.0);
+        let samples = self.grid.columns as f64 * self.grid.rows as f64;
+        // A percent more, for rows and columns are whole.
+        rounded_up((cell.x * cell.y * samples / fit as f64).sqrt() * 1.01)
+    }
+}
+
+/// The part of the files that a warped grid may cover.
+struct Region<'a> {
+    files: &'a Grid,
+    crop: Option<[f64; 4]>,
+    back: Way,
+}
+
+impl Region<'_> {
+    /// Which of `places` in the target's system lie where cubic convolution has all its samples, and inside the crop.
+    fn holds(&self, mut places: Vec<DVec2>) -> Vec<bool> {
+        self.back.carry(&mut places);
+        let cropped = |place: &DVec2| {
+            self.crop.is_none_or(|[west, south, east, north]| {
+                let x = self.files.crs.near(place.x, (west + east) / 2.0);
+                (west..=east).contains(&x) && (south..=north).contains(&place.y)
+            })
+        };
+        let cropped: Vec<_> = places.iter().map(cropped).collect();
+        self.files.pixels(&mut places);
+        let low = DVec2::splat(BORDER);
+        let far = DVec2::new(self.files.columns as f64, self.files.rows as f64) - BORDER;
+        let within = |place: &DVec2| place.cmpge(low).all() && place.cmple(far).all();
+        places.iter().zip(cropped).map(|(place, cropped)| cropped && within(place)).collect()
+    }
+}
+
+/// The system in metres for a window of degrees. Fails where it spans too much of the globe for one.
+fn zone(files: &Grid, window: Window, path: &Path) -> Result<Crs> {
+    let part = files.part(window);
+    let [west, south, east, north] = part.extent();
+    let degrees = 360.0 / files.crs.turn().unwrap_or(360.0);
+    let [width, height] = [(east - west) * degrees, (north - south) * degrees];
+    let lonlat = Crs::lonlat()?;
+    let middle = Way::between(&files.crs, &lonlat).and_then(|way| way.place(files.centre(window)));
+    let middle = middle.ok_or_else(|| lost(path))?;
+    let polar = middle.y > UTM_NORTH || middle.y < UTM_SOUTH;
+    if height > HIGHEST || (width > WIDEST && !polar) {
+        return Err(Error::input(
+            path,
+            format!("spans {width:.0} x {height:.0} degrees, too much of the globe for one map in metres"),
+            message![
+                format!("take at most {WIDEST} x {HIGHEST} degrees, for instance `"),
+                Setting::Crop.at(middle_part(files, &part, degrees)),
+                "`"
+            ],
+        ));
+    }
+    Crs::from_epsg(metric_epsg(middle))
+}
+
+/// A crop in the middle of `part` that one map shows, in the units of the files.
+fn middle_part(files: &Grid, part: &Grid, degrees: f64) -> String {
+    let ([west, south, east, north], centre) = (part.extent(), files.centre(files.whole()));
+    let middle = part.centre(part.whole());
+    let half = DVec2::new(WIDEST, HIGHEST) / degrees / 2.0;
+    let [low, high] = [(middle - half).max(DVec2::new(west, south)), (middle + half).min(DVec2::new(east, north))];
+    let round = |value: f64| rounded(value, 6);
+    let west = files.crs.near(low.x, centre.x);
+    format!("{},{},{},{}", round(west), round(low.y), round(west + high.x - low.x), round(high.y))
+}
+
+/// EPSG code of the UTM zone (WGS 84) of a place in degrees, beyond UTM of polar stereographic.
+fn metric_epsg(DVec2 { x: longitude, y: latitude }: DVec2) -> u32 {
+    if latitude > UTM_NORTH {
+        return 3413;
+    }
+    if latitude < UTM_SOUTH {
+        return 3031;
+    }
+    let zone = ((longitude + 180.0).rem_euclid(360.0) / 6.0).floor().clamp(0.0, 59.0) as u32 + 1;
+    if latitude < 0.0 { 32700 + zone } else { 32600 + zone }
+}
+
+/// Side of a square as large as the cell in the middle of `window`, to three digits where the system changes.
+fn cell_like(files: &Grid, window: Window, way: &Way) -> Option<f64> {
+    let middle = files.to_crs.inverse().transform_point2(files.centre(window));
+    let mut corners = [DVec2::ZERO, DVec2::X, DVec2::Y].map(|step| files.to_crs.transform_point2(middle + step));
+    way.carry(&mut corners);
+    let area = (corners[1] - corners[0]).perp_dot(corners[2] - corners[0]).abs();
+    let side = if files.crs.is_geographic() { rounded(area.sqrt(), 3) } else { area.sqrt() };
+    (side.is_finite() && side > 0.0).then_some(side)
+}
+
+/// All places at whole multiples of `cell` around a window of the files.
+fn lattice_around(files: &Grid, window: Window, way: &Way, crs: &Crs, cell: f64) -> Option<Grid> {
+    let mut places = files.outline(window);
+    way.carry(&mut places);
+    let [low, high] = span(&places);
+    let (low, high) = ((low / cell).floor(), (high / cell).ceil());
+    let size = high - low + 1.0;
+    let matrix = glam::DMat2::from_diagonal(DVec2::new(cell, -cell));
+    let corner = DVec2::new(low.x - 0.5, high.y + 0.5) * cell;
+    let to_crs = glam::DAffine2::from_mat2_translation(matrix, corner);
+    let sound = places.iter().all(|place| place.is_finite()) && size.max_element() < 1e9;
+    sound.then(|| Grid { crs: crs.clone(), to_crs, columns: size.x as usize, rows: size.y as usize })
+}
+
+/// What is odd about the files' grid.
+fn turned(files: &Grid) -> String {
+    match (files.crs.is_geographic(), files.is_north_up()) {
+        (true, _) if files.crs.name().is_empty() => "degrees".into(),
+        (true, _) => format!("degrees ({})", files.crs.label()),
+        (false, false) => "rows that do not run from west to east".into(),
+        (false, true) => format!("cells of {} {}", files.cell().x, files.crs.units()),
+    }
+}
+
+fn check_sides([width, height]: [usize; 2], files: &Grid, path: &Path) -> Result<()> {
+    if width >= MIN_SIDE && height >= MIN_SIDE {
+        return Ok(());
+    }
+    let (cell, units) = (files.cell(), files.crs.units());
+    Err(Error::input(
+        path,
+        message![Setting::Crop, format!(" leaves {width} x {height} samples; a surface needs at least 2 x 2")],
+        format!("widen it: the samples are {} and {} {units} apart", cell.x, cell.y),
+    ))
+}
+
+/// No more places to look at than a DEM twice too large has.
+fn check_extent(all: &Grid, metres: f64, path: &Path) -> Result<()> {
+    let samples = all.columns as f64 * all.rows as f64;
+    let most = 4.0 * MAX_SAMPLES as f64;
+    if samples <= most {
+        return Ok(());
+    }
+    let fit = rounded_up(metres * (samples / MAX_SAMPLES as f64).sqrt());
+    Err(too_many(path, all, &Whole::Warped, fit))
+}
+
+fn lost(path: &Path) -> Error {
+    let what = "its place cannot be put on a map in metres";
+    let remedy = "name the system that its coordinates are in: `gdal_translate -a_srs EPSG:CODE IN OUT.tif`";
+    Error::input(path, what, remedy)
+}
+
+fn too_small(files: &Grid, path: &Path, metres: f64, crs: &Crs) -> Error {
+    if files.columns < WARPED_SIDE || files.rows < WARPED_SIDE {
+        let what =
+            format!("is {} x {} samples; to be warped to metres it needs at least 5 x 5", files.columns, files.rows);
+        return Error::input(path, what, "give a larger grid");
+    }
+    Error::input(
+        path,
+        format!("no 2 x 2 cells of {metres} m lie inside the data"),
+        message![
+            "give smaller cells with ",
+            Setting::Resample.at("M"),
+            format!(
+                ", more of the DEM, or warp it yourself with voids beside it: \
+                 `gdalwarp -t_srs EPSG:{} -r cubic -dstnodata -32768 IN OUT.tif`",
+                crs.epsg().map_or("CODE".to_owned(), |code| code.to_string())
+            )
+        ],
+    )
+}
+
+fn outside(files: &Grid, path: &Path) -> Error {
+    let ([west, south, east, north], units) = (files.extent(), files.crs.units());
+    Error::input(
+        path,
+        message!["no sample lies inside ", Setting::Crop],
+        format!("give E0,N0,E1,N1 within {west},{south},{east},{north} {units}"),
+    )
+}
+
+/// To so many significant digits.
+fn rounded(value: f64, digits: i32) -> f64 {
+    scale(value, digits).map_or(value, |scale| (value * scale).round() / scale)
+}
+
+/// Upward to two significant digits.
+fn rounded_up(value: f64) -> f64 {
+    scale(value, 2).map_or(value, |scale| (value * scale).ceil() / scale)
+}
+
+/// The power of ten by which `value` has so many digits before its point; `None` for 0 and where there is no such power.
+fn scale(value: f64, digits: i32) -> Option<f64> {
+    let power = f64::from(digits - 1) - value.abs().log10().floor();
+    let scale = 10f64.powf(power);
+    (power.abs() < 300.0 && scale.is_normal()).then(|| 10f64.powi(power as i32))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn zones_and_poles() {
+        let zone = |x, y| metric_epsg(DVec2::new(x, y));
+        assert_eq!(zone(-119.53, 37.7), 32611);
+        assert_eq!(zone(174.0, -41.0), 32760);
+        assert_eq!(zone(180.0, 10.0), 32601);
+        assert_eq!(zone(241.0, 37.0), 32611);
+        assert_eq!(zone(0.0, 85.0), 3413);
+        assert_eq!(zone(0.0, -85.0), 3031);
+    }
+
+    #[test]
+    fn digits() {
+        assert_eq!(rounded(27.4961, 3), 27.5);
+        assert_eq!(rounded_up(111.2), 120.0);
+        assert_eq!(rounded_up(0.0451), 0.046);
+        for odd in [0.0, -0.0, f64::MIN_POSITIVE, 5e-324, f64::MAX, f64::INFINITY] {
+            assert_eq!((rounded(odd, 3), rounded_up(odd)), (odd, odd));
+        }
+        assert!(rounded(f64::NAN, 3).is_nan() && rounded_up(f64::NAN).is_nan());
+    }
+}

@@ -1,0 +1,127 @@
+//! What rasters hold.
+
+use std::fmt::{self, Display, Formatter, Write};
+use std::path::PathBuf;
+
+use super::{ReadOptions, Reading, Stage};
+use crate::dem::{Crs, History};
+use crate::error::{Message, Result, shown};
+
+/// What is known of a DEM after reading it whole. `Display` prints a few aligned lines, settings by their names.
+///
+/// Size, extent, cell and range are those of the DEM as it is drawn; where its files are on another grid, `source` says so.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Info {
+    /// The files as the user named them.
+    pub paths: Vec<PathBuf>,
+    /// GDAL's name of the format of the first.
+    pub driver: String,
+    /// The files' own grid in words, where the DEM is warped from it.
+    pub source: Option<String>,
+    /// Samples from west to east.
+    pub columns: usize,
+    /// Samples from north to south.
+    pub rows: usize,
+    /// The coordinate reference system of the DEM as drawn.
+    pub crs: Crs,
+    /// West, south, east and north of the outermost sample centres, metres.
+    pub extent: [f64; 4],
+    /// Degrees of longitude and latitude of the DEM's middle, where its system is known.
+    pub middle: Option<[f64; 2]>,
+    /// Metres between columns and between rows.
+    pub cell: [f64; 2],
+    /// Lowest and highest elevation, metres.
+    pub range: [f32; 2],
+    /// Samples without elevation.
+    pub voids: usize,
+    /// What was done to the files' samples and what was assumed of them.
+    pub history: History,
+}
+
+impl Info {
+    /// Share of the samples without elevation, 0 to 1.
+    pub fn void_share(&self) -> f64 {
+        self.voids as f64 / (self.columns * self.rows) as f64
+    }
+}
+
+/// Reads `paths` as [`read_all`](super::read_all()) does and says what they hold.
+///
+/// # Errors
+/// Those of [`read_all`](super::read_all()).
+pub fn info(paths: &[PathBuf], options: &ReadOptions, progress: &dyn Fn(Stage, f64)) -> Result<Info> {
+    let reading = Reading::new(paths, options)?;
+    let (driver, source) = (reading.format().to_owned(), reading.warped_from());
+    let dem = reading.finish(progress)?;
+    let survey = dem.survey(&|done| progress(Stage::Read, done))?;
+    let mut history = dem.history().clone();
+    survey.assumed.iter().for_each(|clause| history.assume(clause.clone()));
+    let [west, south, east, north] = dem.extent();
+    let middle = dem.georeference().lonlat(glam::DVec2::new((west + east) / 2.0, (south + north) / 2.0))?;
+    Ok(Info {
+        paths: paths.to_owned(),
+        driver,
+        source,
+        columns: dem.columns(),
+        rows: dem.rows(),
+        crs: dem.georeference().world().clone(),
+        extent: dem.extent(),
+        middle: middle.map(|place| place.to_array()),
+        cell: dem.cell().to_array(),
+        range: survey.range.unwrap_or_default(),
+        voids: survey.voids,
+        history,
+    })
+}
+
+impl Display for Info {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        self.write(f, &Message::to_string)
+    }
+}
+
+impl Info {
+    /// The lines of `Display`, with clauses in the words of `told`.
+    pub fn told(&self, told: impl Fn(&Message) -> String) -> String {
+        let mut lines = String::new();
+        // A string takes all that is written.
+        let _ = self.write(&mut lines, &told);
+        lines
+    }
+
+    fn write(&self, f: &mut impl Write, told: &dyn Fn(&Message) -> String) -> fmt::Result {
+        let [west, south, east, north] = self.extent;
+        let crs = name_of(&self.crs);
+        for (i, path) in self.paths.iter().enumerate() {
+            let driver = if i == 0 { format!(" ({})", self.driver) } else { String::new() };
+            writeln!(f, "file       {}{driver}", shown(path))?;
+        }
+        self.source.iter().try_for_each(|source| writeln!(f, "source     {source}"))?;
+        writeln!(f, "size       {} columns x {} rows = {} samples", self.columns, self.rows, self.columns * self.rows)?;
+        writeln!(f, "crs        {crs}")?;
+        writeln!(f, "extent     W {west:.2}  S {south:.2}  E {east:.2}  N {north:.2} m (outermost samples)")?;
+        if let Some([longitude, latitude]) = self.middle {
+            writeln!(f, "middle     longitude {longitude:.5}, latitude {latitude:.5} degrees (WGS 84)")?;
+        }
+        let [across, down] = self.cell.map(short);
+        writeln!(f, "cell       {across} m x {down} m (east x north)")?;
+        writeln!(f, "elevation  {:.1} to {:.1} m", self.range[0], self.range[1])?;
+        write!(f, "voids      {} ({:.1} %)", self.voids, 100.0 * self.void_share())?;
+        self.history.converted().iter().try_for_each(|clause| write!(f, "\nconverted  {}", told(clause)))?;
+        let assumed = self.history.assumed().iter().chain(self.history.usual());
+        assumed.into_iter().try_for_each(|clause| write!(f, "\nassumed    {}", told(clause)))
+    }
+}
+
+/// Its label, or that there is none.
+pub(super) fn name_of(crs: &Crs) -> String {
+    match crs.label() {
+        label if label.is_empty() => "none".to_owned(),
+        label => label,
+    }
+}
+
+/// With at most four decimals.
+fn short(metres: f64) -> f64 {
+    (metres * 1e4).round() / 1e4
+}

@@ -1,0 +1,26 @@
+//! Rasters on the disk as DEMs, and the systems of coordinates that they name.
+//!
+//! GDAL and PROJ are known in `gdal/` alone, behind the traits of [`dem`](crate::dem): [`Tiles`](crate::dem::Tiles) and
+//! [`Transform`](crate::dem::Transform). A build without the feature `gdal` has the same names and reads nothing: each
+//! says so. Not handled: vectors.
+
+mod elevation_unit;
+mod encoding;
+#[cfg(feature = "gdal")]
+mod gdal;
+mod info;
+mod nodata;
+mod read;
+#[cfg(not(feature = "gdal"))]
+mod without;
+
+pub use elevation_unit::ElevationUnit;
+pub use encoding::Encoding;
+pub use info::{Info, info};
+pub use nodata::Nodata;
+pub use read::{ReadOptions, Stage, read, read_all};
+#[cfg(not(feature = "gdal"))]
+pub use without::{Reading, available, write};
+
+#[cfg(feature = "gdal")]
+pub use self::gdal::{Reading, available, write};

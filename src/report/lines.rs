@@ -1,0 +1,63 @@
+//! What a comparison finds, in lines for those who wait.
+
+use super::words::milliseconds;
+use crate::measure::compare::Found;
+use crate::measure::figures::{Convergence, FloorFigures, Run, TruthReport};
+
+/// Lines on what was found: those for everyone, and those for who wants to know more. Pictures speak for themselves.
+pub fn lines(found: &Found<'_>) -> [Vec<String>; 2] {
+    match found {
+        Found::Truth(scene, truth, convergence) => {
+            let mut lines = vec![truth_line(scene, truth)];
+            lines.extend(convergence.and_then(|convergence| convergence_line(scene, convergence)));
+            [lines, Vec::new()]
+        }
+        Found::Run(run) => {
+            [vec![run_line(run)], vec![format!("  masks of the warm frames: {}", run.mask_hashes.join(" "))]]
+        }
+        Found::Picture(..) => [Vec::new(), Vec::new()],
+    }
+}
+
+/// A truth in a line.
+fn truth_line(name: &str, truth: &TruthReport) -> String {
+    let TruthReport { level, length_px, border_px, self_f, facets, rays, truth_ms, .. } = truth;
+    format!(
+        "{name} truth at level {level}: {length_px:.0} px of line ({border_px:.0} of border), F of half the level \
+         {self_f:.4}; {facets} facets, {rays} rays, {:.2} s",
+        truth_ms / 1e3
+    )
+}
+
+/// How coarser levels close in on truth, in a line; `None` with too few of them.
+fn convergence_line(name: &str, convergence: &Convergence) -> Option<String> {
+    let Convergence { slope, fitted_levels, .. } = convergence;
+    let slope = (*slope)?;
+    Some(format!("{name} flip edges close in on truth: slope {slope:.2} over levels {fitted_levels:?}"))
+}
+
+/// A run in a line: every figure beside its time and what was computed.
+fn run_line(run: &Run) -> String {
+    let Run { scene, method, level, precision, recall, f, gaps, spurious, .. } = run;
+    let Run { frame_ms, first_frame_ms, facets, inked, floor, .. } = run;
+    let floor = floor.as_ref().map_or(String::new(), |floor| format!("; {}", floor_words(floor, *frame_ms)));
+    format!(
+        "{scene} {method} level {level}: P {precision:.4} R {recall:.4} F {f:.4}, {gaps} gaps, {spurious} spurious; \
+         {frame_ms:.1} ms (first frame {first_frame_ms:.1}), {facets} facets, {inked} px of ink{floor}"
+    )
+}
+
+/// "98 MB at 4.1 GB/s, a bare copy 9.8 GB/s (frame / copy 2.4), depth draw 40.2 ms (frame / draw 0.6)".
+fn floor_words(floor: &FloorFigures, frame_ms: f64) -> String {
+    let FloorFigures { bytes, copy_ms, draw_ms, lacking, frame_per_copy, frame_per_draw } = floor;
+    // Bytes a millisecond are kilobytes a second.
+    let rate = |ms: f64| *bytes as f64 / ms / 1e6;
+    let mut words = format!("{:.0} MB at {:.2} GB/s", *bytes as f64 / 1e6, rate(frame_ms));
+    if let (Some(ms), Some(per)) = (copy_ms, frame_per_copy) {
+        words += &format!(", a bare copy {:.2} GB/s (frame / copy {per:.2})", rate(*ms));
+    }
+    if let (Some(ms), Some(per)) = (draw_ms, frame_per_draw) {
+        words += &format!(", depth draw {} ms (frame / draw {per:.2})", milliseconds(*ms));
+    }
+    lacking.map_or(words.clone(), |why| format!("{words}, lacking: {why}"))
+}
