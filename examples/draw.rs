@@ -4,8 +4,8 @@ use std::{env, error::Error, fs::File, io::BufWriter};
 
 use hachure::geo::{ReadOptions, read};
 use hachure::gpu::{AdapterChoice, Gpu, Int64};
-use hachure::view::{Fixed, choose};
-use hachure::{ink, plan::Plan, render::Renderer, surface::Surface};
+use hachure::view::{Fixed, Perspective, choose};
+use hachure::{ink, line::Lines, plan::Plan, render::Renderer, surface::Surface};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let [dem, picture] = [1, 2].map(|i| env::args().nth(i));
@@ -13,7 +13,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let surface = Surface::new(read(dem, &ReadOptions::default())?);
     let camera = choose(surface.dem(), Fixed::default(), 60.0, 1200, 600)?;
     let gpu = Gpu::open(&AdapterChoice::Best, Int64::IfPresent)?;
-    let page = Renderer::new(&gpu, &surface, Plan::default(), [1200, 600])?.page(&camera, |_| ())?;
-    let drawing = ink::draw(&page.marks, &ink::Style::for_page(1200));
+    let renderer = Renderer::new(&gpu, &surface, Plan::default(), [1200, 600])?;
+    let page = renderer.page(&camera, |_| ())?;
+    let style = ink::Style::for_page(1200);
+    let lines = Lines::of(&page.marks, &Perspective::new(&camera, renderer.near()), style.tolerance);
+    let drawing = ink::draw(&lines, &style);
     Ok(ink::write_png(&drawing, BufWriter::new(File::create(picture)?))?)
 }

@@ -4,7 +4,7 @@ use std::{env, error::Error, fs::File, io::BufWriter, path::PathBuf, time::Insta
 
 use hachure::geo::{ReadOptions, read};
 use hachure::gpu::{AdapterChoice, Gpu, Int64};
-use hachure::plan::{Method, Plan, Share};
+use hachure::plan::{Method, Plan};
 use hachure::view::{Fixed, choose};
 use hachure::{ink, render::Renderer, surface::Surface};
 
@@ -17,15 +17,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let surface = Surface::new(read(dem, &ReadOptions::default())?);
     let camera = choose(surface.dem(), Fixed::default(), 60.0, 1200, 600)?;
     let gpu = Gpu::open(&AdapterChoice::Best, Int64::IfPresent)?;
-    let methods = [
-        ("walk", Method::Walk),
-        ("toward-away", Method::TowardAway { wide: false }),
-        ("toward-away-wide", Method::TowardAway { wide: true }),
-        ("adjacency-edge", Method::Adjacency { share: Share::Edge }),
-        ("adjacency-corner", Method::Adjacency { share: Share::Corner }),
-    ];
     println!("{:18} {:>9} {:>9}", "method", "inked px", "frame ms");
-    for (name, method) in methods {
+    for method in Method::ALL {
+        let name = method.entry().name;
         let renderer = Renderer::new(&gpu, &surface, Plan { method, ..Plan::default() }, [1200, 600])?;
         let marks = renderer.page(&camera, |_| ())?.marks;
         let mut times = Vec::with_capacity(FRAMES);
@@ -40,7 +34,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         times.sort_by(f64::total_cmp);
         println!("{name:18} {:9} {:9.1}", marks.inked(), times[FRAMES / 2]);
         let mask = File::create(folder.join(name).with_extension("png"))?;
-        ink::write_mask(&marks, BufWriter::new(mask))?;
+        ink::write_mask([1200, 600], marks.places(), BufWriter::new(mask))?;
     }
     Ok(())
 }

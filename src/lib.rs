@@ -5,14 +5,17 @@
 //! ```no_run
 //! use hachure::geo::{ReadOptions, read};
 //! use hachure::gpu::{AdapterChoice, Gpu, Int64};
-//! use hachure::view::{Fixed, choose};
-//! use hachure::{ink, plan::Plan, render::Renderer, surface::Surface};
+//! use hachure::view::{Fixed, Perspective, choose};
+//! use hachure::{ink, line::Lines, plan::Plan, render::Renderer, surface::Surface};
 //!
 //! let surface = Surface::new(read("dem/golden-gate.tif", &ReadOptions::default())?);
 //! let camera = choose(surface.dem(), Fixed::default(), 60.0, 1200, 600)?;
 //! let gpu = Gpu::open(&AdapterChoice::Best, Int64::IfPresent)?;
-//! let page = Renderer::new(&gpu, &surface, Plan::default(), [1200, 600])?.page(&camera, |_| ())?;
-//! let drawing = ink::draw(&page.marks, &ink::Style::for_page(1200));
+//! let renderer = Renderer::new(&gpu, &surface, Plan::default(), [1200, 600])?;
+//! let page = renderer.page(&camera, |_| ())?;
+//! let style = ink::Style::for_page(1200);
+//! let lines = Lines::of(&page.marks, &Perspective::new(&camera, renderer.near()), style.tolerance);
+//! let drawing = ink::draw(&lines, &style);
 //! ink::write_png(&drawing, std::fs::File::create("picture.png")?)?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -29,7 +32,8 @@
 //! | frame | a camera | the mask, on the device: tessellate, facing, rasterize, silhouette, border | [`Renderer::frame`](render::Renderer::frame), GPU |
 //! | read back | the mask | [`Frame`](render::Frame): ink, kind, sub-pixel place and depth a pixel | [`Renderer::read`](render::Renderer::read) |
 //! | page | a camera | [`Page`](render::Page): the ink alone, frame and read-back for each piece of a page of any size | [`Renderer::page`](render::Renderer::page) |
-//! | ink | the page | [`Drawing`](ink::Drawing): layers of smoothed strokes | [`ink::draw`], CPU |
+//! | line | the page | [`Lines`](line::Lines): smoothed chains on the page and in the world | [`Lines::of`](line::Lines::of), CPU |
+//! | ink | the lines | [`Drawing`](ink::Drawing): layers of strokes | [`ink::draw`], CPU |
 //! | write | the drawing | a PNG | [`ink::write_png`] |
 //! | truth | surface and camera | [`Truth`](truth::Truth): where the lines really are | [`Terrain::truth`](truth::Terrain::truth), CPU |
 //! | judge | ink and truth | [`Scores`](truth::metrics::Scores): how far apart they are | [`Judge`](truth::metrics::Judge) |
@@ -52,10 +56,11 @@
 //! | [`dem`] | the grid: held in memory, or read as it is asked for |
 //! | [`geo`] | rasters and systems of coordinates; alone knows GDAL, without which (`--no-default-features`) it reads nothing |
 //! | [`surface`] | vertex normals, PN patches, the lattice and its IDs, bounds of chunks; what is kept of a DEM for them |
-//! | [`view`] | the camera, and a view where none is given |
-//! | [`plan`] | what a frame needs: method, batches |
+//! | [`view`] | the camera, how it sees, and a view where none is given |
+//! | [`plan`] | what a frame needs: the registry of methods, levels, the horizon, pieces, batches; what is left out |
 //! | [`gpu`] | device, buffers, one adapter a pass; the mathematics stands in `shaders/` |
-//! | [`ink`] | mask to chains to strokes to pictures |
+//! | [`line`] | curves with kind and world place: ink traced to chains, smoothed; lines of the world projected |
+//! | [`ink`] | chains to strokes to pictures |
 //! | [`truth`] | where the lines really are, in f64, and how far ink is from them; knows nothing of the GPU |
 //! | [`render`] | the whole algorithm on one screen |
 //! | [`measure`] | trials against truth, costs of passes, floors beside their times; truths that are kept |
@@ -72,6 +77,7 @@ pub mod files;
 pub mod geo;
 pub mod gpu;
 pub mod ink;
+pub mod line;
 pub mod measure;
 pub mod plan;
 pub mod render;

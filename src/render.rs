@@ -13,10 +13,10 @@ use crate::gpu::uniforms::{Counts, near_plane};
 use crate::gpu::work::Work;
 use crate::gpu::{Buffers, CameraUniform, Clock, Extent, Gpu};
 use crate::gpu::{border, facing, project, rasterize, seam, tessellate};
-use crate::ink::{InkRaster, Marks, marks};
+use crate::line::{InkRaster, Marks, marks};
 use crate::message;
 use crate::plan::left_out::{LeftOut, left_out};
-use crate::plan::{Batch, Border, Detail, Method, Piece, Pieces, Plan, Thrift, Visibility, batches, detail};
+use crate::plan::{Batch, Border, Detail, Piece, Pieces, Plan, Thrift, Visibility, batches, detail};
 use crate::surface::rim::{RimEdge, rim, rim_length};
 use crate::surface::{Lattice, Surface};
 use crate::view::Camera;
@@ -320,10 +320,7 @@ impl<'a> Renderer<'a> {
         let uniform = self.camera_uniform(&loaded, camera)?.cut_to(camera, piece.drawn);
         loaded.buffers.write_camera(self.gpu, &uniform)?;
         let mut work = Work::new(self.gpu, &loaded.buffers, timer);
-        work.clear(&["pixels", "ink", "summaries", "counts"])?;
-        if self.plan.method == (Method::TowardAway { wide: true }) {
-            work.clear(&["touched"])?;
-        }
+        work.clear(&[&["pixels", "ink", "summaries", "counts"], self.plan.method.entry().words].concat())?;
         work.empty("candidates", "no_pixels")?;
         work.empty("pairs", "no_pixels")?;
         work.empty("rest", "no_pixels")?;

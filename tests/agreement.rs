@@ -3,7 +3,7 @@
 
 use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
-use hachure::ink::{InkRaster, Kind};
+use hachure::line::{InkRaster, Kind};
 use hachure::plan::{Border, Detail, Method, Plan};
 use hachure::render::Renderer;
 use hachure::surface::Surface;

@@ -7,7 +7,7 @@
 
 use glam::{DVec2, DVec3};
 use hachure::gpu::Gpu;
-use hachure::ink::Kind;
+use hachure::line::Kind;
 use hachure::plan::{Border, Method};
 use hachure::render::Renderer;
 use hachure::surface::Surface;
@@ -22,7 +22,7 @@ use crate::tolerances::{HIDDEN_SHARE, REACH_PX, RECALL, TRUTH_PIECE_PX};
 
 const PAGE: [u32; 2] = [384, 288];
 /// Bit of a pixel's ink that a border line sets, also where a silhouette runs over it.
-const BORDER: u32 = 2;
+pub const BORDER: u32 = 2;
 
 /// A plane that rises to the north-east.
 const PLANE: Form = Form {

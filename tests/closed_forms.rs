@@ -5,7 +5,7 @@
 //! cone that touches it there. The cone's apex stands on a sample and is rounded by a fraction of a cell.
 
 use glam::{DVec2, DVec3};
-use hachure::ink::Kind;
+use hachure::line::Kind;
 use hachure::plan::{Border, Method, Share};
 use hachure::surface::Surface;
 use hachure::truth::Truth;

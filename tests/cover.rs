@@ -1,10 +1,10 @@
 //! The hidden-surface cover: a polyline of the world vanishes behind a ridge and comes back with the cover off.
 
 use glam::{DVec2, DVec3};
-use hachure::ink::{Chain, Cover, project_polyline};
+use hachure::line::{Chain, Cover, Line, project_polyline};
 use hachure::plan::{Border, Method};
 use hachure::surface::Surface;
-use hachure::view::Camera;
+use hachure::view::{Camera, Perspective};
 
 use crate::forms::{Form, about_middle, from_middle};
 use crate::scenes::{gpu, level, look, renderer};
@@ -54,7 +54,8 @@ fn chains(camera: &Camera, a: DVec3, b: DVec3, cover: Cover) -> Vec<Chain> {
     let renderer = renderer(gpu(), &surface, camera, level(4), Method::Walk, Border::Off);
     renderer.frame(camera).expect("a frame");
     let raster = renderer.read().expect("its pixels").raster;
-    project_polyline(&[from_middle(a), from_middle(b)], camera, &raster, renderer.near(), cover)
+    let seen = Perspective::new(camera, renderer.near());
+    project_polyline(&[from_middle(a), from_middle(b)], Line::Own, &seen, &raster, cover)
 }
 
 #[test]

@@ -5,16 +5,16 @@ use std::f64::consts::TAU;
 use glam::{DVec2, DVec3};
 use hachure::error::Error;
 use hachure::files::Output;
-use hachure::ink::{
-    Chain, Cover, Drawing, InkRaster, Kind, Layer, Line, Marks, Pen, Pixel, Recession, Stroke, StrokePoint, Style,
-    project_polyline, stroke, write_png,
+use hachure::ink::{Drawing, Layer, Pen, Stroke, StrokePoint, Style, draw, write_png};
+use hachure::line::{
+    Chain, ChainPoint, Cover, InkRaster, Kind, Line, Lines, Marks, Pixel, Recession, crowded, project_polyline,
 };
-use hachure::view::Camera;
+use hachure::view::{Camera, Perspective};
 
 use crate::ink::raster;
 
-/// A camera towards north, and a raster whose rows from `crest` down show a near surface.
-fn ridge(crest: u32) -> (Camera, InkRaster) {
+/// A camera towards north with the near plane at 1 m, and a raster whose rows from `crest` down show a near surface.
+fn ridge(crest: u32) -> (Perspective, InkRaster) {
     let (width, height) = (100, 80);
     let camera = Camera { eye: DVec3::ZERO, azimuth: 0.0, altitude: 0.0, fov: 60.0, width, height };
     let near_rows = |row: i64| row >= i64::from(crest);
@@ -22,17 +22,19 @@ fn ridge(crest: u32) -> (Camera, InkRaster) {
     let sky = |(i, p): (usize, &Pixel)| {
         if near_rows((i / 100) as i64) { *p } else { Pixel::new(Kind::Sky, DVec2::ZERO, 0.0) }
     };
-    (camera, InkRaster { pixels: pixels.pixels.iter().enumerate().map(sky).collect(), ..pixels })
+    (
+        Perspective::new(&camera, 1.0),
+        InkRaster { pixels: pixels.pixels.iter().enumerate().map(sky).collect(), ..pixels },
+    )
 }
 
 #[test]
 fn cover_hides_what_lies_behind_it() {
-    let near = 1.0;
-    let (camera, raster) = ridge(40);
+    let (seen, raster) = ridge(40);
     // From high above the crest to far below it, 1 km behind the eye's ridge of 100 m.
     let line = [DVec3::new(-100.0, 1000.0, 300.0), DVec3::new(100.0, 1000.0, -300.0)];
-    let shown = project_polyline(&line, &camera, &raster, near, Cover::On);
-    let all = project_polyline(&line, &camera, &raster, near, Cover::Off);
+    let shown = project_polyline(&line, Line::Own, &seen, &raster, Cover::On);
+    let all = project_polyline(&line, Line::Own, &seen, &raster, Cover::Off);
     assert_eq!((shown.len(), all.len()), (1, 1));
     assert_eq!(shown[0].points, all[0].points[..shown[0].points.len()], "the visible part is unchanged");
     let lowest = |chains: &[Chain]| chains[0].points.iter().map(|p| p.place.y).fold(0.0, f64::max);
@@ -42,7 +44,7 @@ fn cover_hides_what_lies_behind_it() {
     // On the surface or before it nothing is hidden, a little behind it everything below the crest is.
     let at = |distance: f64| line.map(|p| DVec3::new(p.x / 10.0, distance, p.z / 10.0));
     let length = |distance| {
-        let chains = project_polyline(&at(distance), &camera, &raster, near, Cover::On);
+        let chains = project_polyline(&at(distance), Line::Own, &seen, &raster, Cover::On);
         chains.iter().map(|c| c.points.len()).sum::<usize>()
     };
     assert!(length(100.0) == length(99.9) && length(100.3) >= length(100.0) - 2);
@@ -51,21 +53,49 @@ fn cover_hides_what_lies_behind_it() {
 
 #[test]
 fn polylines_are_clipped_to_the_near_plane_and_the_page() {
-    let (camera, raster) = ridge(80);
+    let (seen, raster) = ridge(80);
     let through_eye = [DVec3::new(5.0, -1e6, 1.0), DVec3::new(5.0, 1e6, 1.0)];
-    let chains = project_polyline(&through_eye, &camera, &raster, 1.0, Cover::Off);
+    let chains = project_polyline(&through_eye, Line::Own, &seen, &raster, Cover::Off);
     assert_eq!(chains.len(), 1);
     let inside = |p: DVec2| (-1e-6..=100.0 + 1e-6).contains(&p.x) && (-1e-6..=80.0 + 1e-6).contains(&p.y);
     assert!(chains[0].points.iter().all(|p| inside(p.place) && p.depth <= 1.0));
     let behind = [DVec3::new(0.0, -10.0, 0.0), DVec3::new(1.0, -5.0, 0.0)];
-    assert!(project_polyline(&behind, &camera, &raster, 1.0, Cover::Off).is_empty());
-    assert!(project_polyline(&[], &camera, &raster, 1.0, Cover::Off).is_empty());
+    assert!(project_polyline(&behind, Line::Own, &seen, &raster, Cover::Off).is_empty());
+    assert!(project_polyline(&[], Line::Own, &seen, &raster, Cover::Off).is_empty());
     // Off the page and back on it: two chains, not one across the margin.
     let out_and_in = [(-5.0, 0.0), (-99.0, 0.0), (-99.0, 5.0), (-5.0, 5.0)].map(|(x, z)| DVec3::new(x, 20.0, z));
-    assert_eq!(project_polyline(&out_and_in, &camera, &raster, 1.0, Cover::Off).len(), 2);
-    let marks = Marks::from(&raster);
-    let layer = stroke(&chains, Line::Crease, &Style::for_page(100), &marks, Recession::of(&marks));
-    assert_eq!((layer.name.as_str(), layer.strokes.len()), ("crease", 1));
+    assert_eq!(project_polyline(&out_and_in, Line::Own, &seen, &raster, Cover::Off).len(), 2);
+    let drawing = draw(&lines(chains, &raster, &seen), &Style::for_page(100));
+    let layers: Vec<_> = drawing.layers.iter().map(|layer| (layer.name.as_str(), layer.strokes.len())).collect();
+    assert_eq!(layers, [("crease", 1)]);
+}
+
+/// The lines of a page of chains over a raster.
+fn lines(chains: Vec<Chain>, raster: &InkRaster, seen: &Perspective) -> Lines {
+    let marks = Marks::from(raster);
+    let (width, height) = (raster.width, raster.height);
+    Lines { width, height, chains: crowded(&chains, &marks, seen), recession: Recession::of(&marks) }
+}
+
+#[test]
+fn every_kind_of_line_stands_in_a_layer() {
+    let (seen, raster) = ridge(80);
+    let point = |x: f64| {
+        let (place, depth) = (DVec2::new(x, 10.0), 0.01);
+        ChainPoint { place, depth, world: seen.unproject(place, depth.into()), crowd: 0 }
+    };
+    let layer_of = |line: Line| {
+        let chain = Chain { line, points: vec![point(10.0), point(20.0)], closed: false };
+        let layers = draw(&lines(vec![chain], &raster, &seen), &Style::for_page(100)).layers;
+        layers.into_iter().map(|layer| layer.name).collect::<Vec<_>>()
+    };
+    for (kinds, layer) in [
+        (&[Line::Occluding, Line::Skyline][..], "silhouette"),
+        (&[Line::Border], "border"),
+        (&[Line::Shore, Line::Drainage, Line::Ridge, Line::Hachure, Line::Own], "crease"),
+    ] {
+        assert!(kinds.iter().all(|line| layer_of(*line) == [layer]), "{layer}: {kinds:?}");
+    }
 }
 
 /// The page of one layer in black on white, gray values by row and column.

@@ -67,7 +67,7 @@ pub fn look(eye: DVec3, azimuth: f64, altitude: f64, [width, height]: [u32; 2]) 
 
 /// What a frame left: the vertices, and depth and ID of each pixel.
 pub struct Shot {
-    /// 1089 a chunk: x and y in 1/256 px, depth bits, flags; all zero where the chunk was left out.
+    /// 289 a chunk: x and y in 1/256 px, depth bits, flags; all zero where the chunk was left out.
     pub screens: Vec<[i32; 4]>,
     /// Row by row: ID + 1 and depth bits.
     pub pixels: Vec<[u32; 2]>,

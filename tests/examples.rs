@@ -39,8 +39,8 @@ fn methods_are_compared() {
         let row = table.lines().find(|line| line.starts_with(&format!("{name} "))).expect("a row");
         row.split_whitespace().nth(1).expect("a number").parse().expect("a number")
     };
-    assert!(inked("walk") > inked("toward-away") && inked("adjacency-edge") > 2 * inked("walk"), "{table}");
-    for name in ["walk", "toward-away", "toward-away-wide", "adjacency-edge", "adjacency-corner"] {
+    assert!(inked("walk") > inked("toward-away") && inked("adjacency") > 2 * inked("walk"), "{table}");
+    for name in ["walk", "toward-away", "toward-away-wide", "adjacency", "adjacency-corner"] {
         let mask = image::open(folder.path().join(name).with_extension("png")).expect("a mask").to_luma8();
         assert_eq!(mask.pixels().filter(|p| p.0[0] == 0).count(), inked(name), "{name}");
     }

@@ -1,18 +1,32 @@
 //! Ink: from pixels to strokes, on rasters made here.
 
-use glam::DVec2;
-use hachure::ink::{self, Chain, Drawing, InkRaster, Kind, Marks, Pixel, Style, smooth, write_mask};
+use glam::{DVec2, DVec3};
+use hachure::ink::{self, Drawing, Style, write_mask};
+use hachure::line::{self, Chain, InkRaster, Kind, Line, Lines, Marks, Pixel};
+use hachure::view::{Camera, Perspective};
 
 const TOLERANCE: f64 = 0.6;
 
+/// How a page of so many pixels is seen: towards the north, the near plane at 1 m.
+fn perspective([width, height]: [u32; 2]) -> Perspective {
+    let camera = Camera { eye: DVec3::ZERO, azimuth: 0.0, altitude: 0.0, fov: 60.0, width, height };
+    Perspective::new(&camera, 1.0)
+}
+
 /// The chains of a raster's ink.
 fn trace(raster: &InkRaster) -> Vec<Chain> {
-    ink::trace(&Marks::from(raster))
+    line::trace(&Marks::from(raster), &perspective([raster.width, raster.height]))
+}
+
+/// The chains smoothed.
+fn smooth(chains: &[Chain], tolerance: f64) -> Vec<Chain> {
+    line::smooth(chains, &perspective([64, 64]), tolerance)
 }
 
 /// The drawing of a raster's ink.
 fn draw(raster: &InkRaster, style: &Style) -> Drawing {
-    ink::draw(&Marks::from(raster), style)
+    let (marks, perspective) = (Marks::from(raster), perspective([raster.width, raster.height]));
+    ink::draw(&Lines::of(&marks, &perspective, style.tolerance), style)
 }
 
 /// A raster of cover at depth 0.01 with ink wherever `ink` gives a kind and a depth for column and row.
@@ -96,13 +110,13 @@ fn pixel_packs_kind_place_and_depth() {
 fn mask_has_one_bit_a_pixel_and_ink_is_0() {
     let raster = picture(&["#..b.....#.", "...........", "..........#"]);
     let mut file = Vec::new();
-    write_mask(&Marks::from(&raster), &mut file).unwrap();
+    write_mask([11, 3], Marks::from(&raster).places(), &mut file).unwrap();
     assert_eq!((file[24], file[25]), (1, 0), "bit depth and colour type of the PNG header");
     let read = image::load_from_memory(&file).unwrap().to_luma8();
     assert_eq!(read.dimensions(), (11, 3));
     let expected: Vec<u8> = raster.pixels.iter().map(|p| if p.is_ink() { 0 } else { 255 }).collect();
     assert_eq!(read.into_raw(), expected);
-    assert!(write_mask(&Marks::new([0, 0], vec![]), Vec::new()).is_err());
+    assert!(write_mask([0, 0], [], Vec::new()).is_err());
 }
 
 #[test]
@@ -249,6 +263,19 @@ fn border_and_silhouette_go_to_layers_of_their_own() {
     assert_eq!(names, ["border", "silhouette"]);
     assert!(drawing.layers[0].pen.width < drawing.layers[1].pen.width);
     assert!(drawing.layers.iter().all(|l| l.strokes.len() == 1));
+}
+
+#[test]
+fn what_mostly_lies_beside_the_sky_is_skyline() {
+    let mut raster = picture(&["....................", "####################", "...................."]);
+    let line = |raster: &InkRaster| trace(raster)[0].line;
+    assert_eq!(line(&raster), Line::Occluding);
+    let sky = Pixel::new(Kind::Sky, DVec2::ZERO, 0.0);
+    raster.pixels[..8].fill(sky);
+    assert_eq!(line(&raster), Line::Occluding, "9 of 20 pixels");
+    raster.pixels[8..12].fill(sky);
+    assert_eq!(line(&raster), Line::Skyline, "13 of 20 pixels");
+    assert_eq!(trace(&raster).len(), 1, "a line is not cut where the sky begins");
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! What the library's judge is given, and the figures of it that tests ask for.
 
 use glam::DVec2;
-use hachure::ink::{InkRaster, Kind};
+use hachure::line::{InkRaster, Kind};
 use hachure::truth::metrics::Judge;
 use hachure::truth::{Inked, Line, Mask, Piece, Truth};
 

@@ -4,9 +4,9 @@
 use std::fs;
 use std::path::Path;
 
-use clap::{CommandFactory, ValueEnum};
+use clap::CommandFactory;
 use hachure::cli::Arguments;
-use hachure::plan::Share;
+use hachure::cli::choices::default_share;
 use hachure::plan::detail::ERROR_PX;
 
 use crate::cli::{DRAW, Place, refuses, stderr};
@@ -133,7 +133,7 @@ fn defaults(command: &clap::Command) -> Vec<(String, String)> {
 
 #[test]
 fn help_says_the_defaults_that_the_code_has() {
-    let share = Share::default().to_possible_value().expect("a value").get_name().to_owned();
+    let share = default_share().to_owned();
     let expected = [("error_px".to_owned(), ERROR_PX.to_string()), ("share".to_owned(), share)];
     assert_eq!(defaults(&Arguments::command()), expected);
     let arg = clap::Arg::new("x").long("x").help("Metres [default: 7]");

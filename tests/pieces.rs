@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 use hachure::cli::words::line;
 use hachure::dem::Dem;
 use hachure::gpu::Gpu;
-use hachure::ink::{Marks, Pixel};
+use hachure::line::{Marks, Pixel};
 use hachure::plan::pieces::{HALO, LARGEST_PAGE, LARGEST_PIECE, LONGEST_PIECE, Rectangle};
 use hachure::plan::{Border, Method, Piece, Pieces, Plan, Share};
 use hachure::render::Renderer;
@@ -23,7 +23,7 @@ fn page_in(gpu: &Gpu, scene: &Scene<'_>, side: [u32; 2], cut: impl Fn(Piece) -> 
     let pieces = Pieces::new([scene.camera.width, scene.camera.height], side);
     let renderer = Renderer::new(gpu, scene.surface, plan, pieces).expect("a renderer");
     let width = scene.camera.width as usize;
-    let mut page = vec![Pixel::new(hachure::ink::Kind::Sky, DVec2::ZERO, 7.0); width * scene.camera.height as usize];
+    let mut page = vec![Pixel::new(hachure::line::Kind::Sky, DVec2::ZERO, 7.0); width * scene.camera.height as usize];
     for piece in pieces.iter().map(cut) {
         let raster = renderer.draw_piece(&scene.camera, piece).expect("a piece").raster;
         for row in 0..piece.kept.size[1] {

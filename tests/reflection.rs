@@ -2,9 +2,12 @@
 //! shaders by naga, and from the device by wrapper kernels that return what a WGSL function returns.
 
 use std::borrow::Cow;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
 use std::mem::offset_of;
+use std::path::Path;
 
+use glam::DVec2;
 use hachure::cli::words::line;
 use hachure::gpu::buffers::Room;
 use hachure::gpu::pass::reflect;
@@ -12,6 +15,7 @@ use hachure::gpu::sizes::{BLOCK, LARGEST_BINDING, fits, written};
 use hachure::gpu::uniforms::{BatchUniform, ChunkUniform, Counts, SceneUniform};
 use hachure::gpu::{CameraUniform, adjacency, border, candidates, compose, facing, pairs};
 use hachure::gpu::{project, rasterize, rasterize_large, seam, tessellate, toward_away, walk, walk_rest};
+use hachure::line::{Kind, Pixel};
 use hachure::measure::depth_draw;
 use hachure::plan::Visibility;
 use hachure::plan::batches::{BATCH_CHUNKS, PART_CHUNKS};
@@ -19,34 +23,46 @@ use hachure::surface::rim::RimEdge;
 use hachure::surface::{Lattice, lattice, quadtree, tile};
 use wgpu::naga;
 
-use crate::drawn::{BESIDE, CLIPPED, MISSING};
 use crate::scenes::level;
+use crate::{borders, drawn, kernels};
 
+mod bound;
+mod declared;
 mod on_device;
 
-/// Entry point and source of every composed shader.
-fn shaders() -> Vec<(&'static str, Cow<'static, str>)> {
-    let mut all = vec![
+pub use bound::{Bound, bound};
+
+/// Entry point and source of every pass over a raster of this kind, where vertices are kept or found anew.
+pub fn shaders(visibility: Visibility, keeps_vertices: bool) -> Vec<(&'static str, Cow<'static, str>)> {
+    vec![
         ("tessellate", tessellate::SOURCE.into()),
+        ("seam", seam::SOURCE.into()),
         ("facing", facing::SOURCE.into()),
-        ("border", border::SOURCE.into()),
-        ("compose", compose::SOURCE.into()),
-        ("adjacency", adjacency::SOURCE.into()),
-        ("toward_away", toward_away::SOURCE.into()),
+        ("project", project::SOURCE.into()),
+        ("rasterize", rasterize::source(visibility).into()),
+        ("rasterize_large", rasterize_large::source(visibility).into()),
         ("candidates", candidates::SOURCE.into()),
         ("pairs", pairs::SOURCE.into()),
-        ("walk", walk::source(true).into()),
-        ("walk", walk::source(false).into()),
-        ("walk_rest", walk_rest::source(true).into()),
-        ("walk_rest", walk_rest::source(false).into()),
-        ("seam", seam::SOURCE.into()),
-        ("project", project::SOURCE.into()),
-    ];
-    for visibility in [Visibility::Key64, Visibility::Key32, Visibility::TwoDepths] {
-        all.push(("rasterize", rasterize::source(visibility).into()));
-        all.push(("rasterize_large", rasterize_large::source(visibility).into()));
-    }
-    all
+        ("walk", walk::source(keeps_vertices).into()),
+        ("walk_rest", walk_rest::source(keeps_vertices).into()),
+        ("toward_away", toward_away::SOURCE.into()),
+        ("adjacency", adjacency::SOURCE.into()),
+        ("border", border::SOURCE.into()),
+        ("compose", compose::SOURCE.into()),
+    ]
+}
+
+/// Entry point and source of every composed shader of a frame.
+fn all_shaders() -> BTreeSet<(&'static str, Cow<'static, str>)> {
+    let rasters = [Visibility::Key64, Visibility::Key32, Visibility::TwoDepths];
+    rasters.into_iter().flat_map(|raster| [true, false].map(|keeps| shaders(raster, keeps))).flatten().collect()
+}
+
+/// Those, and the shaders of the depth draw.
+fn all_modules() -> Vec<(&'static str, naga::Module)> {
+    let drawn = [depth_draw::BY_PRIMITIVE, depth_draw::BY_VERTEX].map(|source| ("depth_draw", source.into()));
+    let all = all_shaders().into_iter().chain(drawn);
+    all.map(|(name, source)| (name, reflect(name, &source).expect("valid WGSL with this entry point").module)).collect()
 }
 
 /// Members of a struct: name, offset and size in bytes; and the struct's own size.
@@ -89,43 +105,68 @@ fn shared_structs() -> Vec<(&'static str, Layout)> {
     ]
 }
 
-/// The constants of a module that are one number.
-fn constants(module: &naga::Module) -> BTreeMap<String, i64> {
+/// The constants of a module.
+///
+/// # Panics
+/// Where one is no number.
+fn constants(module: &naga::Module) -> BTreeMap<String, f64> {
     let value = |c: &naga::Constant| match module.global_expressions[c.init] {
-        naga::Expression::Literal(naga::Literal::U32(n)) => Some(i64::from(n)),
-        naga::Expression::Literal(naga::Literal::I32(n)) => Some(i64::from(n)),
-        _ => None,
+        naga::Expression::Literal(naga::Literal::U32(n)) => f64::from(n),
+        naga::Expression::Literal(naga::Literal::I32(n)) => f64::from(n),
+        naga::Expression::Literal(naga::Literal::F32(n)) => f64::from(n),
+        ref other => panic!("{:?} is no number: {other:?}", c.name),
     };
-    module.constants.iter().filter_map(|(_, c)| Some((c.name.clone()?, value(c)?))).collect()
+    module.constants.iter().filter_map(|(_, c)| Some((c.name.clone()?, value(c)))).collect()
+}
+
+/// Constants of Rust by their own names, as numbers.
+macro_rules! named {
+    ($($path:path),+ $(,)?) => {
+        [$((stringify!($path).rsplit("::").next().unwrap_or_default(), $path as f64)),+]
+    };
 }
 
 /// Name and value of every constant both know.
-fn shared_constants() -> Vec<(&'static str, i64)> {
+fn shared_constants() -> Vec<(&'static str, f64)> {
     let words = PART_CHUNKS * lattice::CHUNK_WORDS;
     assert!(words.is_power_of_two());
-    vec![
-        ("CELL_STEPS", i64::from(lattice::CELL_STEPS)),
-        ("CHUNK_QUADS", i64::from(lattice::CHUNK_QUADS)),
-        ("CHUNK_FACETS", i64::from(lattice::CHUNK_FACETS)),
-        ("CHUNK_SIDE", i64::from(lattice::CHUNK_SIDE)),
-        ("CHUNK_VERTICES", i64::from(lattice::CHUNK_VERTICES)),
-        ("CHUNK_WORDS", i64::from(lattice::CHUNK_WORDS)),
-        ("NO_SLOT", i64::from(quadtree::NO_SLOT)),
-        ("PART_WORDS_LOG2", i64::from(words.ilog2())),
-        ("STRIP_FACETS", i64::from(rasterize::STRIP_FACETS)),
-        ("INNER", i64::from(quadtree::INNER)),
-        ("NORTH", i64::from(lattice::NORTH)),
-        ("EAST", i64::from(lattice::EAST)),
-        ("SOUTH", i64::from(lattice::SOUTH)),
-        ("WEST", i64::from(lattice::WEST)),
-        ("TILE_SIDE", i64::from(tile::TILE_SIDE)),
-        ("TILE_SAMPLES", i64::from(tile::TILE_SAMPLES)),
-        ("COLUMNS", i64::from(BLOCK[0])),
-        ("ROWS", i64::from(BLOCK[1])),
-        ("BESIDE", i64::from(BESIDE)),
-        ("CLIPPED", i64::from(CLIPPED)),
-        ("MISSING", i64::from(MISSING)),
+    let kind = |kind| f64::from(bytemuck::cast::<Pixel, [u32; 2]>(Pixel::new(kind, DVec2::ZERO, 0.0))[0]);
+    let mut all = named![
+        lattice::CELL_STEPS,
+        lattice::CHUNK_QUADS,
+        lattice::CHUNK_BLOCKS,
+        lattice::CHUNK_FACETS,
+        lattice::CHUNK_SIDE,
+        lattice::CHUNK_VERTICES,
+        lattice::CHUNK_WORDS,
+        lattice::NORTH,
+        lattice::EAST,
+        lattice::SOUTH,
+        lattice::WEST,
+        quadtree::NO_SLOT,
+        quadtree::INNER,
+        tile::TILE_SIDE,
+        tile::TILE_SAMPLES,
+        rasterize::STRIP_FACETS,
+        // What tests say of shaders.
+        drawn::BESIDE,
+        drawn::CLIPPED,
+        drawn::MISSING,
+        kernels::UNITS,
+        borders::BORDER,
     ]
+    .to_vec();
+    all.extend([
+        ("PART_WORDS_LOG2", f64::from(words.ilog2())),
+        ("COLUMNS", f64::from(BLOCK[0])),
+        ("ROWS", f64::from(BLOCK[1])),
+        ("MOST_GROUPS", f64::from(wgpu::Limits::default().max_compute_workgroups_per_dimension)),
+        ("KIND_SKY", kind(Kind::Sky)),
+        ("KIND_COVER", kind(Kind::Cover)),
+        ("KIND_SILHOUETTE", kind(Kind::Silhouette)),
+        ("KIND_BORDER", kind(Kind::Border)),
+    ]);
+    all
 }
 
 /// What a module says of shared names, and how it differs from Rust.
@@ -169,7 +210,7 @@ fn globals_with_vec3(module: &naga::Module) -> Vec<String> {
 #[test]
 fn every_composed_shader_is_valid_and_agrees_with_rust() {
     let mut seen = Vec::new();
-    for (name, source) in shaders() {
+    for (name, source) in all_shaders() {
         let reflection = reflect(name, &source).expect("valid WGSL with this entry point");
         assert!(!reflection.bindings.is_empty(), "{name} binds nothing");
         assert!(reflection.workgroup.iter().product::<u32>() >= 32, "{name}: {:?}", reflection.workgroup);
@@ -184,6 +225,23 @@ fn every_composed_shader_is_valid_and_agrees_with_rust() {
 }
 
 #[test]
+fn every_shader_file_is_composed_here() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders");
+    let composed: Vec<_> = all_shaders().into_iter().map(|(_, source)| source).collect();
+    let drawn = [depth_draw::BY_PRIMITIVE, depth_draw::BY_VERTEX];
+    let mut files = 0;
+    for entry in fs::read_dir(folder).expect("the shaders") {
+        let path = entry.expect("an entry").path();
+        let text = fs::read_to_string(&path).expect("WGSL");
+        let found =
+            composed.iter().any(|source| source.contains(&text)) || drawn.iter().any(|source| source.contains(&text));
+        assert!(found, "{} is in no shader that is looked into", path.display());
+        files += 1;
+    }
+    assert!(files > 20, "{files} files");
+}
+
+#[test]
 fn the_depth_draw_binds_what_our_passes_leave() {
     for source in [depth_draw::BY_PRIMITIVE, depth_draw::BY_VERTEX] {
         let reflection = reflect("depth_draw", source).expect("valid WGSL with this entry point");
@@ -195,8 +253,8 @@ fn the_depth_draw_binds_what_our_passes_leave() {
 #[test]
 fn one_name_has_one_value_in_all_shaders() {
     let mut values = BTreeMap::new();
-    for (name, source) in shaders() {
-        for (constant, value) in constants(&reflect(name, &source).expect("valid WGSL").module) {
+    for (name, module) in all_modules() {
+        for (constant, value) in constants(&module) {
             let first = *values.entry(constant.clone()).or_insert(value);
             assert_eq!(first, value, "{constant} in {name}");
         }

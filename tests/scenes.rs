@@ -5,8 +5,8 @@ use std::sync::OnceLock;
 use glam::DVec3;
 use hachure::dem::Dem;
 use hachure::gpu::{AdapterChoice, Gpu, Int64};
-use hachure::ink::InkRaster;
-use hachure::plan::{Border, Method, Plan, Share};
+use hachure::line::InkRaster;
+use hachure::plan::{Border, Method, Plan};
 use hachure::render::{Frame, Renderer};
 use hachure::surface::{Level, Surface};
 use hachure::truth::Mask;
@@ -15,14 +15,16 @@ use hachure::view::Camera;
 pub use crate::common::gpu;
 use crate::judged::mask;
 
-/// Every method with the name messages give it.
-pub const METHODS: [(&str, Method); 5] = [
-    ("walk", Method::Walk),
-    ("toward-away", Method::TowardAway { wide: false }),
-    ("toward-away wide", Method::TowardAway { wide: true }),
-    ("adjacency edge", Method::Adjacency { share: Share::Edge }),
-    ("adjacency corner", Method::Adjacency { share: Share::Corner }),
-];
+/// Every method with its name.
+pub const METHODS: [(&str, Method); Method::ALL.len()] = {
+    let mut named = [("", Method::Walk); Method::ALL.len()];
+    let mut i = 0;
+    while i < named.len() {
+        named[i] = (Method::ALL[i].entry().name, Method::ALL[i]);
+        i += 1;
+    }
+    named
+};
 
 /// The same adapter without 64-bit atomics.
 ///

@@ -6,7 +6,7 @@ use std::path::Path;
 use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
 use hachure::geo::{ReadOptions, read};
-use hachure::ink::Kind;
+use hachure::line::Kind;
 use hachure::plan::{Border, Method, Share};
 use hachure::surface::Surface;
 use hachure::view::Camera;

@@ -27,13 +27,9 @@ fn stamping(int64: Int64) -> &'static Gpu {
 
 /// The passes of a frame with border lines, in their order; vertices are made anew or stay.
 fn passes(method: Method, anew: bool) -> Vec<&'static str> {
-    let silhouette: &[&str] = match method {
-        Method::Walk => &["candidates", "pairs", "walk", "walk_rest"],
-        Method::TowardAway { .. } => &["toward_away"],
-        Method::Adjacency { .. } => &["adjacency"],
-    };
     let vertices: &[&str] = if anew { &["tessellate"] } else { &[] };
-    [&[CLEAR], vertices, &["facing", "project", "rasterize", "rasterize_large"], silhouette, &["border"]].concat()
+    [&[CLEAR], vertices, &["facing", "project", "rasterize", "rasterize_large"], method.entry().passes, &["border"]]
+        .concat()
 }
 
 /// What is wrong with the time of a frame of these passes.

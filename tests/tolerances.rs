@@ -260,3 +260,14 @@ pub const DEVIATION_SHARE: f64 = 0.2;
 ///
 /// Example: of 400 px at most 24, two or three at each end of eight lines.
 pub const COARSE_STRAYS: f64 = 0.06;
+
+/// How far the place in the world of a point of a chain may lie on the page from the point's own, px.
+///
+/// Example: coordinates of 4 000 000 m are told to 1e-9 m in f64; 100 m away, at 1 000 px per unit of tangent, 1e-8 px.
+pub const REPROJECTED_PX: f64 = 1e-5;
+
+/// How far a traced silhouette may lie from the surface, square to it, px at its distance: a pixel has the depth of its
+/// centre, and its chain runs up to a pixel from there and is smoothed by 0.6 px.
+///
+/// Example: seen with 330 px per unit of tangent from 1 000 m, 2 px are 6 m.
+pub const CHAIN_OFF_SURFACE_PX: f64 = 2.0;

@@ -7,9 +7,9 @@ use std::sync::Arc;
 
 use glam::DVec2;
 use hachure::dem::{Crs, Dem, Georeference, History, Tiles, Tiling, Transform, Unit, Window, fractal};
-use hachure::error::{Error, Result};
+use hachure::error::{Error, Message, Result};
 use hachure::gpu::{AdapterChoice, Gpu, Int64};
-use hachure::ink::Marks;
+use hachure::line::Marks;
 use hachure::plan::Plan;
 use hachure::render::Renderer;
 use hachure::surface::Surface;
@@ -55,7 +55,7 @@ impl Tiles for Relief {
         0
     }
 
-    fn assumed(&self) -> Vec<String> {
+    fn assumed(&self) -> Vec<Message> {
         vec!["nobody surveyed it".into()]
     }
 
@@ -95,7 +95,7 @@ fn heights_are_drawn_wherever_they_come_from() {
     let held = Dem::from_heights(SIZE[0], cell, DVec2::ZERO, heights);
     let filed = Dem::from_tiles(Arc::new(Relief), cell, DVec2::ZERO, 1.0, 1 << 20);
     assert!(filed.is_filed() && filed.stamp() == Some(1));
-    assert_eq!(filed.survey(&|_| ()).expect("a survey").assumed, ["nobody surveyed it"]);
+    assert_eq!(filed.survey(&|_| ()).expect("a survey").assumed, [Message::from("nobody surveyed it")]);
     let (held, filed) = (drawn(held), drawn(filed));
     assert!(held.0 > 1000 && held.1.inked() > 100, "nothing is drawn");
     assert_eq!(held, filed, "the same heights make another drawing");

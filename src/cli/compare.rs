@@ -13,14 +13,14 @@ use super::values::{self, LevelChoice, Size};
 use super::viewpoint::{View, ViewArguments};
 use super::views::{self, NamedView};
 use super::words::{flag, told};
-use super::{blank, cells};
+use super::{blank, cells, choices};
 use crate::cache::Cache;
 use crate::error::{Error, Result, Setting, shown};
 use crate::files::Taken;
 use crate::geo::Reading;
 use crate::gpu::Gpu;
 use crate::gpu::sizes::page_fits;
-use crate::measure::compare::{Compared, Comparison, Found, Hearing, METHODS};
+use crate::measure::compare::{Compared, Comparison, Found, Hearing};
 use crate::measure::depth_draw;
 use crate::measure::figures::Run;
 use crate::plan::detail::ERROR_PX;
@@ -33,10 +33,8 @@ use crate::report::{error_time_svg, report_html, write_csv};
 use crate::surface::{Level, Surface};
 use crate::truth::Terrain;
 
-/// The end of `hachure compare --help`.
+/// The end of `hachure compare --help`, below the names of the methods.
 const EXAMPLES: &str = "\
-Methods: walk, toward-away, toward-away-wide, adjacency (facets that share an edge), adjacency-corner.
-
 Times are medians of warm frames; each moves the eye 1 m along the view, the first frame stands apart. Truth is found on
 the CPU and kept in the user's folder for caches.
 
@@ -55,7 +53,7 @@ Examples:
 
 /// Flags of `hachure compare`, as typed.
 #[derive(Debug, clap::Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = format!("Methods: {}.\n\n{EXAMPLES}", choices::methods()))]
 pub struct CompareArguments {
     #[command(flatten)]
     terrain: TerrainArguments,
@@ -85,9 +83,9 @@ pub struct CompareArguments {
 
     /// Methods to compare [default: all]
     #[arg(long, value_name = "NAME,...", value_parser = values::method, value_delimiter = ',', help_heading = "Method")]
-    methods: Vec<(&'static str, Method)>,
+    methods: Vec<Method>,
     /// Whether the visible border of the DEM and of its voids is drawn and judged
-    #[arg(long, default_value = "on", help_heading = "Method")]
+    #[arg(long, value_parser = choices::border(), default_value = choices::default_border(), help_heading = "Method")]
     border: Border,
 
     /// Subdivisions of a cell's edge for truth: 8, 16, 32 or 64 [default: no visible cell's edge longer than a pixel]
@@ -121,11 +119,7 @@ struct Job {
 /// Whatever went wrong; no page stands in the folder then.
 pub fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
     let sizes = arguments.sizes();
-    each_once(Setting::Sizes, sizes.iter().map(|size| format!("{}x{}", size.width, size.height)))?;
-    each_once(Setting::Levels, arguments.levels.iter().map(LevelChoice::to_string))?;
-    each_once(Setting::Methods, arguments.methods.iter().map(|(name, _)| (*name).to_owned()))?;
-    sizes.iter().try_for_each(|size| page_fits([size.width, size.height]))?;
-    arguments.view.check()?;
+    arguments.check(&sizes)?;
     let jobs = arguments.jobs(talk)?;
     let comparison = arguments.comparison();
     let views = || jobs.iter().flat_map(|job| &job.views);
@@ -155,19 +149,10 @@ pub fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
     };
     let (mut scenes, mut runs) = (Vec::new(), Vec::new());
     for (job, reading) in jobs.iter().zip(readings) {
-        let dem = arguments.terrain.read(reading, talk)?;
-        // Truth looks at every sample again and again.
-        dem.held()?;
-        dem.check_patches()?;
-        cells::warn(&dem, arguments.exaggeration, talk);
-        let surface = Surface::new(dem);
+        let surface = arguments.surface(reading, talk)?;
         let terrain = Terrain::new(&surface);
         for (named, size) in job.views.iter().flat_map(|view| sizes.iter().map(move |size| (view, *size))) {
-            // Heights above ground are above the level of `hachure draw`.
-            let mut view = named.view.view(&surface, LevelChoice::Auto.near())?;
-            (view.camera.width, view.camera.height) = (size.width, size.height);
-            let name = scene_name(&named.name, size, &sizes);
-            view.warn_below_ground(&surface, LevelChoice::Auto.near(), talk);
+            let (name, view) = (scene_name(&named.name, size, &sizes), view_of(named, size, &surface, talk)?);
             let found = comparison.scene(&gpu, &name, &terrain, &view.camera, &hearing);
             let found = found.map_err(|error| blank::with_place(error, &surface, &view))?;
             let (scene, of_scene) = arguments.scene(name, &job.files, &surface, &view, found);
@@ -177,28 +162,58 @@ pub fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
         }
     }
     talk.progress("writing", 1.0);
-    let results = Results {
-        version: SCHEMA,
-        hachure: env!("CARGO_PKG_VERSION"),
-        command: std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect::<Vec<_>>().join(" "),
-        machine: machine(&gpu),
-        truth: least_sure(&scenes),
-        scenes,
-        runs,
-    };
     let (page, pictures) = (folder.page(), drawn.into_inner());
-    folder.publish(&contents(&results, &pictures)?, &pictures)?;
+    folder.publish(&contents(&results(&gpu, scenes, runs), &pictures)?, &pictures)?;
     talk.say(&format!("report: {}", shown(&page)))
 }
 
+/// The view of a file, or of flags, on a page of this size.
+fn view_of(named: &NamedView, size: Size, surface: &Surface, talk: &Talk) -> Result<View> {
+    // Heights above ground are above the level of `hachure draw`.
+    let mut view = named.view.view(surface, LevelChoice::Auto.near())?;
+    (view.camera.width, view.camera.height) = (size.width, size.height);
+    view.warn_below_ground(surface, LevelChoice::Auto.near(), talk);
+    Ok(view)
+}
+
+fn results(gpu: &Gpu, scenes: Vec<Scene>, runs: Vec<Run>) -> Results {
+    Results {
+        version: SCHEMA,
+        hachure: env!("CARGO_PKG_VERSION"),
+        command: std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect::<Vec<_>>().join(" "),
+        machine: machine(gpu),
+        truth: least_sure(&scenes),
+        scenes,
+        runs,
+    }
+}
+
 impl CompareArguments {
+    /// Whether files can be named after what is compared, pages drawn, and the view seen.
+    fn check(&self, sizes: &[Size]) -> Result<()> {
+        each_once(Setting::Sizes, sizes.iter().map(|size| format!("{}x{}", size.width, size.height)))?;
+        each_once(Setting::Levels, self.levels.iter().map(LevelChoice::to_string))?;
+        each_once(Setting::Methods, self.methods.iter().map(|method| method.entry().name.to_owned()))?;
+        sizes.iter().try_for_each(|size| page_fits([size.width, size.height]))?;
+        self.view.check()
+    }
+
+    fn surface(&self, reading: Reading, talk: &Talk) -> Result<Surface> {
+        let dem = self.terrain.read(reading, talk)?;
+        // Truth looks at every sample again and again.
+        dem.held()?;
+        dem.check_patches()?;
+        cells::warn(&dem, self.exaggeration, talk);
+        Ok(Surface::new(dem))
+    }
+
     fn sizes(&self) -> Vec<Size> {
         if self.sizes.is_empty() { vec![self.view.size] } else { self.sizes.clone() }
     }
 
     fn comparison(&self) -> Comparison {
         Comparison {
-            methods: if self.methods.is_empty() { METHODS.to_vec() } else { self.methods.clone() },
+            methods: if self.methods.is_empty() { Method::ALL.to_vec() } else { self.methods.clone() },
             levels: self.levels.iter().map(|level| level.detail(self.error_px)).collect(),
             repeat: self.repeat,
             floor: self.floor,

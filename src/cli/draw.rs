@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use std::thread;
 use std::time::Instant;
 
-use clap::ValueEnum;
 use serde::Serialize;
 
 use super::cache::CacheArguments;
@@ -17,18 +16,22 @@ use super::terrain::{TerrainArguments, warn_of_survey};
 use super::values::{self, LevelChoice};
 use super::viewpoint::{View, ViewArguments, ViewReport};
 use super::words::told;
-use super::{blank, cells};
+use super::{blank, cells, choices};
+use crate::cache::Cache;
 use crate::dem::Dem;
 use crate::error::{Error, Result, Setting, shown};
 use crate::files::Taken;
+use crate::geo::Reading;
 use crate::gpu::Gpu;
-use crate::ink::{self, Style};
+use crate::ink::{self, Drawing, Style};
+use crate::line::Lines;
 use crate::measure::figures::DrawnLevel;
 use crate::plan::detail::ERROR_PX;
 use crate::plan::left_out::{LeftOut, levels};
 use crate::plan::{Border, Detail, Method, Plan, Share};
 use crate::render::{Page, PassTime, Renderer};
 use crate::surface::Surface;
+use crate::view::Perspective;
 
 /// Warm frames behind the median of `--json`; a page in pieces, which may take minutes, has one.
 const WARM_FRAMES: usize = 9;
@@ -74,18 +77,18 @@ pub struct DrawArguments {
     error_px: Option<f64>,
 
     /// How silhouettes are found
-    #[arg(long, default_value = "walk", help_heading = "Method")]
-    method: MethodName,
+    #[arg(long, value_parser = choices::family(), default_value = Method::default().entry().family, help_heading = "Method")]
+    method: Method,
     /// toward-away only: away surface counts wherever it touches the pixel or the neighbour it is compared with
     #[arg(long, help_heading = "Method")]
     wide: bool,
     #[arg(
-        long, help_heading = "Method",
-        help = format!("adjacency only: what neighbouring facets share [default: {}]", name(Share::default()))
+        long, value_parser = choices::share(), help_heading = "Method",
+        help = format!("adjacency only: what neighbouring facets share [default: {}]", choices::default_share())
     )]
     share: Option<Share>,
     /// Whether to draw the visible border of the DEM and of its voids
-    #[arg(long, default_value = "on", help_heading = "Method")]
+    #[arg(long, value_parser = choices::border(), default_value = choices::default_border(), help_heading = "Method")]
     border: Border,
 
     /// Say at which levels parts of the DEM are drawn, what the frame did without, why, and what that saved
@@ -95,21 +98,6 @@ pub struct DrawArguments {
     device: DeviceArguments,
     #[command(flatten)]
     cache: CacheArguments,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum MethodName {
-    /// Walk the lattice between neighbouring pixels: complete
-    Walk,
-    /// Compare toward and away depths: never a false line, but gaps
-    TowardAway,
-    /// Compare the facets of neighbouring pixels: floods small facets
-    Adjacency,
-}
-
-/// What is typed for a choice.
-fn name(choice: impl ValueEnum) -> String {
-    choice.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
 }
 
 /// `--json`.
@@ -156,80 +144,47 @@ struct LeftOutReport {
     saved: Option<String>,
 }
 
+/// A DEM on a device, and its page as seen from somewhere.
+struct Drawn<'a> {
+    gpu: &'a Gpu,
+    surface: &'a Surface,
+    renderer: &'a Renderer<'a>,
+    view: &'a View,
+    page: Page,
+}
+
 /// Draws.
 ///
 /// # Errors
 /// Whatever went wrong; nothing stands under a final name then.
 pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
-    let method = arguments.method()?;
-    arguments.detail()?;
-    let size = [arguments.view.size.width, arguments.view.size.height];
-    arguments.view.check()?;
-    arguments.outputs.check()?;
+    let plan = arguments.check()?;
     let started = Instant::now();
     let reading = arguments.terrain.open(&arguments.terrain.dems, arguments.exaggeration)?;
     let mut outputs = arguments.outputs.open(Taken::inputs(reading.files()))?;
-    let dem = arguments.terrain.read(reading, talk)?;
-    // The renderer holds all samples on the device.
-    talk.progress("computing normals", 0.1);
-    if !dem.is_filed() {
-        dem.check_patches()?;
-    }
-    let surface = Surface::new(dem);
+    let surface = arguments.surface(reading, talk)?;
     let cache = arguments.cache.cache();
-    let prepare = || {
-        cache.prepare(&surface, &|message| talk.warn(&told(message)), &|done| {
-            talk.progress("looking at every sample, once for this file", 0.1 + 0.1 * done);
-        })
-    };
-    // Drivers take their time to start. Samples stay on this thread, where HDF5 keeps silent.
-    let (prepared, gpu) = thread::scope(|scope| {
-        let open = || arguments.device.open_silently(wgpu::Features::empty());
-        match thread::Builder::new().spawn_scoped(scope, open) {
-            Ok(gpu) => (prepare(), gpu.join().unwrap_or_else(|panic| resume_unwind(panic))),
-            // The system has no thread left.
-            Err(_) => (prepare(), open()),
-        }
-    });
-    prepared?;
-    surface.dem().check_patches()?;
-    cells::warn(surface.dem(), arguments.exaggeration, talk);
-    warn_of_survey(surface.dem(), talk)?;
-    let view = arguments.view.view(&surface, arguments.level.near())?;
-    view.warn_below_ground(&surface, arguments.level.near(), talk);
-    talk.say(&format!("view: {}", view.flags()))?;
-    view.lonlat_flag().map_or(Ok(()), |flag| talk.say(&format!("or with: {flag}")))?;
+    let gpu = arguments.prepare(&surface, &cache, talk)?;
+    let view = arguments.look(&surface, talk)?;
     let gpu = gpu?;
     DeviceArguments::tell(&gpu, talk)?;
     talk.progress("drawing", 0.3);
-    let renderer = Renderer::new(&gpu, &surface, Plan::new(arguments.detail()?, method, arguments.border), size)?;
+    let renderer = Renderer::new(&gpu, &surface, plan, [view.camera.width, view.camera.height])?;
     let page = renderer.page(&view.camera, |share| talk.progress("drawing", 0.3 + 0.3 * share))?;
     cache.discard_damaged(surface.dem(), &|message| talk.warn(&told(message)));
-    let drawing = ink::draw(&page.marks, &Style::for_page(view.camera.width));
-    let report = || {
-        talk.progress("timing more frames", 0.6);
-        arguments.report(&gpu, &surface, &renderer, &view, method, &page)
-    };
-    let report = outputs.want_report().then(report).transpose()?;
+    let drawn = Drawn { gpu: &gpu, surface: &surface, renderer: &renderer, view: &view, page };
+    let drawing = drawn.stroked();
+    let report = outputs.want_report().then(|| arguments.report(&drawn, plan.method, talk)).transpose()?;
     if arguments.explain || talk.is_verbose() {
         explain(talk, &renderer, &renderer.left_out(&view.camera)?, report.as_ref())?;
     }
     talk.progress("writing", 0.8);
-    outputs.write(&drawing, &page, report.as_ref())?;
+    outputs.write(&drawing, &drawn.page, report.as_ref())?;
     surface.dem().check()?;
     talk.progress("writing", 1.0);
     outputs.publish()?;
-    let flat_earth = arguments.flat_earth(&renderer, &view, &page);
-    flat_earth.map_or(Ok(()), |flat_earth| talk.say(&flat_earth.words()))?;
-    talk.say(&format!(
-        "{}: {} facets, {} of {} pixels inked, {:.2} s",
-        shown(arguments.outputs.drawing()),
-        renderer.facets(),
-        page.marks.inked(),
-        u64::from(view.camera.width) * u64::from(view.camera.height),
-        started.elapsed().as_secs_f64()
-    ))?;
-    blank::warn(&renderer, &surface, &view, arguments.level, &page, talk);
+    arguments.tell(&drawn, started, talk)?;
+    blank::warn(&renderer, &surface, &view, arguments.level, &drawn.page, talk);
     Ok(())
 }
 
@@ -239,6 +194,58 @@ impl DrawArguments {
         self.outputs.fill_stdout()
     }
 
+    /// What is to be drawn, if the flags go together.
+    fn check(&self) -> Result<Plan> {
+        let (method, detail) = (self.method()?, self.detail()?);
+        self.view.check()?;
+        self.outputs.check()?;
+        Ok(Plan::new(detail, method, self.border))
+    }
+
+    /// Reads the DEM and finds its normals.
+    fn surface(&self, reading: Reading, talk: &Talk) -> Result<Surface> {
+        let dem = self.terrain.read(reading, talk)?;
+        // The renderer holds all samples on the device.
+        talk.progress("computing normals", 0.1);
+        if !dem.is_filed() {
+            dem.check_patches()?;
+        }
+        Ok(Surface::new(dem))
+    }
+
+    /// Looks at the samples of a DEM that stays in its file, while the device opens: drivers take their time to start. What
+    /// opening comes to is told after all that is said of the DEM and its view.
+    fn prepare(&self, surface: &Surface, cache: &Cache, talk: &Talk) -> Result<Result<Gpu>> {
+        let prepare = || {
+            cache.prepare(surface, &|message| talk.warn(&told(message)), &|done| {
+                talk.progress("looking at every sample, once for this file", 0.1 + 0.1 * done);
+            })
+        };
+        // Samples stay on this thread, where HDF5 keeps silent.
+        let (prepared, gpu) = thread::scope(|scope| {
+            let open = || self.device.open_silently(wgpu::Features::empty());
+            match thread::Builder::new().spawn_scoped(scope, open) {
+                Ok(gpu) => (prepare(), gpu.join().unwrap_or_else(|panic| resume_unwind(panic))),
+                // The system has no thread left.
+                Err(_) => (prepare(), open()),
+            }
+        });
+        prepared?;
+        surface.dem().check_patches()?;
+        Ok(gpu)
+    }
+
+    /// The view, told as flags that repeat it, and what is to be said of it and of the DEM.
+    fn look(&self, surface: &Surface, talk: &Talk) -> Result<View> {
+        cells::warn(surface.dem(), self.exaggeration, talk);
+        warn_of_survey(surface.dem(), talk)?;
+        let view = self.view.view(surface, self.level.near())?;
+        view.warn_below_ground(surface, self.level.near(), talk);
+        talk.say(&format!("view: {}", view.flags()))?;
+        view.lonlat_flag().map_or(Ok(()), |flag| talk.say(&format!("or with: {flag}")))?;
+        Ok(view)
+    }
+
     fn detail(&self) -> Result<Detail> {
         if self.error_px.is_some() && self.level != LevelChoice::Auto {
             return Err(Error::setting(Setting::ErrorPx, "goes with --level auto only", "leave one of them out"));
@@ -246,29 +253,25 @@ impl DrawArguments {
         Ok(self.level.detail(self.error_px.unwrap_or(ERROR_PX)))
     }
 
+    /// The variant of the method that further flags ask for.
     fn method(&self) -> Result<Method> {
-        if self.wide && self.method != MethodName::TowardAway {
+        if self.wide && !matches!(self.method, Method::TowardAway { .. }) {
             return Err(Error::setting(Setting::Wide, "goes with toward-away only", "add --method toward-away"));
         }
-        if self.share.is_some() && self.method != MethodName::Adjacency {
+        if self.share.is_some() && !matches!(self.method, Method::Adjacency { .. }) {
             return Err(Error::setting(Setting::Share, "goes with adjacency only", "add --method adjacency"));
         }
         Ok(match self.method {
-            MethodName::Walk => Method::Walk,
-            MethodName::TowardAway => Method::TowardAway { wide: self.wide },
-            MethodName::Adjacency => Method::Adjacency { share: self.share.unwrap_or_default() },
+            Method::TowardAway { .. } => Method::TowardAway { wide: self.wide },
+            Method::Adjacency { .. } => Method::Adjacency { share: self.share.unwrap_or_default() },
+            plain => plain,
         })
     }
 
-    fn report(
-        &self,
-        gpu: &Gpu,
-        surface: &Surface,
-        renderer: &Renderer<'_>,
-        view: &View,
-        method: Method,
-        page: &Page,
-    ) -> Result<Report> {
+    /// Times more frames and says what was done.
+    fn report(&self, drawn: &Drawn, method: Method, talk: &Talk) -> Result<Report> {
+        talk.progress("timing more frames", 0.6);
+        let Drawn { gpu, surface, renderer, view, page } = drawn;
         let camera = &view.camera;
         let pieces = renderer.pieces().iter().len();
         let warm_frames = if pieces == 1 { WARM_FRAMES } else { 1 };
@@ -277,7 +280,7 @@ impl DrawArguments {
         Ok(Report {
             version: env!("CARGO_PKG_VERSION"),
             dem: DemReport::of(&self.terrain.dems, surface.dem()),
-            method: method.name(),
+            method: method.entry().family,
             level: self.detail()?.into(),
             facets: renderer.facets(),
             inked: page.marks.inked(),
@@ -291,13 +294,37 @@ impl DrawArguments {
             adapter: format!("{} ({})", gpu.info.name, gpu.info.driver_info),
             int64: gpu.int64,
             view: view.report(surface.dem().georeference(), self.exaggeration),
-            flat_earth: self.flat_earth(renderer, view, page),
+            flat_earth: drawn.flat_earth(),
             left_out: renderer.left_out(camera)?.into_iter().map(LeftOutReport::of).collect(),
         })
     }
 
+    /// The last line: what was drawn, and how long it took.
+    fn tell(&self, drawn: &Drawn, started: Instant, talk: &Talk) -> Result<()> {
+        let Drawn { renderer, view, page, .. } = drawn;
+        drawn.flat_earth().map_or(Ok(()), |flat_earth| talk.say(&flat_earth.words()))?;
+        talk.say(&format!(
+            "{}: {} facets, {} of {} pixels inked, {:.2} s",
+            shown(self.outputs.drawing()),
+            renderer.facets(),
+            page.marks.inked(),
+            u64::from(view.camera.width) * u64::from(view.camera.height),
+            started.elapsed().as_secs_f64()
+        ))
+    }
+}
+
+impl Drawn<'_> {
+    /// The drawing of the page.
+    fn stroked(&self) -> Drawing {
+        let style = Style::for_page(self.page.marks.width);
+        let perspective = Perspective::new(&self.view.camera, self.renderer.near());
+        ink::draw(&Lines::of(&self.page.marks, &perspective, style.tolerance), &style)
+    }
+
     /// Where the DEM lies on Earth.
-    fn flat_earth(&self, renderer: &Renderer<'_>, view: &View, page: &Page) -> Option<FlatEarth> {
+    fn flat_earth(&self) -> Option<FlatEarth> {
+        let Self { renderer, view, page, .. } = self;
         view.is_on_earth().then(|| FlatEarth::of(&page.marks, &view.camera, renderer.near()))?
     }
 }

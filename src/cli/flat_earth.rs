@@ -7,7 +7,7 @@
 use serde::Serialize;
 
 use super::blank::length;
-use crate::ink::Marks;
+use crate::line::Marks;
 use crate::view::Camera;
 
 /// Mean radius of the Earth, metres.

@@ -3,6 +3,7 @@
 pub mod blank;
 pub mod cache;
 pub mod cells;
+pub mod choices;
 pub mod compare;
 pub mod device;
 pub mod draw;

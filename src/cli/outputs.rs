@@ -98,7 +98,8 @@ impl Outputs {
     pub fn write(&mut self, drawing: &ink::Drawing, page: &Page, report: Option<&impl Serialize>) -> Result<()> {
         self.drawing.write(|out| ink::write_png(drawing, out))?;
         if let Some(mask) = &mut self.mask {
-            mask.write(|out| ink::write_mask(&page.marks, out))?;
+            let marks = &page.marks;
+            mask.write(|out| ink::write_mask([marks.width, marks.height], marks.places(), out))?;
         }
         if let (Some(json), Some(report)) = (&mut self.json, report) {
             json.write(|out| {

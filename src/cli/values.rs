@@ -8,7 +8,7 @@ use glam::DVec2;
 use crate::dem::LARGEST_SIDE as MOST_SAMPLES;
 use crate::geo::{ElevationUnit, Encoding, Nodata};
 use crate::gpu::AdapterChoice;
-use crate::measure::compare::{LEAST_TRUTH_LEVEL, METHODS};
+use crate::measure::compare::LEAST_TRUTH_LEVEL;
 use crate::plan::pieces::LARGEST_PAGE;
 use crate::plan::{Detail, Method};
 use crate::surface::Level;
@@ -244,9 +244,9 @@ pub fn repeat(text: &str) -> Result<u32, String> {
 }
 
 /// A method with all it takes, by the name that reports have for it.
-pub fn method(text: &str) -> Result<(&'static str, Method), String> {
-    let names = METHODS.map(|(name, _)| name).join(", ");
-    METHODS.into_iter().find(|(name, _)| *name == text).ok_or_else(|| format!("want some of {names}"))
+pub fn method(text: &str) -> Result<Method, String> {
+    let names = Method::ALL.map(|method| method.entry().name).join(", ");
+    Method::named(text).ok_or_else(|| format!("want some of {names}"))
 }
 
 /// `cpu`, `gpu` or words of an adapter's name.

@@ -41,6 +41,7 @@ pub(super) fn to_fill([columns, rows]: [usize; 2], is_filed: bool) -> Message {
     }
 }
 
-fn mebibytes(memory: u64) -> Part {
+/// So much memory, as one sets it.
+pub fn mebibytes(memory: u64) -> Part {
     Setting::Memory.at(format!("{memory}MiB"))
 }

@@ -25,7 +25,7 @@ use filed::Filed;
 
 pub use bands::Band;
 pub use georeference::Georeference;
-pub use held::{LARGEST_SIDE, MAX_SAMPLES, held_bytes};
+pub use held::{LARGEST_SIDE, MAX_SAMPLES, held_bytes, mebibytes};
 pub use history::History;
 pub use overviews::{Entry, OverviewBuilder, Overviews};
 pub use samples::Samples;

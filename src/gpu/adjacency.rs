@@ -2,7 +2,6 @@
 
 use super::{Extent, Gpu, Pass};
 use crate::error::Result;
-use crate::plan::Share;
 
 /// The composed shader.
 pub const SOURCE: &str = crate::shader!("scene", "lattice", "ink", "adjacency");
@@ -11,9 +10,8 @@ pub const SOURCE: &str = crate::shader!("scene", "lattice", "ink", "adjacency");
 ///
 /// # Errors
 /// See [`Pass::new`].
-pub fn pass(gpu: &Gpu, share: Share, constants: &[(&str, f64)]) -> Result<Pass> {
-    let shared = if share == Share::Edge { 2.0 } else { 1.0 };
-    Pass::new(gpu, "adjacency", SOURCE, &[constants, &[("shared_vertices", shared)]].concat())
+pub fn pass(gpu: &Gpu, constants: &[(&str, f64)]) -> Result<Pass> {
+    Pass::new(gpu, "adjacency", SOURCE, constants)
 }
 
 /// One invocation a pixel.

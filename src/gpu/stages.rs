@@ -6,7 +6,7 @@ use super::{Extent, Gpu, Pass};
 use super::{border, compose, facing, project, rasterize, rasterize_large, seam, silhouette, tessellate};
 use crate::dem::Dem;
 use crate::error::Result;
-use crate::plan::{Batch, Method, Plan, Thrift, batches};
+use crate::plan::{Batch, Plan, Thrift, Visibility, batches};
 
 /// The passes of a plan.
 pub struct Stages {
@@ -27,14 +27,14 @@ impl Stages {
     /// See [`Pass::new`].
     pub fn new(gpu: &Gpu, dem: &Dem, plan: &Plan, has_rim: bool, room: Room, size: [u32; 2]) -> Result<Self> {
         let flag = |on: bool| f64::from(u8::from(on));
-        let constants = [
+        let visibility = plan.method.visibility(gpu.int64);
+        let of_frame = [
             ("has_voids", flag(dem.voids() > 0)),
             ("facing_parts", f64::from(facing_parts(room))),
-            ("two_depths", flag(matches!(plan.method, Method::TowardAway { .. }))),
+            ("two_depths", flag(visibility == Visibility::TwoDepths)),
             ("thrifty", flag(plan.thrift == Thrift::LeaveOut)),
-            ("conservative", flag(plan.method == Method::TowardAway { wide: true })),
         ];
-        let visibility = plan.method.visibility(gpu.int64);
+        let constants = [&of_frame, plan.method.entry().constants].concat();
         let stage = |pass: Pass| Stage { pass, groups: Vec::new() };
         let of_batch = || {
             Ok([

@@ -11,9 +11,8 @@ pub const SOURCE: &str = crate::shader!("scene", "ink", "toward_away");
 ///
 /// # Errors
 /// See [`Pass::new`].
-pub fn pass(gpu: &Gpu, wide: bool, constants: &[(&str, f64)]) -> Result<Pass> {
-    let wide = f64::from(u8::from(wide));
-    Pass::new(gpu, "toward_away", SOURCE, &[constants, &[("wide", wide)]].concat())
+pub fn pass(gpu: &Gpu, constants: &[(&str, f64)]) -> Result<Pass> {
+    Pass::new(gpu, "toward_away", SOURCE, constants)
 }
 
 /// One invocation a block of pixels.

@@ -1,20 +1,19 @@
 //! The drawing as data: a page with layers, a layer with a pen and strokes.
 //!
-//! [`stroke`] gives chains the width of ink drawings: lines thin with distance, and where many crowd together, so that
-//! far hills do not clot. Cost: a look at nine rows of pixels for each point.
+//! [`draw`] gives chains the width of ink drawings: lines thin with distance, and where many crowd together, so that
+//! far hills do not clot.
 
 use glam::DVec2;
 
-use super::{Chain, ChainPoint, Line, Marks};
+use crate::line::{Chain, ChainPoint, Line, Lines, Recession};
 
-/// Half the side of the square in which ink counts as crowding, px.
-const CROWD: i64 = 4;
-/// Ink in that square, in px, up to which nothing is thinned: two lines side by side.
+/// Ink about a point, in px, up to which nothing is thinned: two lines side by side.
 const ROOM: f64 = 18.0;
-/// Least ratio of the farthest to the nearest ink that uses the whole range of widths.
-const LEAST_RANGE: f64 = 2.0;
-/// Longest piece of a stroke between two widths, px.
-const STEP: f64 = 6.0;
+
+/// Names of layers.
+const BORDER: &str = "border";
+const SILHOUETTE: &str = "silhouette";
+const CREASE: &str = "crease";
 
 /// A pen: one width, one colour.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -61,13 +60,9 @@ impl Style {
         }
     }
 
-    /// The pen and the layer name for a line.
-    fn layer(&self, line: Line) -> (Pen, &'static str) {
-        match line {
-            Line::Silhouette => (self.silhouette, "silhouette"),
-            Line::Border => (self.border, "border"),
-            Line::Crease => (self.crease, "crease"),
-        }
+    /// The layers from bottom to top, each with its pen.
+    fn layers(&self) -> [(&'static str, Pen); 3] {
+        [(BORDER, self.border), (SILHOUETTE, self.silhouette), (CREASE, self.crease)]
     }
 }
 
@@ -113,74 +108,39 @@ pub struct StrokePoint {
     pub width: f64,
 }
 
-/// How line width recedes from the near to the far ink of a frame.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Recession {
-    /// ln depth of the near ink.
-    near: f64,
-    /// ln depth of the far ink.
-    far: f64,
-}
-
-impl Recession {
-    /// From the nearest to the farthest ink, 5 % left out at either end; at least from one distance to twice that.
-    pub fn of(marks: &Marks) -> Self {
-        let mut depths: Vec<f32> = marks.ink().map(|mark| mark.pixel.depth()).collect();
-        depths.retain(|&d| d > 0.0);
-        depths.sort_unstable_by(f32::total_cmp);
-        let quantile = |percent: usize| {
-            let depth = depths.get(depths.len() * percent / 100).or(depths.last());
-            f64::from(depth.copied().unwrap_or(1.0)).ln()
-        };
-        let near = quantile(95);
-        Self { near, far: quantile(5).min(near - LEAST_RANGE.ln()) }
-    }
-
-    /// 0 for near ink, 1 for far ink, even in ln distance.
-    fn of_point(&self, point: &ChainPoint) -> f64 {
-        ((self.near - point.log_depth()) / (self.near - self.far)).clamp(0.0, 1.0)
+/// The drawing of a page's lines.
+///
+/// Layers from bottom to top: `border`, `silhouette`, `crease`; one without a line is left out.
+pub fn draw(lines: &Lines, style: &Style) -> Drawing {
+    let of = |name: &str| {
+        let chains = lines.chains.iter().filter(|chain| layer(chain.line) == name);
+        let drawn = chains.filter(|chain| style.dots || chain.points.len() > 1);
+        drawn.map(|chain| stroke(chain, style, &lines.recession)).collect()
+    };
+    let layers = style.layers().map(|(name, pen)| Layer { name: name.to_owned(), pen, strokes: of(name) });
+    Drawing {
+        width: lines.width,
+        height: lines.height,
+        paper: style.paper,
+        layers: layers.into_iter().filter(|layer| !layer.strokes.is_empty()).collect(),
     }
 }
 
-/// The layer of all chains of this line. Widths recede with depth and where the page is crowded with ink.
-pub fn stroke(chains: &[Chain], line: Line, style: &Style, marks: &Marks, recession: Recession) -> Layer {
-    let (pen, name) = style.layer(line);
+/// The layer that a kind of line stands in.
+fn layer(line: Line) -> &'static str {
+    match line {
+        Line::Occluding | Line::Skyline => SILHOUETTE,
+        Line::Border => BORDER,
+        Line::Shore | Line::Drainage | Line::Ridge | Line::Hachure | Line::Own => CREASE,
+    }
+}
+
+/// The stroke of a chain. Widths recede with depth and where the page is crowded with ink.
+fn stroke(chain: &Chain, style: &Style, recession: &Recession) -> Stroke {
     let width = |point: &ChainPoint| {
-        let receding = 1.0 - (1.0 - style.far_width) * recession.of_point(point);
-        (receding * (ROOM / crowd(marks, point.place)).sqrt().min(1.0)).max(style.far_width)
+        let receding = 1.0 - (1.0 - style.far_width) * recession.share(point);
+        (receding * (ROOM / f64::from(point.crowd.max(1))).sqrt().min(1.0)).max(style.far_width)
     };
-    let strokes = chains
-        .iter()
-        .filter(|chain| chain.line == line && (style.dots || chain.points.len() > 1))
-        .map(|chain| Stroke {
-            points: stepped(chain).map(|p| StrokePoint { place: p.place, width: width(&p) }).collect(),
-            closed: chain.closed,
-        })
-        .collect();
-    Layer { name: name.to_owned(), pen, strokes }
-}
-
-/// The chain's points with others between them, so that widths can change at least every [`STEP`] px.
-fn stepped(chain: &Chain) -> impl Iterator<Item = ChainPoint> {
-    let next = |i: usize| chain.points.get(i + 1).or(chain.points.first().filter(|_| chain.closed));
-    chain.points.iter().enumerate().flat_map(move |(i, a)| {
-        let b = next(i).unwrap_or(a);
-        let steps = (a.place.distance(b.place) / STEP).ceil().max(1.0) as u32;
-        (0..steps).map(move |s| {
-            let t = f64::from(s) / f64::from(steps);
-            let log = a.log_depth() + (b.log_depth() - a.log_depth()) * t;
-            ChainPoint { place: a.place.lerp(b.place, t), depth: log.exp() as f32 }
-        })
-    })
-}
-
-/// Inked pixels in the square about a place.
-fn crowd(marks: &Marks, place: DVec2) -> f64 {
-    let (column, row) = (place.x.floor() as i64, place.y.floor() as i64);
-    let in_row = |row: i64| {
-        let first = marks.row(row).partition_point(|mark| i64::from(mark.column) < column - CROWD);
-        let near = marks.row(row)[first..].iter().take_while(|mark| i64::from(mark.column) <= column + CROWD);
-        near.filter(|mark| mark.pixel.is_ink()).count()
-    };
-    (row - CROWD..=row + CROWD).map(in_row).sum::<usize>().max(1) as f64
+    let points = chain.points.iter().map(|point| StrokePoint { place: point.place, width: width(point) });
+    Stroke { points: points.collect(), closed: chain.closed }
 }

@@ -9,14 +9,14 @@ use std::cell::Cell;
 use glam::DVec2;
 
 use super::figures::{Convergence, DrawnLevel, LevelOffset, Run, TruthReport};
+use super::rendered::try_plan;
 use super::trial::{Trial, moved, picture_names};
 use super::truths::Kept;
 use crate::cache::Cache;
 use crate::error::{Error, Message, Result, Setting};
 use crate::gpu::Gpu;
-use crate::ink::InkRaster;
 use crate::message;
-use crate::plan::{Border, Detail, Method, Plan, Share};
+use crate::plan::{Border, Detail, Method, Plan};
 use crate::surface::Level;
 use crate::truth::metrics::{FRAGMENT, Judge, Measured, Offsets};
 use crate::truth::{Line, Mask, Terrain, Truth};
@@ -29,20 +29,11 @@ const TRUTH_SHARE: f64 = 0.5;
 /// Coarser truths whose median offset is so many times that of half the level are far enough from truth's own error.
 const ABOVE_OWN_ERROR: f64 = 3.0;
 
-/// The methods by the names a comparison has for them.
-pub const METHODS: [(&str, Method); 5] = [
-    ("walk", Method::Walk),
-    ("toward-away", Method::TowardAway { wide: false }),
-    ("toward-away-wide", Method::TowardAway { wide: true }),
-    ("adjacency", Method::Adjacency { share: Share::Edge }),
-    ("adjacency-corner", Method::Adjacency { share: Share::Corner }),
-];
-
 /// What is compared in every scene.
 #[derive(Debug, Clone)]
 pub struct Comparison {
-    /// Name and method.
-    pub methods: Vec<(&'static str, Method)>,
+    /// What is compared.
+    pub methods: Vec<Method>,
     /// Each method is run at each.
     pub levels: Vec<Detail>,
     /// Warm frames behind a median, at least one.
@@ -83,7 +74,7 @@ pub enum Shown<'a> {
     /// Truth, drawn one pixel wide.
     Truth(&'a Mask),
     /// The ink of a frame.
-    Mask(&'a InkRaster),
+    Mask(&'a Mask),
     /// How ink differs from truth.
     Difference(&'a Mask, &'a Measured<'a>),
 }
@@ -112,7 +103,8 @@ struct Truths {
 impl Comparison {
     /// File names of a scene's pictures.
     pub fn picture_names(&self, scene: &str) -> Vec<String> {
-        let runs = self.levels.iter().flat_map(|level| self.methods.iter().map(move |(name, _)| (*name, *level)));
+        let runs =
+            self.levels.iter().flat_map(|level| self.methods.iter().map(move |method| (method.entry().name, *level)));
         let of_runs = runs.flat_map(|(method, level)| picture_names(scene, method, level.into()));
         of_runs.chain([truth_name(scene)]).collect()
     }
@@ -136,24 +128,23 @@ impl Comparison {
         (to.found)(Found::Picture(&picture, Shown::Truth(&Mask::of_truth(&truth))))?;
         let mut runs = Vec::new();
         for &level in &self.levels {
-            for &(method_name, method) in &self.methods {
+            for &method in &self.methods {
+                let method_name = method.entry().name;
                 let done = runs.len() as f64 / (self.levels.len() * self.methods.len()) as f64;
                 let words = format!("{name}: {method_name} at level {}", DrawnLevel::from(level));
                 (to.stage)(&words, TRUTH_SHARE + (1.0 - TRUTH_SHARE) * done);
                 let trial = Trial {
-                    gpu,
-                    surface: terrain.surface,
                     camera,
-                    plan: Plan::new(level, method, self.border),
                     scene: name,
                     method: method_name,
+                    level: level.into(),
                     repeat: self.repeat,
-                    floor: self.floor,
                     judge: &judge,
                     truth_pop: pop,
                     found: to.found,
                 };
-                let run = trial.run()?;
+                let plan = Plan::new(level, method, self.border);
+                let run = try_plan(&trial, gpu, terrain.surface, plan, self.floor)?;
                 (to.found)(Found::Run(&run))?;
                 runs.push(run);
             }

@@ -6,8 +6,9 @@
 //! one number, counted in the shaders for one vertex, facet or pixel (the constants below) and rounded; addresses and
 //! flow are not in it. Both follow from how much a frame worked through, [`Quantities`], alone.
 //!
-//! Does not handle: facets that cover a pixel farther away than another (each pixel of land counts once), the steps of
-//! walks (each pixel with open pairs counts as one pair), pixels of border lines, chunks above or below the page.
+//! Does not handle: facets that cover a pixel farther away than another (each pixel of land counts once, in `rasterize`),
+//! the steps of walks (each pixel with open pairs counts as one pair), pixels of border lines, chunks above or below the
+//! page, the quadtree and void marks on the way to a sample, uniforms and counters of a few words.
 
 use std::collections::HashMap;
 
@@ -20,8 +21,10 @@ use crate::surface::tile::TILE_SAMPLES;
 use crate::surface::{Lattice, Surface, Tile};
 use crate::view::Camera;
 
-/// Bytes of a sample of which gradients are read too.
-const SAMPLE_BYTES: u64 = 3 * WORD_BYTES;
+/// Bytes of the vertices of a chunk.
+const VERTICES_BYTES: u64 = CHUNK_VERTICES as u64 * VERTEX_BYTES;
+/// Bytes of the facing bits of a chunk.
+const FACING_BYTES: u64 = CHUNK_WORDS as u64 * WORD_BYTES;
 /// Bytes that a point on a facet depends on: its vertices.
 const POINT_BYTES: u64 = 3 * VERTEX_BYTES;
 
@@ -87,15 +90,59 @@ pub struct Quantities {
     pub rim: u64,
 }
 
-/// What a pass must move and compute.
+/// What a pass must move of a buffer, bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Traffic {
+    /// As shaders name it; both parts of the facing bits are `facing`.
+    pub buffer: &'static str,
+    /// Read.
+    pub read: u64,
+    /// Written.
+    pub written: u64,
+}
+
+/// What a pass must move and compute.
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PassCost {
     /// The pass.
     pub name: &'static str,
-    /// Read and written.
-    pub bytes: u64,
+    /// Of every buffer that counts, once, be it nothing.
+    pub traffic: Vec<Traffic>,
     /// Of one number each.
     pub operations: u64,
+}
+
+impl PassCost {
+    /// Bytes read and written, of all buffers.
+    pub fn bytes(&self) -> u64 {
+        self.traffic.iter().map(|of| of.read + of.written).sum()
+    }
+
+    /// The same so many times.
+    fn times(mut self, n: u64) -> Self {
+        for of in &mut self.traffic {
+            (of.read, of.written) = (of.read * n, of.written * n);
+        }
+        self.operations *= n;
+        self
+    }
+}
+
+fn cost<const N: usize>(name: &'static str, operations: u64, traffic: [Traffic; N]) -> PassCost {
+    PassCost { name, traffic: traffic.into(), operations }
+}
+
+fn read(buffer: &'static str, bytes: u64) -> Traffic {
+    Traffic { buffer, read: bytes, written: 0 }
+}
+
+fn written(buffer: &'static str, bytes: u64) -> Traffic {
+    Traffic { buffer, read: 0, written: bytes }
+}
+
+/// So many bytes each way.
+fn both(buffer: &'static str, bytes: u64) -> Traffic {
+    Traffic { buffer, read: bytes, written: bytes }
 }
 
 impl Quantities {
@@ -146,108 +193,182 @@ impl Quantities {
         let vertex_rounds = if self.batches > 1 { rounds } else { 1 };
         let mut costs = vec![self.clear(method)];
         if self.made > 0 {
-            costs.push(times(self.tessellate(), vertex_rounds));
+            costs.push(self.tessellate().times(vertex_rounds));
         }
         if self.made > 0 && self.seams {
-            costs.push(times(self.seam(), vertex_rounds));
+            costs.push(self.seam().times(vertex_rounds));
         }
-        costs.extend([self.facing(), times(self.project(), vertex_rounds)]);
-        costs.extend([self.rasterize(method, visibility), times(self.rasterize_large(), rounds)]);
-        costs.extend(self.silhouettes(method));
+        costs.extend([self.facing(), self.project().times(vertex_rounds)]);
+        costs.extend([self.rasterize(method, visibility), self.rasterize_large().times(rounds)]);
+        costs.extend(method.entry().passes.iter().filter_map(|name| self.silhouette(name, method)));
         if self.rim > 0 {
-            costs.push(cost("border", self.rim * (RIM_EDGE_BYTES + 2 * 3 * SAMPLE_BYTES), self.rim * EDGE));
+            costs.push(self.border());
         }
         costs
     }
 
     fn clear(&self, method: Method) -> PassCost {
-        cost("clear", self.pixels * (PIXEL_BYTES + WORD_BYTES + touched(method)) + self.chunks * WORD_BYTES, 0)
+        let traffic = [
+            written("pixels", self.pixels * PIXEL_BYTES),
+            written("ink", self.pixels * WORD_BYTES),
+            written("touched", self.pixels * of_its_own(method)),
+            written("summaries", self.chunks * WORD_BYTES),
+        ];
+        cost("clear", 0, traffic)
     }
 
     fn tessellate(&self) -> PassCost {
         let [heights, gradients] = self.samples;
-        let of_chunk = WORD_BYTES + CHUNK_BYTES + u64::from(CHUNK_VERTICES) * VERTEX_BYTES;
-        let read = heights * WORD_BYTES + gradients * (SAMPLE_BYTES - WORD_BYTES);
+        let traffic = [
+            read("fresh", self.made * WORD_BYTES),
+            read("chunks", self.made * CHUNK_BYTES),
+            read("heights", heights * WORD_BYTES),
+            read("gradients_east", gradients * WORD_BYTES),
+            read("gradients_north", gradients * WORD_BYTES),
+            written("places", self.made * VERTICES_BYTES),
+        ];
         let operations = self.fine * u64::from(CHUNK_VERTICES) * PATCH_POINT + self.patches * PATCH;
-        cost("tessellate", read + self.made * of_chunk, operations)
+        cost("tessellate", operations, traffic)
     }
 
     fn seam(&self) -> PassCost {
-        cost("seam", self.made * (WORD_BYTES + CHUNK_BYTES) + self.shared * 2 * VERTEX_BYTES, 0)
-    }
-
-    fn project(&self) -> PassCost {
-        let vertices = self.drawn * u64::from(CHUNK_VERTICES);
-        cost("project", self.drawn * CHUNK_BYTES + vertices * 2 * VERTEX_BYTES, vertices * PROJECT)
+        let traffic = [
+            read("fresh", self.made * WORD_BYTES),
+            read("chunks", self.made * CHUNK_BYTES),
+            both("places", self.shared * VERTEX_BYTES),
+        ];
+        cost("seam", 0, traffic)
     }
 
     fn facing(&self) -> PassCost {
-        let of_chunk = u64::from(CHUNK_VERTICES) * VERTEX_BYTES + u64::from(CHUNK_WORDS) * WORD_BYTES + WORD_BYTES;
-        let operations = self.across * u64::from(CHUNK_FACETS) * FACE;
-        cost("facing", self.chunks * CHUNK_BYTES + self.across * of_chunk, operations)
+        let traffic = [
+            read("chunks", self.chunks * CHUNK_BYTES),
+            read("places", self.across * VERTICES_BYTES),
+            written("facing", self.across * FACING_BYTES),
+            written("summaries", self.across * WORD_BYTES),
+        ];
+        cost("facing", self.across * u64::from(CHUNK_FACETS) * FACE, traffic)
+    }
+
+    fn project(&self) -> PassCost {
+        let traffic = [
+            read("chunks", self.drawn * CHUNK_BYTES),
+            read("places", self.drawn * VERTICES_BYTES),
+            written("screens", self.drawn * VERTICES_BYTES),
+        ];
+        cost("project", self.drawn * u64::from(CHUNK_VERTICES) * PROJECT, traffic)
     }
 
     fn rasterize(&self, method: Method, visibility: Visibility) -> PassCost {
-        let chunk = CHUNK_BYTES + u64::from(CHUNK_VERTICES) * VERTEX_BYTES;
-        let facing = u64::from(CHUNK_WORDS) * WORD_BYTES;
-        let (of_chunk, of_pixel) = match visibility {
-            Visibility::Key64 => (chunk, 2 * PIXEL_BYTES),
-            // The depth both ways; then it is read, and the ID goes both ways.
-            Visibility::Key32 => (2 * chunk, 5 * WORD_BYTES),
-            // Of toward and away at least one.
-            Visibility::TwoDepths => (chunk + facing, 2 * (WORD_BYTES + touched(method))),
-        };
-        let bytes = self.drawn * of_chunk + self.land * of_pixel + self.queued * WORD_BYTES;
+        let traffic = [read("chunks", self.drawn * CHUNK_BYTES), read("screens", self.drawn * VERTICES_BYTES)];
         let operations = self.drawn * u64::from(CHUNK_FACETS) * SET_UP + self.land * COVER;
-        cost("rasterize", bytes, u64::from(visibility.rounds()) * operations)
+        let mut of = cost("rasterize", operations, traffic).times(u64::from(visibility.rounds()));
+        of.traffic.push(written("queue", self.queued * WORD_BYTES));
+        let words = self.land * WORD_BYTES;
+        match visibility {
+            Visibility::Key64 => of.traffic.push(both("pixels", self.land * PIXEL_BYTES)),
+            // The depth both ways; then it is read, and the ID goes both ways.
+            Visibility::Key32 => of.traffic.push(Traffic { buffer: "pixels", read: 3 * words, written: 2 * words }),
+            // Of toward and away at least one.
+            Visibility::TwoDepths => of.traffic.extend([
+                read("facing", self.drawn * FACING_BYTES),
+                both("pixels", words),
+                both("touched", self.land * of_its_own(method)),
+            ]),
+        }
+        of
     }
 
     fn rasterize_large(&self) -> PassCost {
-        cost("rasterize_large", self.queued * (WORD_BYTES + 3 * VERTEX_BYTES), self.queued * CLIP)
+        let traffic = [read("queue", self.queued * WORD_BYTES), read("places", self.queued * POINT_BYTES)];
+        cost("rasterize_large", self.queued * CLIP, traffic)
     }
 
-    fn silhouettes(&self, method: Method) -> Vec<PassCost> {
-        let [candidates, pairs, rest] = self.listed;
-        let facing = self.drawn * u64::from(CHUNK_WORDS) * WORD_BYTES;
-        // Its own pixel, a neighbour, and the ink of one of them both ways.
-        let walk = WORD_BYTES + 2 * (PIXEL_BYTES + POINT_BYTES) + 2 * WORD_BYTES;
-        match method {
-            Method::Walk => vec![
-                cost(
-                    "candidates",
-                    self.pixels * PIXEL_BYTES + self.drawn * WORD_BYTES + candidates * WORD_BYTES,
-                    self.pixels * LIST,
-                ),
-                cost(
-                    "pairs",
-                    candidates * (WORD_BYTES + 2 * PIXEL_BYTES + WORD_BYTES) + pairs * WORD_BYTES,
-                    candidates * LOOK,
-                ),
-                cost("walk", pairs * walk + rest * WORD_BYTES, pairs * WALK),
-                cost("walk_rest", rest * walk, rest * WALK),
-            ],
-            Method::TowardAway { .. } => vec![cost(
-                "toward_away",
-                self.pixels * (PIXEL_BYTES + touched(method) + WORD_BYTES),
-                self.pixels * TOWARD_AWAY,
-            )],
-            Method::Adjacency { .. } => {
-                let bytes = self.pixels * (PIXEL_BYTES + WORD_BYTES) + self.drawn * CHUNK_BYTES + facing;
-                vec![cost("adjacency", bytes, self.land * ADJACENCY)]
+    /// What a pass of a method costs; `None` for a name that is none.
+    fn silhouette(&self, name: &str, method: Method) -> Option<PassCost> {
+        let [_, pairs, rest] = self.listed;
+        Some(match name {
+            "candidates" => self.candidates(),
+            "pairs" => self.pairs(),
+            "walk" => {
+                let mut walk = self.walk("walk", "pairs", pairs);
+                walk.traffic.push(written("rest", rest * WORD_BYTES));
+                walk
             }
-        }
+            "walk_rest" => self.walk("walk_rest", "rest", rest),
+            "toward_away" => self.toward_away(method),
+            "adjacency" => self.adjacency(),
+            _ => return None,
+        })
+    }
+
+    fn candidates(&self) -> PassCost {
+        let traffic = [
+            read("pixels", self.pixels * PIXEL_BYTES),
+            read("summaries", self.drawn * WORD_BYTES),
+            written("candidates", self.listed[0] * WORD_BYTES),
+        ];
+        cost("candidates", self.pixels * LIST, traffic)
+    }
+
+    fn pairs(&self) -> PassCost {
+        let [candidates, pairs, _] = self.listed;
+        let traffic = [
+            read("candidates", candidates * WORD_BYTES),
+            read("pixels", candidates * 2 * PIXEL_BYTES),
+            read("facing", candidates * WORD_BYTES),
+            written("pairs", pairs * WORD_BYTES),
+        ];
+        cost("pairs", candidates * LOOK, traffic)
+    }
+
+    fn toward_away(&self, method: Method) -> PassCost {
+        let traffic = [
+            read("pixels", self.pixels * PIXEL_BYTES),
+            read("touched", self.pixels * of_its_own(method)),
+            written("ink", self.pixels * WORD_BYTES),
+        ];
+        cost("toward_away", self.pixels * TOWARD_AWAY, traffic)
+    }
+
+    fn adjacency(&self) -> PassCost {
+        let traffic = [
+            read("pixels", self.pixels * PIXEL_BYTES),
+            read("chunks", self.drawn * CHUNK_BYTES),
+            read("facing", self.drawn * FACING_BYTES),
+            written("ink", self.pixels * WORD_BYTES),
+        ];
+        cost("adjacency", self.land * ADJACENCY, traffic)
+    }
+
+    /// Walks from so many listed pixels: of each its own pixel and a neighbour, the points that they show, and the ink of one
+    /// of them.
+    fn walk(&self, name: &'static str, list: &'static str, pixels: u64) -> PassCost {
+        // Of several batches no vertices are left: points are found anew.
+        let points = if self.batches > 1 { "heights" } else { "places" };
+        let traffic = [
+            read(list, pixels * WORD_BYTES),
+            read("pixels", pixels * 2 * PIXEL_BYTES),
+            read(points, pixels * 2 * POINT_BYTES),
+            both("ink", pixels * WORD_BYTES),
+        ];
+        cost(name, pixels * WALK, traffic)
+    }
+
+    /// Each edge has two ends, found anew from three samples each.
+    fn border(&self) -> PassCost {
+        let samples = self.rim * 2 * 3 * WORD_BYTES;
+        let traffic = [
+            read("rim", self.rim * RIM_EDGE_BYTES),
+            read("heights", samples),
+            read("gradients_east", samples),
+            read("gradients_north", samples),
+        ];
+        cost("border", self.rim * EDGE, traffic)
     }
 }
 
-/// Bytes of a pixel that only wide toward-away has: the nearest away depth that touches it.
-fn touched(method: Method) -> u64 {
-    if method == (Method::TowardAway { wide: true }) { WORD_BYTES } else { 0 }
-}
-
-fn cost(name: &'static str, bytes: u64, operations: u64) -> PassCost {
-    PassCost { name, bytes, operations }
-}
-
-fn times(of: PassCost, n: u64) -> PassCost {
-    PassCost { bytes: of.bytes * n, operations: of.operations * n, ..of }
+/// Bytes of a pixel that only this method has.
+fn of_its_own(method: Method) -> u64 {
+    method.entry().words.len() as u64 * WORD_BYTES
 }

@@ -100,7 +100,7 @@ impl Display for DrawnLevel {
 pub struct Run {
     /// Name of its scene.
     pub scene: String,
-    /// `walk`, `toward-away`, `toward-away-wide`, `adjacency`, `adjacency-corner`.
+    /// Its name in the registry of methods.
     pub method: &'static str,
     /// Subdivisions of a cell's edge, or `auto`.
     pub level: DrawnLevel,
@@ -134,7 +134,7 @@ pub struct Run {
     pub at: Vec<AtDistance>,
     /// The same figures in bands of depth, a third of truth's length each.
     pub bands: Vec<Band>,
-    /// Distance of the walk's sub-pixel places from truth.
+    /// Distance from truth of the places of methods that know better than to a pixel where the line runs.
     pub place: Option<Place>,
     /// Facets of the whole DEM.
     pub facets: u64,

@@ -6,7 +6,7 @@ use super::{BareCopy, DepthDraw};
 use crate::error::Result;
 use crate::gpu::clock::time_of;
 use crate::gpu::sizes::LIST_HEADER;
-use crate::ink::Kind;
+use crate::line::Kind;
 use crate::plan::Thrift;
 use crate::plan::detail::across;
 use crate::render::{Frame, Renderer};

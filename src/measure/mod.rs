@@ -14,7 +14,8 @@ pub mod floor;
 mod floors;
 pub mod growth;
 pub mod memory;
-mod trial;
+mod rendered;
+pub mod trial;
 pub mod truths;
 
 pub use compare::Comparison;

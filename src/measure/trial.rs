@@ -1,45 +1,92 @@
 //! One method at one level: drawn, timed over frames whose eye moves on, measured against truth.
 //!
-//! Each warm frame moves the eye 1 m along the view axis, so that nothing of an earlier frame can be used again. The first
-//! frame, of the eye that was asked for, is the one that is judged.
-
-use std::time::Instant;
+//! A method yields pixels of ink or curves: what is asked of either is [`Yield`]. Each warm frame moves the eye 1 m along
+//! the view axis, so that nothing of an earlier frame can be used again. The first frame, of the eye that was asked for,
+//! is the one that is judged.
 
 use glam::DVec2;
 use xxhash_rust::xxh3::xxh3_64;
 
 use super::compare::{Found, Shown};
-use super::cost::PassCost;
-use super::figures::{AtDistance, Band, DrawnLevel, PassFigures, Place, Run};
-use super::floors::Floors;
-use super::{Floor, costs, memory};
+use super::figures::{AtDistance, Band, DrawnLevel, FloorFigures, PassFigures, Place, Run};
+use super::memory;
 use crate::error::Result;
-use crate::gpu::Gpu;
-use crate::ink::{InkRaster, Kind, Marks, Pixel, trace};
-use crate::plan::{Method, Plan};
-use crate::render::{Frame, PassTime, Renderer};
-use crate::surface::Surface;
+use crate::line::Chain;
+use crate::truth::Mask;
 use crate::truth::metrics::{BandScore, DISTANCES, FRAGMENT, Judge, Scores};
-use crate::truth::{Inked, Mask};
 use crate::view::Camera;
 
 /// Names of the bands of depth.
 const BANDS: [&str; 3] = ["near", "middle", "far"];
 
+/// A method that draws frames of cameras.
+pub trait Draws {
+    /// What a frame yields.
+    type Yield: Yield;
+
+    /// Draws a frame and says how long it took, ms.
+    ///
+    /// # Errors
+    /// Whatever keeps it from drawing.
+    fn time_of_frame(&mut self, camera: &Camera) -> Result<f64>;
+
+    /// What the last frame yielded.
+    ///
+    /// # Errors
+    /// Whatever keeps it from reading.
+    fn yielded(&mut self) -> Result<Self::Yield>;
+
+    /// Draws a frame and says how long each of its passes took, and what it moved and computed.
+    ///
+    /// # Errors
+    /// As [`Self::time_of_frame`].
+    fn passes(&mut self, camera: &Camera) -> Result<Vec<PassFigures>>;
+
+    /// After a warm frame of a camera, times the limits beside which it stands; by itself there are none.
+    ///
+    /// # Errors
+    /// As [`Self::time_of_frame`].
+    fn time_floor(&mut self, _camera: &Camera) -> Result<()> {
+        Ok(())
+    }
+
+    /// The limits timed so far, beside a median frame.
+    fn floor(&mut self, _frame_ms: f64) -> Option<FloorFigures> {
+        None
+    }
+
+    /// Facets of the last frame.
+    fn facets(&self) -> u64;
+
+    /// Bytes of its buffers on the device.
+    fn buffers_bytes(&self) -> u64;
+}
+
+/// What a method yields of a frame, pixels of ink or curves, as a trial judges it.
+pub trait Yield {
+    /// The pixels of ink; of curves, those that they pass through.
+    fn mask(&self) -> Mask;
+
+    /// The curves; of ink, those that it is traced to.
+    fn chains(&self) -> Vec<Chain>;
+
+    /// Where on the page silhouettes run, px, as far as the method knows better than to a pixel.
+    fn places(&self) -> Vec<DVec2>;
+}
+
 /// A method at a level, seen by a camera.
-pub(super) struct Trial<'a> {
-    pub gpu: &'a Gpu,
-    pub surface: &'a Surface,
+pub struct Trial<'a> {
+    /// What is seen.
     pub camera: &'a Camera,
-    pub plan: Plan,
     /// Name of the scene.
     pub scene: &'a str,
     /// Name of the method.
     pub method: &'static str,
+    /// The level of its facets.
+    pub level: DrawnLevel,
     /// Warm frames.
     pub repeat: u32,
-    /// Whether a bare copy and a depth draw are timed in turn with them.
-    pub floor: bool,
+    /// By what it is measured.
     pub judge: &'a Judge<'a>,
     /// Share of truth, drawn one pixel wide, that pops when the eye moves on.
     pub truth_pop: f64,
@@ -48,9 +95,9 @@ pub(super) struct Trial<'a> {
 }
 
 /// Frames and what they took.
-struct Timed {
+struct Timed<Y> {
     /// The one that is judged.
-    first: Frame,
+    first: Y,
     /// The mask of the next eye.
     next: Mask,
     setup_ms: f64,
@@ -59,77 +106,71 @@ struct Timed {
     times: Vec<f64>,
     mask_hashes: Vec<String>,
     passes: Vec<PassFigures>,
-    floors: Option<Floors>,
+    floor: Option<FloorFigures>,
     peak_mib: Option<f64>,
     facets: u64,
     buffers_bytes: u64,
-    /// Metres to the near plane.
-    near: f64,
 }
 
 impl Trial<'_> {
-    /// Draws, times and measures.
-    pub fn run(&self) -> Result<Run> {
-        let timed = self.time()?;
-        let mask = mask_of(&timed.first.raster, timed.near);
+    /// Draws, times and measures; to make ready took `setup_ms`.
+    ///
+    /// # Errors
+    /// Those of the method, and of who hears of the pictures.
+    pub fn run<D: Draws>(&self, method: &mut D, setup_ms: f64) -> Result<Run> {
+        let timed = self.time(method, setup_ms)?;
+        let mask = timed.first.mask();
         let measured = self.judge.measure(&mask);
-        let names = picture_names(self.scene, self.method, self.plan.detail.into());
-        (self.found)(Found::Picture(&names[0], Shown::Mask(&timed.first.raster)))?;
+        let names = picture_names(self.scene, self.method, self.level);
+        (self.found)(Found::Picture(&names[0], Shown::Mask(&mask)))?;
         (self.found)(Found::Picture(&names[1], Shown::Difference(&mask, &measured)))?;
         Ok(self.result(timed, &mask, &measured.scores(), names))
     }
 
-    fn time(&self) -> Result<Timed> {
-        memory::reset_peak();
-        let start = Instant::now();
-        let renderer = Renderer::new(self.gpu, self.surface, self.plan, [self.camera.width, self.camera.height])?;
-        let setup_ms = start.elapsed().as_secs_f64() * 1e3;
-        let first_frame_ms = renderer.time_of_frame(self.camera)?;
-        let first = renderer.read()?;
-        let one_more = moved(self.camera, self.repeat + 1);
-        let passes = renderer.timed_frame(&one_more)?.passes;
-        let costs = costs(&renderer, &one_more, &renderer.read()?)?;
-        let bytes = costs.iter().map(|pass| pass.bytes).sum();
-        let mut floor = self.floor.then(|| Floor::new(&renderer, bytes)).transpose()?;
-        let mut floors = self.floor.then(|| Floors::new(bytes));
+    fn time<D: Draws>(&self, method: &mut D, setup_ms: f64) -> Result<Timed<D::Yield>> {
+        let first_frame_ms = method.time_of_frame(self.camera)?;
+        let first = method.yielded()?;
+        let passes = method.passes(&moved(self.camera, self.repeat + 1))?;
         let (mut times, mut mask_hashes, mut next) = (Vec::new(), Vec::new(), None);
         for step in 1..=self.repeat {
             let camera = moved(self.camera, step);
-            times.push(renderer.time_of_frame(&camera)?);
-            let raster = renderer.read()?.raster;
-            mask_hashes.push(hash(&raster));
-            next.get_or_insert_with(|| mask_of(&raster, renderer.near()));
-            if let (Some(floors), Some(floor)) = (&mut floors, &mut floor) {
-                floors.add(floor, &camera)?;
-            }
+            times.push(method.time_of_frame(&camera)?);
+            let mask = method.yielded()?.mask();
+            mask_hashes.push(hash(&mask));
+            next.get_or_insert(mask);
+            method.time_floor(&camera)?;
         }
         times.sort_by(f64::total_cmp);
         Ok(Timed {
-            next: next.unwrap_or_else(|| mask_of(&first.raster, renderer.near())),
+            next: next.unwrap_or_else(|| first.mask()),
             first,
             setup_ms,
             first_frame_ms,
+            floor: method.floor(median(&times)),
             times,
             mask_hashes,
-            passes: passes.into_iter().map(|pass| figures(pass, &costs)).collect(),
-            floors,
+            passes,
             peak_mib: memory::peak().map(|bytes| bytes as f64 / f64::from(1 << 20)),
-            facets: renderer.facets(),
-            buffers_bytes: renderer.buffers().bytes(),
-            near: renderer.near(),
+            facets: method.facets(),
+            buffers_bytes: method.buffers_bytes(),
         })
     }
 
-    fn result(&self, timed: Timed, mask: &Mask, scores: &Scores, [mask_name, difference]: [String; 2]) -> Run {
+    fn result(
+        &self,
+        timed: Timed<impl Yield>,
+        mask: &Mask,
+        scores: &Scores,
+        [mask_name, difference]: [String; 2],
+    ) -> Run {
         let agreement = scores.agreement();
-        let chains = trace(&Marks::from(&timed.first.raster));
+        let chains = timed.first.chains();
         let short = chains.iter().filter(|chain| chain.points.len() < FRAGMENT).count();
-        let walks = self.plan.method == Method::Walk;
-        let frame_ms = median(&timed.times);
+        let offsets = self.judge.offsets(&timed.first.places());
         Run {
             scene: self.scene.to_owned(),
             method: self.method,
-            level: self.plan.detail.into(),
+            level: self.level,
             width: self.camera.width,
             height: self.camera.height,
             precision: agreement.precision,
@@ -145,15 +186,15 @@ impl Trial<'_> {
             excess_pop: mask.pop(&timed.next) - self.truth_pop,
             at: at_distances(scores),
             bands: bands(scores),
-            place: if walks { place(self.judge, &timed.first.raster) } else { None },
+            place: offsets.map(|offsets| Place { mean_px: offsets.mean, p95_px: offsets.p95 }),
             facets: timed.facets,
             inked: mask.inked.len(),
-            frame_ms,
+            frame_ms: median(&timed.times),
             frame_range_ms: [timed.times[0], timed.times[timed.times.len() - 1]],
             first_frame_ms: timed.first_frame_ms,
             setup_ms: timed.setup_ms,
             passes: timed.passes,
-            floor: timed.floors.map(|floors| floors.beside(frame_ms)),
+            floor: timed.floor,
             peak_mib: timed.peak_mib,
             buffers_bytes: timed.buffers_bytes,
             pareto: false,
@@ -175,13 +216,6 @@ pub(super) fn moved(camera: &Camera, metres: u32) -> Camera {
     Camera { eye: camera.eye + forward * f64::from(metres), ..*camera }
 }
 
-/// A pass's time beside what it cost.
-fn figures(PassTime { name, ms }: PassTime, costs: &[PassCost]) -> PassFigures {
-    let cost = costs.iter().find(|cost| cost.name == name);
-    let (bytes, operations) = cost.map_or((0, 0), |cost| (cost.bytes, cost.operations));
-    PassFigures { name, ms, bytes, operations }
-}
-
 fn at_distances(scores: &Scores) -> Vec<AtDistance> {
     let figures = DISTANCES.into_iter().zip(scores.at);
     figures.map(|(px, at)| AtDistance { px, precision: at.precision, recall: at.recall, f: at.f() }).collect()
@@ -200,31 +234,9 @@ fn bands(scores: &Scores) -> Vec<Band> {
     BANDS.into_iter().zip(scores.bands).map(band).collect()
 }
 
-/// The ink of a frame.
-fn mask_of(raster: &InkRaster, near: f64) -> Mask {
-    let inked = |([column, row], pixel): ([u32; 2], &Pixel)| Inked { column, row, distance: pixel.distance(near) };
-    let inked = pixels(raster).filter(|(_, pixel)| pixel.is_ink()).map(inked).collect();
-    Mask { size: [raster.width, raster.height], inked }
-}
-
-/// Distances from truth of the places where the walk saw facing flip; border lines have none.
-fn place(judge: &Judge<'_>, raster: &InkRaster) -> Option<Place> {
-    let silhouette = pixels(raster).filter(|(_, pixel)| pixel.kind() == Kind::Silhouette);
-    let place = |([column, row], pixel): ([u32; 2], &Pixel)| {
-        DVec2::new(f64::from(column), f64::from(row)) + 0.5 + pixel.place()
-    };
-    let places: Vec<DVec2> = silhouette.map(place).collect();
-    judge.offsets(&places).map(|offsets| Place { mean_px: offsets.mean, p95_px: offsets.p95 })
-}
-
-/// Pixels with their column and row.
-fn pixels(raster: &InkRaster) -> impl Iterator<Item = ([u32; 2], &Pixel)> {
-    (0..).zip(&raster.pixels).map(|(i, pixel): (u32, _)| ([i % raster.width, i / raster.width], pixel))
-}
-
-/// Of the mask alone: which pixels are ink.
-fn hash(raster: &InkRaster) -> String {
-    let ink: Vec<u8> = raster.pixels.iter().map(|pixel| u8::from(pixel.is_ink())).collect();
+/// Of which pixels are ink.
+fn hash(mask: &Mask) -> String {
+    let ink: Vec<u8> = mask.pixels().into_iter().map(u8::from).collect();
     format!("{:016x}", xxh3_64(&ink))
 }
 

@@ -1,9 +1,12 @@
-//! The silhouette methods and what each asks of the raster.
+//! What a frame is asked for beside its facets: a method, a border, and whether work may be left out.
 
-/// How silhouettes are found.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+use super::registry::{self, Entry, Raster};
+
+/// How silhouettes are found. What each is called, takes and looks like stands in the [registry](Self::entry).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Method {
     /// Walk the lattice between neighbouring pixels and look for away facets. Complete.
+    #[default]
     Walk,
     /// Compare the nearest toward with the nearest away depth (Mower 2015, algorithm 2).
     TowardAway {
@@ -18,7 +21,7 @@ pub enum Method {
 }
 
 /// What two facets must share for adjacency to draw no line between them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Share {
     /// Two lattice vertices.
     #[default]
@@ -28,7 +31,7 @@ pub enum Share {
 }
 
 /// Whether the visible rim of the DEM and of its voids is drawn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Border {
     /// Draw it.
     #[default]
@@ -59,21 +62,37 @@ pub enum Visibility {
 }
 
 impl Method {
-    /// What this method needs of the raster on a device with or without 64-bit atomics.
-    pub fn visibility(self, int64: bool) -> Visibility {
+    /// Every method, its variants behind it, in the order of lists and reports.
+    pub const ALL: [Self; 5] = [
+        Self::Walk,
+        Self::TowardAway { wide: false },
+        Self::TowardAway { wide: true },
+        Self::Adjacency { share: Share::Edge },
+        Self::Adjacency { share: Share::Corner },
+    ];
+
+    /// What the registry says of it.
+    pub const fn entry(self) -> &'static Entry {
         match self {
-            Self::TowardAway { .. } => Visibility::TwoDepths,
-            Self::Walk | Self::Adjacency { .. } if int64 => Visibility::Key64,
-            Self::Walk | Self::Adjacency { .. } => Visibility::Key32,
+            Self::Walk => &registry::WALK,
+            Self::TowardAway { wide: false } => &registry::TOWARD_AWAY,
+            Self::TowardAway { wide: true } => &registry::TOWARD_AWAY_WIDE,
+            Self::Adjacency { share: Share::Edge } => &registry::ADJACENCY,
+            Self::Adjacency { share: Share::Corner } => &registry::ADJACENCY_CORNER,
         }
     }
 
-    /// The name on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Walk => "walk",
-            Self::TowardAway { .. } => "toward-away",
-            Self::Adjacency { .. } => "adjacency",
+    /// The method that comparisons and reports call so.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|method| method.entry().name == name)
+    }
+
+    /// How its raster is made on a device with or without 64-bit atomics.
+    pub fn visibility(self, int64: bool) -> Visibility {
+        match self.entry().raster {
+            Raster::TwoDepths => Visibility::TwoDepths,
+            Raster::Facets if int64 => Visibility::Key64,
+            Raster::Facets => Visibility::Key32,
         }
     }
 }

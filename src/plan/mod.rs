@@ -6,6 +6,7 @@ mod horizon;
 pub mod left_out;
 pub mod method;
 pub mod pieces;
+pub mod registry;
 
 pub use batches::{Batch, batches};
 pub use detail::Detail;
@@ -32,9 +33,9 @@ impl Plan {
     }
 }
 
-/// The walk over facets as fine as the page asks, with border lines.
+/// The default method over facets as fine as the page asks, with border lines.
 impl Default for Plan {
     fn default() -> Self {
-        Self::new(Detail::default(), Method::Walk, Border::On)
+        Self::new(Detail::default(), Method::default(), Border::default())
     }
 }

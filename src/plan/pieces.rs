@@ -2,7 +2,7 @@
 //!
 //! A piece is drawn with a halo, cut at the page's edge: silhouettes, border lines and what compose packs look at the 8
 //! neighbours of a pixel, so 1 px makes the piece itself right. A second px makes its neighbours right too, by which
-//! [`Marks`](crate::ink::Marks) tell whether ink encloses a pixel. Places and rays are those of the whole page, so that
+//! [`Marks`](crate::line::Marks) tell whether ink encloses a pixel. Places and rays are those of the whole page, so that
 //! no bit depends on the pieces. Does not handle: overlapping work; a facet in two pieces is drawn twice.
 
 use crate::error::{Error, Result, Setting};

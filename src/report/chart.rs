@@ -13,6 +13,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::labels::{Page, Placed, Rect};
 use crate::error::{Error, Result};
+use crate::plan::registry::{Look, Marker};
 
 /// Width of a plot, px.
 const WIDTH: u32 = 960;
@@ -45,22 +46,6 @@ pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Scale = WithKeyPoints<LogCoord<f64>>;
 /// Axes on a panel.
 pub(super) type Chart<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<Scale, Scale>>;
-
-/// How a curve looks, told apart by each of the three alone.
-pub(super) struct Look {
-    pub colour: RGBColor,
-    /// Lengths of dash and gap, px; `None` for a full line.
-    pub dash: Option<[i32; 2]>,
-    pub marker: Marker,
-}
-
-pub(super) enum Marker {
-    Disc,
-    Square,
-    Triangle,
-    Diamond,
-    Cross,
-}
 
 /// A logarithmic axis: its ends and its marks, with and without a number.
 pub(super) struct Axis<'a> {
@@ -171,7 +156,7 @@ pub(super) fn segments(points: &[[f64; 2]]) -> Vec<[[f64; 2]; 2]> {
 
 /// Draws a line with a marker at each point.
 pub(super) fn draw_curve(root: &Area, points: &[[f64; 2]], look: &Look) -> Drawn {
-    draw_line(root, points, look.colour, look.dash)?;
+    draw_line(root, points, rgb(look.colour), look.dash)?;
     points.iter().try_for_each(|point| draw_marker(root, whole(*point), look))
 }
 
@@ -186,7 +171,8 @@ pub(super) fn draw_line(root: &Area, points: &[[f64; 2]], colour: RGBColor, dash
 }
 
 fn draw_marker(root: &Area, (x, y): (i32, i32), look: &Look) -> Drawn {
-    let filled = look.colour.filled();
+    let colour = rgb(look.colour);
+    let filled = colour.filled();
     let polygon = |corners: &[(i32, i32)]| {
         root.draw(&Polygon::new(corners.iter().map(|(dx, dy)| (x + dx, y + dy)).collect::<Vec<_>>(), filled))
     };
@@ -195,8 +181,13 @@ fn draw_marker(root: &Area, (x, y): (i32, i32), look: &Look) -> Drawn {
         Marker::Square => polygon(&[(-5, -5), (5, -5), (5, 5), (-5, 5)]),
         Marker::Triangle => polygon(&[(-6, 5), (6, 5), (0, -6)]),
         Marker::Diamond => polygon(&[(-6, 0), (0, -6), (6, 0), (0, 6)]),
-        Marker::Cross => root.draw(&Cross::new((x, y), 5, look.colour.stroke_width(3))),
+        Marker::Cross => root.draw(&Cross::new((x, y), 5, colour.stroke_width(3))),
     }
+}
+
+/// A colour as the plotting library has it.
+pub(super) fn rgb([red, green, blue]: [u8; 3]) -> RGBColor {
+    RGBColor(red, green, blue)
 }
 
 /// A label in the colour of its curve; a thin line leads to a point farther away.

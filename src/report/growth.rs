@@ -6,13 +6,13 @@
 use plotters::prelude::*;
 
 use super::chart::{
-    Area, Axis, Drawn, INK, Look, MARKER, Marker, axes, draw_curve, draw_label, draw_line, label_page, place, plot,
-    segments,
+    Area, Axis, Drawn, INK, MARKER, axes, draw_curve, draw_label, draw_line, label_page, place, plot, segments,
 };
 use super::labels::{self, Choice, Rect};
 use super::words::milliseconds;
 use crate::error::Result;
 use crate::measure::Growth;
+use crate::plan::registry::{Look, Marker};
 
 const PROMISED: RGBColor = RGBColor(184, 58, 0);
 
@@ -43,7 +43,7 @@ fn draw(growth: &Growth, root: &Area, panel: &Area) -> Drawn {
     let chart = axes(panel, &growth.caption, &x, &y)?;
     let on_page = |points: &[[f64; 2]]| points.iter().map(|at| place(&chart, *at)).collect::<Vec<_>>();
     let (points, promise) = (on_page(&growth.points), on_page(&promise));
-    let look = Look { colour: INK, dash: None, marker: Marker::Disc };
+    let look = Look { colour: [INK.0, INK.1, INK.2], dash: None, marker: Marker::Disc };
     draw_line(root, &promise, PROMISED, Some([6, 4]))?;
     draw_curve(root, &points, &look)?;
     let mut page = label_page(&chart, [segments(&points), segments(&promise)].concat());

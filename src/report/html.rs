@@ -127,13 +127,13 @@ fn count(value: u64) -> String {
     groups.join("\u{202f}")
 }
 
-/// A cell of a table: what is read, and the value by which it is sorted.
-/// Levels in their order, `auto` last.
+/// A cell of levels: in their order, `auto` last.
 fn level_cell(level: Value) -> Value {
     let sorted = f64::try_from(level.clone()).unwrap_or(f64::MAX);
     cell(Some(sorted), |_| level.to_string())
 }
 
+/// A cell of a table: what is read, and the value by which it is sorted.
 fn cell(value: Option<f64>, show: impl Fn(f64) -> String) -> Value {
     let (sorted, shown) = value.map_or_else(|| (String::new(), "–".into()), |v| (v.to_string(), show(v)));
     Value::from_safe_string(format!("<td data-v=\"{sorted}\">{}</td>", HtmlEscape(&shown)))

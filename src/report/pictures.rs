@@ -3,7 +3,7 @@
 use std::io;
 
 use crate::error::{Error, Result};
-use crate::ink::{self, InkRaster, Marks};
+use crate::ink;
 use crate::measure::compare::Shown;
 use crate::truth::Mask;
 use crate::truth::metrics::Measured;
@@ -30,14 +30,14 @@ pub struct Picture {
 pub fn of_shown(name: String, shown: Shown<'_>) -> Result<Picture> {
     match shown {
         Shown::Truth(truth) => truth_picture(name, truth),
-        Shown::Mask(raster) => mask_picture(name, raster),
+        Shown::Mask(mask) => mask_picture(name, mask),
         Shown::Difference(mask, measured) => difference_picture(name, mask, measured),
     }
 }
 
-/// The mask of a frame: 1 bit a pixel.
-fn mask_picture(name: String, raster: &InkRaster) -> Result<Picture> {
-    picture(name, |png| ink::write_mask(&Marks::from(raster), png))
+/// A mask: 1 bit a pixel.
+fn mask_picture(name: String, mask: &Mask) -> Result<Picture> {
+    picture(name, |png| ink::write_mask(mask.size, mask.inked.iter().map(|pixel| [pixel.column, pixel.row]), png))
 }
 
 /// Truth drawn one pixel wide.

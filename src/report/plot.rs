@@ -11,13 +11,14 @@ use plotters::prelude::*;
 
 use super::Results;
 use super::chart::{
-    Area, Axis, Drawn, INK, Look, MARKER, Marker, axes, draw_curve, draw_label, label_page, place, plot, segments,
-    whole,
+    Area, Axis, Drawn, INK, MARKER, axes, draw_curve, draw_label, label_page, place, plot, rgb, segments, whole,
 };
 use super::labels::{self, Choice, Page, Rect};
 use super::results::Scene;
 use crate::error::Result;
 use crate::measure::figures::Run;
+use crate::plan::Method;
+use crate::plan::registry::Look;
 
 /// Least 1 - F that is told from 0: truth is some thousand pixels long.
 const FLOOR: f64 = 1e-4;
@@ -124,7 +125,7 @@ fn draw_labels(root: &Area, curves: &[Vec<&Run>], mut page: Page, place: &impl F
         let levels = labels::place(&levels, &mut page);
         name.iter()
             .chain(levels.iter().flatten())
-            .try_for_each(|label| draw_label(root, label, look(curve[0].method).colour))?;
+            .try_for_each(|label| draw_label(root, label, rgb(look(curve[0].method).colour)))?;
     }
     Ok(())
 }
@@ -145,13 +146,7 @@ fn error(run: &Run) -> f64 {
     (1.0 - run.f).max(FLOOR)
 }
 
+/// How the curve of a method looks; of one that is not in the registry, as the default does.
 fn look(method: &str) -> Look {
-    let (colour, dash, marker) = match method {
-        "walk" => (INK, None, Marker::Disc),
-        "toward-away" => (RGBColor(0, 90, 200), Some([12, 4]), Marker::Square),
-        "toward-away-wide" => (RGBColor(0, 110, 95), Some([6, 4]), Marker::Triangle),
-        "adjacency" => (RGBColor(184, 58, 0), Some([3, 4]), Marker::Diamond),
-        _ => (RGBColor(130, 40, 130), Some([18, 6]), Marker::Cross),
-    };
-    Look { colour, dash, marker }
+    Method::named(method).unwrap_or_default().entry().look
 }

@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use super::{Results, merge};
 use crate::measure::figures::{DrawnLevel, FloorFigures, Run};
+use crate::plan::Method;
 
 /// F from which on a drawing is good enough to be chosen by its speed.
 const GOOD_F: f64 = 0.99;
@@ -210,30 +211,9 @@ fn listed(items: &[impl ToString]) -> String {
     }
 }
 
-/// How a method works, in a sentence.
+/// How a method works, in a sentence; nothing of a method that is not in the registry.
 fn how(method: &str) -> &'static str {
-    match method {
-        "walk" => {
-            "A pixel is ink if the straight way on the lattice from its point on the surface to a farther neighbour's \
-             crosses a facet that faces away."
-        }
-        "toward-away" => {
-            "A pixel is ink if its nearest toward surface is nearer than its nearest away surface, and that is nearer \
-             than a neighbour's toward surface (Mower 2015)."
-        }
-        "toward-away-wide" => {
-            "The same as toward-away, with away surface counted wherever it touches the pixel or that neighbour."
-        }
-        "adjacency" => {
-            "A pixel is ink if a neighbour at least as far shows a facet that shares no lattice edge with its own \
-             (Mower 2015)."
-        }
-        "adjacency-corner" => {
-            "A pixel is ink if a neighbour at least as far shows a facet that shares no lattice vertex with its own \
-             (Mower 2015)."
-        }
-        _ => "",
-    }
+    Method::named(method).map_or("", |method| method.entry().rule)
 }
 
 /// Milliseconds to three digits.

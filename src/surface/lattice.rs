@@ -28,7 +28,7 @@ pub const CELL_STEPS: u32 = 64;
 /// Lattice quads along a chunk's edge, whatever its level.
 pub const CHUNK_QUADS: u32 = 16;
 /// Blocks of 8 x 8 quads along a chunk's edge.
-const CHUNK_BLOCKS: u32 = CHUNK_QUADS / 8;
+pub const CHUNK_BLOCKS: u32 = CHUNK_QUADS / 8;
 /// Facets of a chunk.
 pub const CHUNK_FACETS: u32 = 2 * CHUNK_QUADS * CHUNK_QUADS;
 /// Lattice vertices along a chunk's edge.

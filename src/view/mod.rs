@@ -1,7 +1,9 @@
-//! The camera, and the choice of a view where none is given.
+//! The camera, how it sees, and the choice of a view where none is given.
 
 pub mod camera;
 pub mod choose;
+pub mod perspective;
 
 pub use camera::{Camera, direction};
 pub use choose::{Fixed, choose};
+pub use perspective::Perspective;

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use super::grid::Grid;
 use super::mosaic::Mosaic;
 use super::target::Target;
-use crate::dem::{LARGEST_SIDE, MAX_SAMPLES, held_bytes};
+use crate::dem::{LARGEST_SIDE, MAX_SAMPLES, held_bytes, mebibytes};
 use crate::error::{Error, Message, Result, Setting, shown};
 use crate::geo::ReadOptions;
 use crate::message;
@@ -97,11 +97,7 @@ fn over_budget(path: &Path, grid: &Grid, why: &Whole, memory: u64) -> Error {
             Setting::Memory,
             " allows"
         ],
-        message![
-            "give ",
-            Setting::Memory.at(format!("{needed}MiB")),
-            format!(" (it is {} MiB), or {}", memory >> 20, why.remedy(grid))
-        ],
+        message!["give ", mebibytes(needed), format!(" (it is {} MiB), or {}", memory >> 20, why.remedy(grid))],
     )
 }
 
@@ -114,12 +110,6 @@ fn check_longest(path: &Path, grid: &Grid, metres: f64) -> Result<()> {
         format!("{}: {columns} x {rows} samples, at most {LARGEST_SIDE} along a side fit", shown(path)),
         coarser(metres),
     ))
-}
-
-/// Fewer samples: a part of them, or cells of so many metres.
-fn coarser(metres: f64) -> Message {
-    let cells = format!(" for cells of {metres} m");
-    message!["use ", Setting::Crop, " to take a part, or ", Setting::Resample.at(metres), cells]
 }
 
 /// As many samples of a file as may be read to be warped, beside `held` others.
@@ -145,6 +135,12 @@ fn check_memory(path: &Path, needed: u64, available: Option<u64>) -> Result<()> 
         )),
         _ => Ok(()),
     }
+}
+
+/// Fewer samples: a part of them, or cells of so many metres.
+fn coarser(metres: f64) -> Message {
+    let cells = format!(" for cells of {metres} m");
+    message!["use ", Setting::Crop, " to take a part, or ", Setting::Resample.at(metres), cells]
 }
 
 /// Bytes of memory that new work may take, where the system says so (Linux).

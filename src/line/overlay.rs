@@ -7,7 +7,7 @@
 use glam::{DVec2, DVec3};
 
 use super::{Chain, ChainPoint, InkRaster, Kind, Line, Pixel};
-use crate::view::Camera;
+use crate::view::Perspective;
 
 /// How much nearer than a line the cover must be to hide it, as a share of the distance.
 ///
@@ -26,44 +26,49 @@ pub enum Cover {
     Off,
 }
 
-/// The visible parts of a polyline, given in metres of the (exaggerated) world, as crease chains on the page.
-///
-/// `near` is the near plane's distance in metres that the raster's depths are made with.
-pub fn project_polyline(points: &[DVec3], camera: &Camera, raster: &InkRaster, near: f64, cover: Cover) -> Vec<Chain> {
+/// The visible parts of a line of the (exaggerated) world, given in metres, as chains on the page. The raster's depths are
+/// those of the perspective.
+pub fn project_polyline(
+    points: &[DVec3],
+    line: Line,
+    perspective: &Perspective,
+    raster: &InkRaster,
+    cover: Cover,
+) -> Vec<Chain> {
     let mut chains = Vec::new();
     let mut run: Vec<ChainPoint> = Vec::new();
     for segment in points.windows(2) {
-        let samples = clip_near(segment[0], segment[1], camera, near)
-            .map(|ends| ends.map(|p| on_page(p, camera, near)))
-            .and_then(|[a, b]| clip_page(a, b, camera))
-            .map_or(Vec::new(), |(a, b)| samples(a, b));
+        let samples = clip_near(segment[0], segment[1], perspective)
+            .map(|ends| ends.map(|p| perspective.project(p)))
+            .and_then(|[a, b]| clip_page(a, b, perspective.size()))
+            .map_or(Vec::new(), |(a, b)| samples(a, b, perspective));
         for point in samples {
             if run.last().is_some_and(|last| last.place.distance(point.place) > 2.0 * SAMPLE) {
-                finish(&mut run, &mut chains);
+                finish(&mut run, line, &mut chains);
             }
             if cover == Cover::On && hidden(raster, point) {
-                finish(&mut run, &mut chains);
+                finish(&mut run, line, &mut chains);
             } else if run.last().is_none_or(|last| last.place != point.place) {
                 run.push(point);
             }
         }
     }
-    finish(&mut run, &mut chains);
+    finish(&mut run, line, &mut chains);
     chains
 }
 
 /// Makes a chain of a run of visible samples, unless it is a single one.
-fn finish(run: &mut Vec<ChainPoint>, chains: &mut Vec<Chain>) {
+fn finish(run: &mut Vec<ChainPoint>, line: Line, chains: &mut Vec<Chain>) {
     let points = std::mem::take(run);
     if points.len() > 1 {
-        chains.push(Chain { line: Line::Crease, points, closed: false });
+        chains.push(Chain { line, points, closed: false });
     }
 }
 
 /// The part of a segment beyond the near plane.
-fn clip_near(a: DVec3, b: DVec3, camera: &Camera, near: f64) -> Option<[DVec3; 2]> {
-    let forward = camera.axes()[2];
-    let (wa, wb) = ((a - camera.eye).dot(forward), (b - camera.eye).dot(forward));
+fn clip_near(a: DVec3, b: DVec3, perspective: &Perspective) -> Option<[DVec3; 2]> {
+    let near = perspective.near();
+    let (wa, wb) = (perspective.distance(a), perspective.distance(b));
     let crossing = a.lerp(b, (near - wa) / (wb - wa));
     match (wa >= near, wb >= near) {
         (true, true) => Some([a, b]),
@@ -73,17 +78,11 @@ fn clip_near(a: DVec3, b: DVec3, camera: &Camera, near: f64) -> Option<[DVec3; 2
     }
 }
 
-/// Place in px and reversed depth.
-fn on_page(point: DVec3, camera: &Camera, near: f64) -> (DVec2, f64) {
-    let (place, distance) = camera.project(point);
-    (place, near / distance)
-}
-
 /// The part of a segment on the page (Liang and Barsky 1984).
-fn clip_page(a: (DVec2, f64), b: (DVec2, f64), camera: &Camera) -> Option<((DVec2, f64), (DVec2, f64))> {
+fn clip_page(a: (DVec2, f64), b: (DVec2, f64), page: DVec2) -> Option<((DVec2, f64), (DVec2, f64))> {
     let along = b.0 - a.0;
     let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
-    let sides = [(along.x, a.0.x, f64::from(camera.width)), (along.y, a.0.y, f64::from(camera.height))];
+    let sides = [(along.x, a.0.x, page.x), (along.y, a.0.y, page.y)];
     for (step, from, size) in sides {
         if step == 0.0 {
             if !(0.0..=size).contains(&from) {
@@ -99,10 +98,10 @@ fn clip_page(a: (DVec2, f64), b: (DVec2, f64), camera: &Camera) -> Option<((DVec
 }
 
 /// Points from a to b, both included, at most [`SAMPLE`] px apart.
-fn samples(a: (DVec2, f64), b: (DVec2, f64)) -> Vec<ChainPoint> {
+fn samples(a: (DVec2, f64), b: (DVec2, f64), perspective: &Perspective) -> Vec<ChainPoint> {
     let steps = (a.0.distance(b.0) / SAMPLE).ceil().max(1.0);
     let at = |i: u64| i as f64 / steps;
-    let point = |t: f64| ChainPoint { place: a.0.lerp(b.0, t), depth: (a.1 + (b.1 - a.1) * t) as f32 };
+    let point = |t: f64| ChainPoint::seen(a.0.lerp(b.0, t), (a.1 + (b.1 - a.1) * t) as f32, perspective);
     (0..=steps as u64).map(|i| point(at(i))).collect()
 }
 

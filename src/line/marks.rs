@@ -1,6 +1,6 @@
 //! The ink of a page of any size, as a list.
 //!
-//! A page of a thousand million pixels has some hundred thousand inked ones: they alone are kept, 16 bytes each, in
+//! A page of a thousand million pixels has some hundred thousand inked ones: they alone are kept, 20 bytes each, in
 //! reading order. So are pixels of the cover that ink all but encloses, since tracing fills holes of the cover and none
 //! of the sky. A page drawn in pieces gives the same list as in one. Cost: one look at each pixel, on every core.
 
@@ -22,6 +22,8 @@ pub struct Mark {
     pub row: u32,
     /// What it shows.
     pub pixel: Pixel,
+    /// Whether it is ink with sky among its 8 neighbours.
+    pub beside_sky: bool,
 }
 
 /// The inked pixels of a page, and those that ink encloses.
@@ -54,6 +56,11 @@ impl Marks {
         self.iter().filter(|mark| mark.pixel.is_ink())
     }
 
+    /// Column and row of the inked ones, in reading order.
+    pub fn places(&self) -> impl Iterator<Item = [u32; 2]> {
+        self.ink().map(|mark| [mark.column, mark.row])
+    }
+
     /// How many pixels are ink.
     pub fn inked(&self) -> usize {
         self.ink().count()
@@ -65,11 +72,11 @@ impl Marks {
         inside.map_or(&[], |row| &self.list[self.rows[row]..self.rows[row + 1]])
     }
 
-    /// The pixel in this column and row, if it is a mark.
-    pub fn at(&self, column: i64, row: i64) -> Option<Pixel> {
+    /// The mark in this column and row, if there is one.
+    pub fn at(&self, column: i64, row: i64) -> Option<&Mark> {
         let row = self.row(row);
         let found = row.binary_search_by_key(&column, |mark| i64::from(mark.column));
-        found.ok().map(|i| row[i].pixel)
+        found.ok().map(|i| &row[i])
     }
 }
 
@@ -91,7 +98,12 @@ pub fn of_piece(raster: &InkRaster, piece: Piece) -> Vec<Mark> {
         let start = row as usize * raster.width as usize;
         let pixels = &raster.pixels[start + left as usize..][..width as usize];
         let marks = (left..).zip(pixels).filter(move |&(column, pixel)| is_mark(raster, column, row, *pixel));
-        marks.map(move |(column, &pixel)| Mark { column: x + column, row: y + row, pixel })
+        marks.map(move |(column, &pixel)| Mark {
+            column: x + column,
+            row: y + row,
+            pixel,
+            beside_sky: pixel.is_ink() && around(raster, column, row).any(|pixel| pixel.kind() == Kind::Sky),
+        })
     };
     (top..top + height).into_par_iter().flat_map_iter(of_row).collect()
 }
@@ -107,9 +119,16 @@ pub fn covered(raster: &InkRaster, piece: Piece) -> u64 {
     (top..top + height).into_par_iter().map(of_row).sum()
 }
 
+/// The pixels of the 3 x 3 block about one.
+fn around(raster: &InkRaster, column: u32, row: u32) -> impl Iterator<Item = Pixel> {
+    let beside = |at: u32| i64::from(at) - 1..=i64::from(at) + 1;
+    beside(row).flat_map(move |row| beside(column).filter_map(move |column| raster.at(column, row)))
+}
+
 fn is_mark(raster: &InkRaster, column: u32, row: u32, pixel: Pixel) -> bool {
-    let is_ink = |dx: i64, dy: i64| raster.at(i64::from(column) + dx, i64::from(row) + dy).is_some_and(Pixel::is_ink);
-    let around = || (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (dx, dy))).filter(|&(dx, dy)| is_ink(dx, dy)).count();
+    let is_ink = |column: i64| raster.at(column, i64::from(row)).is_some_and(Pixel::is_ink);
+    let has_ink_beside = || is_ink(i64::from(column) - 1) || is_ink(i64::from(column) + 1);
+    let inked = || around(raster, column, row).filter(|pixel| pixel.is_ink()).count();
     // Most pixels have no ink beside them.
-    pixel.is_ink() || (pixel.kind() == Kind::Cover && (is_ink(-1, 0) || is_ink(1, 0)) && around() >= ENCLOSED)
+    pixel.is_ink() || (pixel.kind() == Kind::Cover && has_ink_beside() && inked() >= ENCLOSED)
 }

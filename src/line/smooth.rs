@@ -14,6 +14,7 @@ use std::collections::{HashMap, HashSet};
 use glam::{DVec2, DVec3};
 
 use super::{Chain, ChainPoint};
+use crate::view::Perspective;
 
 /// Weight of second differences: waves shorter than 2 pi (STIFFNESS)^(1/4) points, about 60, are flattened.
 const STIFFNESS: f64 = 8.0e3;
@@ -31,7 +32,8 @@ const FOLLOW: usize = 8;
 const UNROLL: usize = 96;
 
 /// The chains smoothed, in the same order: every point given stays within `tolerance` px (at least 0.001) of its chain.
-pub fn smooth(chains: &[Chain], tolerance: f64) -> Vec<Chain> {
+/// Places in the world follow those on the page.
+pub fn smooth(chains: &[Chain], perspective: &Perspective, tolerance: f64) -> Vec<Chain> {
     let tolerance = tolerance.max(LEAST_TOLERANCE);
     let radius = tolerance * (1.0 - SIMPLIFY_SHARE);
     let shared = shared_places(chains);
@@ -47,7 +49,11 @@ pub fn smooth(chains: &[Chain], tolerance: f64) -> Vec<Chain> {
     for (chain, places) in chains.iter().zip(&mut places).filter(|(chain, _)| !chain.closed) {
         follow(chain, places, radius, &moved);
     }
-    let simplify = |(chain, places): (&Chain, &Vec<DVec2>)| simplified(chain, places, tolerance * SIMPLIFY_SHARE);
+    let seen = |point: DVec3| ChainPoint::seen(point.truncate(), point.z.exp() as f32, perspective);
+    let simplify = |(chain, places): (&Chain, &Vec<DVec2>)| {
+        let points = simplified(chain, places, tolerance * SIMPLIFY_SHARE).into_iter().map(seen).collect();
+        Chain { points, ..*chain }
+    };
     chains.iter().zip(&places).map(simplify).collect()
 }
 
@@ -169,8 +175,9 @@ fn follow(chain: &Chain, places: &mut [DVec2], radius: f64, moved: &HashMap<(u64
     }
 }
 
-/// The chain through these places with the points left out that lie within `tolerance` px of the rest.
-fn simplified(chain: &Chain, places: &[DVec2], tolerance: f64) -> Chain {
+/// Places and ln depths of the chain through these places, with the points left out that lie within `tolerance` px of the
+/// rest.
+fn simplified(chain: &Chain, places: &[DVec2], tolerance: f64) -> Vec<DVec3> {
     let n = places.len();
     let logs: Vec<f64> = chain.points.iter().map(ChainPoint::log_depth).collect();
     let logs = solve_chain(chain.closed, n, &vec![1.0; n], &|i| logs[i]);
@@ -192,8 +199,7 @@ fn simplified(chain: &Chain, places: &[DVec2], tolerance: f64) -> Chain {
     if chain.closed {
         kept.pop();
     }
-    let point = |i: usize| ChainPoint { place: points[i].truncate(), depth: points[i].z.exp() as f32 };
-    Chain { line: chain.line, points: kept.into_iter().map(point).collect(), closed: chain.closed }
+    kept.into_iter().map(|i| points[i]).collect()
 }
 
 /// Distance of a point from the segment a-b.

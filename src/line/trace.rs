@@ -9,85 +9,57 @@
 
 use std::collections::HashSet;
 
-use bytemuck::Zeroable;
 use glam::DVec2;
 
 use super::graph::Graph;
 use super::join::partners;
 use super::thin::thin;
-use super::{Kind, Marks, Pixel};
+use super::{Chain, ChainPoint, Kind, Line, Mark, Marks, Pixel};
+use crate::view::Perspective;
 
 /// A chain is cut where ln depth jumps by more than this between the points before and after: 1.5 times the distance.
 const DEPTH_JUMP: f64 = 0.405;
 /// Points before and after a cut that must all lie on their side of the jump: an odd pixel cuts nothing.
 const WINDOW: usize = 4;
 
-/// What a chain draws.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Line {
-    /// Occluding lines and the skyline.
-    Silhouette,
-    /// The border of the DEM and of its voids.
-    Border,
-    /// Lines that do not depend on the view: drainage, ridges, any polyline of the world.
-    Crease,
-}
-
-/// A point of a chain.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ChainPoint {
-    /// Pixels from the page's top left corner, x right, y down; pixel centres are at halves.
-    pub place: DVec2,
-    /// Near / distance along the view axis; larger is nearer.
-    pub depth: f32,
-}
-
-impl ChainPoint {
-    /// ln depth, in which equal steps are equal ratios of distance; finite for sky too.
-    pub(super) fn log_depth(&self) -> f64 {
-        f64::from(self.depth.max(f32::MIN_POSITIVE)).ln()
-    }
-}
-
-/// An ordered polyline on the page; one point is a dot.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Chain {
-    /// What it draws.
-    pub line: Line,
-    /// At least one point, about a pixel apart while unsmoothed.
-    pub points: Vec<ChainPoint>,
-    /// Whether the last point is joined to the first, which is not repeated.
-    pub closed: bool,
-}
-
-/// The chains of a page's ink.
-pub fn trace(marks: &Marks) -> Vec<Chain> {
+/// The chains of a page's ink, seen in perspective. Those of silhouettes are [`Line::Skyline`] where most of their pixels
+/// lie beside the sky, else [`Line::Occluding`]; they are not cut where one turns into the other.
+pub fn trace(marks: &Marks, perspective: &Perspective) -> Vec<Chain> {
     let (lines, cells) = thin(marks);
     let graph = Graph::new(&lines, &cells);
-    let pixel = |cell: usize| {
+    let mark = |cell: usize| {
         let [column, row] = lines.pixel(cell);
-        marks.at(column, row).unwrap_or_else(Pixel::zeroed)
+        marks.at(column, row)
     };
     let point = |&cell: &usize| {
-        let pixel = pixel(cell);
         let centre = DVec2::from(lines.pixel(cell).map(|v| v as f64 + 0.5));
+        let pixel = mark(cell).map(|mark| mark.pixel);
         // A filled hole has no line of its own.
-        let offset = if pixel.is_ink() { pixel.place() } else { DVec2::ZERO };
-        ChainPoint { place: centre + offset, depth: pixel.depth() }
+        let offset = pixel.filter(|pixel| pixel.is_ink()).map_or(DVec2::ZERO, Pixel::place);
+        ChainPoint::seen(centre + offset, pixel.map_or(0.0, Pixel::depth), perspective)
     };
     let points: Vec<Vec<ChainPoint>> = graph.branches.iter().map(|branch| branch.iter().map(point).collect()).collect();
     let partners = partners(&graph.branches, &points);
     let mut chains = Vec::new();
     let mut add = |cells: &[usize], closed: bool| {
         let points: Vec<ChainPoint> = cells.iter().map(point).collect();
-        let border: Vec<bool> = cells.iter().map(|&c| pixel(c).kind() == Kind::Border).collect();
-        cut(points, &border, closed, &mut chains);
+        let drawn: Vec<Line> = cells.iter().map(|&cell| mark(cell).map_or(Line::Occluding, line_of)).collect();
+        cut(points, &drawn, closed, &mut chains);
     };
     for (cells, closed) in walks(&graph.branches, &partners) {
         add(&cells, closed);
     }
     graph.rings.iter().for_each(|ring| add(ring, true));
     chains
+}
+
+/// What a pixel draws by itself.
+fn line_of(mark: &Mark) -> Line {
+    match mark.pixel.kind() {
+        Kind::Border => Line::Border,
+        _ if mark.beside_sky => Line::Skyline,
+        _ => Line::Occluding,
+    }
 }
 
 /// Branches joined to walks as their ends go on into each other, each with whether it is closed.
@@ -128,14 +100,10 @@ fn walks(branches: &[Vec<usize>], partners: &[Option<usize>]) -> Vec<(Vec<usize>
 }
 
 /// Cuts a run of points where its depth jumps or its kind changes; the pieces share the points of the cuts.
-fn cut(mut points: Vec<ChainPoint>, border: &[bool], closed: bool, chains: &mut Vec<Chain>) {
+fn cut(mut points: Vec<ChainPoint>, drawn: &[Line], closed: bool, chains: &mut Vec<Chain>) {
     let n = points.len();
-    let is_border: Vec<bool> = (0..n)
-        .map(|i| {
-            let window = &border[i.saturating_sub(WINDOW)..(i + WINDOW + 1).min(n)];
-            2 * window.iter().filter(|&&b| b).count() > window.len()
-        })
-        .collect();
+    let window = |i: usize| &drawn[i.saturating_sub(WINDOW)..(i + WINDOW + 1).min(n)];
+    let is_border: Vec<bool> = (0..n).map(|i| is_mostly(window(i), Line::Border)).collect();
     let logs: Vec<f64> = points.iter().map(ChainPoint::log_depth).collect();
     let range = |part: &[f64]| part.iter().fold((f64::MAX, f64::MIN), |(low, high), &v| (v.min(low), v.max(high)));
     // The gap between all points before and all after.
@@ -153,9 +121,13 @@ fn cut(mut points: Vec<ChainPoint>, border: &[bool], closed: bool, chains: &mut 
         is_border[i] != is_border[i - 1] || (jumps[i] > DEPTH_JUMP && first_peak())
     };
     let mut cuts: Vec<usize> = (1..n.saturating_sub(1)).filter(|&i| is_cut(i)).collect();
-    let line = |i: usize| if is_border[i] { Line::Border } else { Line::Silhouette };
+    let line = |start: usize, end: usize| match &drawn[start..end.min(n)] {
+        _ if is_border[start] => Line::Border,
+        drawn if is_mostly(drawn, Line::Skyline) => Line::Skyline,
+        _ => Line::Occluding,
+    };
     if cuts.is_empty() {
-        chains.push(Chain { line: line(0), points, closed: closed && n > 2 });
+        chains.push(Chain { line: line(0, n), points, closed: closed && n > 2 });
         return;
     }
     if closed {
@@ -164,7 +136,12 @@ fn cut(mut points: Vec<ChainPoint>, border: &[bool], closed: bool, chains: &mut 
     cuts.push(points.len() - 1);
     let mut start = 0;
     for end in cuts {
-        chains.push(Chain { line: line(start), points: points[start..=end].to_vec(), closed: false });
+        chains.push(Chain { line: line(start, end + 1), points: points[start..=end].to_vec(), closed: false });
         start = end;
     }
+}
+
+/// Whether more than half of the pixels draw this line.
+fn is_mostly(drawn: &[Line], line: Line) -> bool {
+    2 * drawn.iter().filter(|&&pixel| pixel == line).count() > drawn.len()
 }

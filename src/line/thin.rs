@@ -46,7 +46,7 @@ fn small_holes(marks: &Marks, ink: &[usize], grid: &mut Grid) -> Vec<usize> {
     }
     let is_cover = |grid: &Grid, cell: usize| {
         let [column, row] = grid.pixel(cell);
-        marks.at(column, row).is_some_and(|pixel| pixel.kind() == Kind::Cover)
+        marks.at(column, row).is_some_and(|mark| mark.pixel.kind() == Kind::Cover)
     };
     let mut holes = Vec::new();
     for &cell in ink {

@@ -1,0 +1,65 @@
+//! Values of flags that are one of some words, each with a line of help.
+
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+
+use crate::plan::registry::Entry;
+use crate::plan::{Border, Method, Share};
+
+/// A word, its line of help, and what it stands for.
+type Word<T> = (&'static str, &'static str, T);
+
+const SHARES: [Word<Share>; 2] = [
+    ("edge", "Two lattice vertices", Share::Edge),
+    ("corner", "One lattice vertex: the vertex-storage variant", Share::Corner),
+];
+const BORDERS: [Word<Border>; 2] = [("on", "Draw it", Border::On), ("off", "Leave it out", Border::Off)];
+
+/// A method without its variants, which have flags of their own.
+pub fn family() -> impl TypedValueParser<Value = Method> {
+    let plain = Method::ALL.into_iter().filter(|method| method.entry().name == method.entry().family);
+    one_of(plain.map(|method| (method.entry().family, method.entry().brief, method)))
+}
+
+/// What neighbouring facets share.
+pub fn share() -> impl TypedValueParser<Value = Share> {
+    one_of(SHARES)
+}
+
+/// The word for what they share if nothing is said.
+pub fn default_share() -> &'static str {
+    word_for(&SHARES, Share::default())
+}
+
+/// Whether the border is drawn.
+pub fn border() -> impl TypedValueParser<Value = Border> {
+    one_of(BORDERS)
+}
+
+/// The word for whether it is if nothing is said.
+pub fn default_border() -> &'static str {
+    word_for(&BORDERS, Border::default())
+}
+
+/// The methods by the names that reports have for them, and what tells apart those of like names.
+pub fn methods() -> String {
+    let listed = |method: Method| match method.entry() {
+        Entry { name, aside: "", .. } => (*name).to_owned(),
+        Entry { name, aside, .. } => format!("{name} ({aside})"),
+    };
+    Method::ALL.map(listed).join(", ")
+}
+
+fn one_of<T: Clone + Send + Sync + 'static>(
+    words: impl IntoIterator<Item = Word<T>>,
+) -> impl TypedValueParser<Value = T> {
+    let words: Vec<Word<T>> = words.into_iter().collect();
+    let possible: Vec<_> = words.iter().map(|(word, help, _)| PossibleValue::new(*word).help(*help)).collect();
+    PossibleValuesParser::new(possible).try_map(move |typed| {
+        let known = words.iter().find(|(word, ..)| *word == typed);
+        known.map(|(.., meant)| meant.clone()).ok_or("no such word")
+    })
+}
+
+fn word_for<T: Copy + PartialEq>(words: &[Word<T>], meant: T) -> &'static str {
+    words.iter().find(|(.., stands_for)| *stands_for == meant).map_or("", |(word, ..)| word)
+}

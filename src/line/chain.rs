@@ -1,0 +1,62 @@
+//! Chains: ordered lines on the page that know what they draw and where they lie in the world.
+
+use glam::{DVec2, DVec3};
+
+use crate::view::Perspective;
+
+/// What a chain draws.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Line {
+    /// Where land hides farther land: the silhouette between toward and away surface.
+    Occluding,
+    /// Where land ends against the sky.
+    Skyline,
+    /// The border of the DEM and of its voids.
+    Border,
+    /// Where land and water meet.
+    Shore,
+    /// Where water gathers and runs.
+    Drainage,
+    /// Where water parts.
+    Ridge,
+    /// A line down a slope, drawn for tone.
+    Hachure,
+    /// A line that the user gives.
+    Own,
+}
+
+/// A point of a chain.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ChainPoint {
+    /// Pixels from the page's top left corner, x right, y down; pixel centres are at halves.
+    pub place: DVec2,
+    /// Near / distance along the view axis; larger is nearer.
+    pub depth: f32,
+    /// Metres of the exaggerated world: east, north, up.
+    pub world: DVec3,
+    /// Pixels of ink in the square of 9 x 9 about it; 0 where none were [counted](super::crowded).
+    pub crowd: u32,
+}
+
+impl ChainPoint {
+    /// The point at a place on the page, by its depth.
+    pub(super) fn seen(place: DVec2, depth: f32, perspective: &Perspective) -> Self {
+        Self { place, depth, world: perspective.unproject(place, depth.into()), crowd: 0 }
+    }
+
+    /// ln depth, in which equal steps are equal ratios of distance; finite for sky too.
+    pub(super) fn log_depth(&self) -> f64 {
+        f64::from(self.depth.max(f32::MIN_POSITIVE)).ln()
+    }
+}
+
+/// An ordered polyline on the page; one point is a dot.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Chain {
+    /// What it draws.
+    pub line: Line,
+    /// At least one point, about a pixel apart while unsmoothed.
+    pub points: Vec<ChainPoint>,
+    /// Whether the last point is joined to the first, which is not repeated.
+    pub closed: bool,
+}

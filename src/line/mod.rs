@@ -1,0 +1,57 @@
+//! The lines of a page as data: curves with a kind, places on the page and in the world.
+//!
+//! What a frame of a mask method leaves behind is an [`InkRaster`]: ink, kind, sub-pixel place and depth a pixel. Its ink
+//! as a list, [`Marks`], from one raster or the pieces of a large page, is traced to [`Chain`]s, these are smoothed
+//! within a stated tolerance, and the ink about their points is counted: the [`Lines`] of the page, all that stroking
+//! needs. Chains may come from elsewhere too: [`project_polyline`] makes them from polylines of the world, hidden by the
+//! cover.
+
+pub mod chain;
+pub mod crowd;
+mod graph;
+mod grid;
+mod join;
+pub mod marks;
+pub mod overlay;
+pub mod raster;
+pub mod recession;
+pub mod smooth;
+mod thin;
+pub mod trace;
+
+pub use chain::{Chain, ChainPoint, Line};
+pub use crowd::crowded;
+pub use marks::{Mark, Marks};
+pub use overlay::{Cover, project_polyline};
+pub use raster::{InkRaster, Kind, Pixel};
+pub use recession::Recession;
+pub use smooth::smooth;
+pub use trace::trace;
+
+use crate::view::Perspective;
+
+/// The lines of a page, ready to be stroked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Lines {
+    /// Page width, px.
+    pub width: u32,
+    /// Page height, px.
+    pub height: u32,
+    /// In no particular order on the page, but the same in every run.
+    pub chains: Vec<Chain>,
+    /// From near to far.
+    pub recession: Recession,
+}
+
+impl Lines {
+    /// Traces the ink of a page, smooths within `tolerance` px, counts crowds.
+    pub fn of(marks: &Marks, perspective: &Perspective, tolerance: f64) -> Self {
+        let chains = smooth(&trace(marks, perspective), perspective, tolerance);
+        Self {
+            width: marks.width,
+            height: marks.height,
+            chains: crowded(&chains, marks, perspective),
+            recession: Recession::of(marks),
+        }
+    }
+}

@@ -1,0 +1,131 @@
+//! The mask methods on trial: a renderer draws, its ink is judged.
+
+use std::time::Instant;
+
+use glam::DVec2;
+
+use super::cost::PassCost;
+use super::figures::{FloorFigures, PassFigures, Run};
+use super::floors::Floors;
+use super::trial::{Draws, Trial, Yield};
+use super::{Floor, costs, memory};
+use crate::error::Result;
+use crate::gpu::Gpu;
+use crate::line::{Chain, InkRaster, Kind, Marks, Pixel, trace};
+use crate::plan::{Method, Plan};
+use crate::render::{PassTime, Renderer};
+use crate::surface::Surface;
+use crate::truth::{Inked, Mask};
+use crate::view::{Camera, Perspective};
+
+/// A renderer that draws by a method.
+struct Rendered<'a> {
+    renderer: &'a Renderer<'a>,
+    method: Method,
+    /// Of the last frame.
+    perspective: Perspective,
+    /// Whether a bare copy and a depth draw are timed in turn with the warm frames.
+    wants_floor: bool,
+    floor: Option<(Floor<'a>, Floors)>,
+}
+
+/// The ink of a frame.
+struct Ink {
+    raster: InkRaster,
+    perspective: Perspective,
+    method: Method,
+}
+
+/// Tries a plan on a device: its renderer is made, timed and judged; with `floor`, a bare copy and a depth draw are timed
+/// in turn with the warm frames.
+pub(super) fn try_plan(trial: &Trial<'_>, gpu: &Gpu, surface: &Surface, plan: Plan, floor: bool) -> Result<Run> {
+    memory::reset_peak();
+    let start = Instant::now();
+    let renderer = Renderer::new(gpu, surface, plan, [trial.camera.width, trial.camera.height])?;
+    let setup_ms = start.elapsed().as_secs_f64() * 1e3;
+    let mut rendered = Rendered {
+        renderer: &renderer,
+        method: plan.method,
+        perspective: Perspective::new(trial.camera, renderer.near()),
+        wants_floor: floor,
+        floor: None,
+    };
+    trial.run(&mut rendered, setup_ms)
+}
+
+impl Draws for Rendered<'_> {
+    type Yield = Ink;
+
+    fn time_of_frame(&mut self, camera: &Camera) -> Result<f64> {
+        self.perspective = Perspective::new(camera, self.renderer.near());
+        self.renderer.time_of_frame(camera)
+    }
+
+    fn yielded(&mut self) -> Result<Ink> {
+        let raster = self.renderer.read()?.raster;
+        Ok(Ink { raster, perspective: self.perspective, method: self.method })
+    }
+
+    fn passes(&mut self, camera: &Camera) -> Result<Vec<PassFigures>> {
+        let passes = self.renderer.timed_frame(camera)?.passes;
+        let costs = costs(self.renderer, camera, &self.renderer.read()?)?;
+        if self.wants_floor {
+            let bytes = costs.iter().map(PassCost::bytes).sum();
+            self.floor = Some((Floor::new(self.renderer, bytes)?, Floors::new(bytes)));
+        }
+        Ok(passes.into_iter().map(|pass| figures(pass, &costs)).collect())
+    }
+
+    fn time_floor(&mut self, camera: &Camera) -> Result<()> {
+        self.floor.as_mut().map_or(Ok(()), |(floor, floors)| floors.add(floor, camera))
+    }
+
+    fn floor(&mut self, frame_ms: f64) -> Option<FloorFigures> {
+        self.floor.take().map(|(_, floors)| floors.beside(frame_ms))
+    }
+
+    fn facets(&self) -> u64 {
+        self.renderer.facets()
+    }
+
+    fn buffers_bytes(&self) -> u64 {
+        self.renderer.buffers().bytes()
+    }
+}
+
+impl Yield for Ink {
+    fn mask(&self) -> Mask {
+        let near = self.perspective.near();
+        let inked = |([column, row], pixel): ([u32; 2], &Pixel)| Inked { column, row, distance: pixel.distance(near) };
+        let inked = pixels(&self.raster).filter(|(_, pixel)| pixel.is_ink()).map(inked).collect();
+        Mask { size: [self.raster.width, self.raster.height], inked }
+    }
+
+    fn chains(&self) -> Vec<Chain> {
+        trace(&Marks::from(&self.raster), &self.perspective)
+    }
+
+    /// Border lines have none.
+    fn places(&self) -> Vec<DVec2> {
+        if !self.method.entry().sub_pixel {
+            return Vec::new();
+        }
+        let silhouette = pixels(&self.raster).filter(|(_, pixel)| pixel.kind() == Kind::Silhouette);
+        let place = |([column, row], pixel): ([u32; 2], &Pixel)| {
+            DVec2::new(f64::from(column), f64::from(row)) + 0.5 + pixel.place()
+        };
+        silhouette.map(place).collect()
+    }
+}
+
+/// A pass's time beside what it cost.
+fn figures(PassTime { name, ms }: PassTime, costs: &[PassCost]) -> PassFigures {
+    let cost = costs.iter().find(|cost| cost.name == name);
+    let (bytes, operations) = cost.map_or((0, 0), |cost| (cost.bytes(), cost.operations));
+    PassFigures { name, ms, bytes, operations }
+}
+
+/// Pixels with their column and row.
+fn pixels(raster: &InkRaster) -> impl Iterator<Item = ([u32; 2], &Pixel)> {
+    (0..).zip(&raster.pixels).map(|(i, pixel): (u32, _)| ([i % raster.width, i / raster.width], pixel))
+}

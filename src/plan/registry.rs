@@ -1,0 +1,133 @@
+//! The registry of methods: all that the rest of the crate knows of one.
+//!
+//! A new method is a variant of [`Method`](super::Method), an entry here, its passes
+//! ([`silhouette`](crate::gpu::silhouette)) and what they cost ([`cost`](super::cost)). Names, help, lists, reports and
+//! tests follow from the entry.
+
+/// What is known of a method.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Entry {
+    /// Its name in comparisons and reports, unique; file names hold it.
+    pub name: &'static str,
+    /// Its name where variants are chosen by settings of their own: they share it.
+    pub family: &'static str,
+    /// In a line: what it does, and what to expect.
+    pub brief: &'static str,
+    /// What tells it from a method of like name, in a few words; may be empty.
+    pub aside: &'static str,
+    /// In a sentence: which pixels it inks.
+    pub rule: &'static str,
+    /// What it needs of the raster.
+    pub raster: Raster,
+    /// Whether it knows where in a pixel the line runs.
+    pub sub_pixel: bool,
+    /// Its passes in their order: names of files in `shaders/`.
+    pub passes: &'static [&'static str],
+    /// Constants of its passes, and of rasterizing for it.
+    pub constants: &'static [(&'static str, f64)],
+    /// Buffers of its own of a word a pixel, zero before each frame.
+    pub words: &'static [&'static str],
+    /// How its curve looks in plots.
+    pub look: Look,
+}
+
+/// What a method needs to know of each pixel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Raster {
+    /// The nearest facet and its depth.
+    Facets,
+    /// The nearest depths of toward and of away surface.
+    TwoDepths,
+}
+
+/// How a curve looks, told apart by each of the three alone.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Look {
+    /// Red, green, blue.
+    pub colour: [u8; 3],
+    /// Lengths of dash and gap, px; `None` for a full line.
+    pub dash: Option<[i32; 2]>,
+    /// What stands at its points.
+    pub marker: Marker,
+}
+
+/// A mark at a point of a curve.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Marker {
+    /// A filled circle.
+    Disc,
+    /// On a side.
+    Square,
+    /// On a side.
+    Triangle,
+    /// On a corner.
+    Diamond,
+    /// Two slanting strokes.
+    Cross,
+}
+
+pub(super) const WALK: Entry = Entry {
+    name: "walk",
+    family: "walk",
+    brief: "Walk the lattice between neighbouring pixels: complete",
+    aside: "",
+    rule: "A pixel is ink if the straight way on the lattice from its point on the surface to a farther neighbour's \
+           crosses a facet that faces away.",
+    raster: Raster::Facets,
+    sub_pixel: true,
+    passes: &["candidates", "pairs", "walk", "walk_rest"],
+    constants: &[],
+    words: &[],
+    look: Look { colour: [26, 26, 26], dash: None, marker: Marker::Disc },
+};
+
+pub(super) const TOWARD_AWAY: Entry = Entry {
+    name: "toward-away",
+    family: "toward-away",
+    brief: "Compare toward and away depths: never a false line, but gaps",
+    aside: "",
+    rule: "A pixel is ink if its nearest toward surface is nearer than its nearest away surface, and that is nearer \
+           than a neighbour's toward surface (Mower 2015).",
+    raster: Raster::TwoDepths,
+    sub_pixel: false,
+    passes: &["toward_away"],
+    constants: &[("wide", 0.0), ("conservative", 0.0)],
+    words: &[],
+    look: Look { colour: [0, 90, 200], dash: Some([12, 4]), marker: Marker::Square },
+};
+
+pub(super) const TOWARD_AWAY_WIDE: Entry = Entry {
+    name: "toward-away-wide",
+    brief: "Compare toward and away depths, away surface wherever it touches the pixel: fewer gaps",
+    rule: "The same as toward-away, with away surface counted wherever it touches the pixel or that neighbour.",
+    constants: &[("wide", 1.0), ("conservative", 1.0)],
+    words: &["touched"],
+    look: Look { colour: [0, 110, 95], dash: Some([6, 4]), marker: Marker::Triangle },
+    ..TOWARD_AWAY
+};
+
+pub(super) const ADJACENCY: Entry = Entry {
+    name: "adjacency",
+    family: "adjacency",
+    brief: "Compare the facets of neighbouring pixels: floods small facets",
+    aside: "facets that share an edge",
+    rule: "A pixel is ink if a neighbour at least as far shows a facet that shares no lattice edge with its own \
+           (Mower 2015).",
+    raster: Raster::Facets,
+    sub_pixel: false,
+    passes: &["adjacency"],
+    constants: &[("shared_vertices", 2.0)],
+    words: &[],
+    look: Look { colour: [184, 58, 0], dash: Some([3, 4]), marker: Marker::Diamond },
+};
+
+pub(super) const ADJACENCY_CORNER: Entry = Entry {
+    name: "adjacency-corner",
+    brief: "Compare the facets of neighbouring pixels, corners shared: floods less",
+    aside: "",
+    rule: "A pixel is ink if a neighbour at least as far shows a facet that shares no lattice vertex with its own \
+           (Mower 2015).",
+    constants: &[("shared_vertices", 1.0)],
+    look: Look { colour: [130, 40, 130], dash: Some([18, 6]), marker: Marker::Cross },
+    ..ADJACENCY
+};

@@ -1,0 +1,59 @@
+//! Between the world and a page with depth: a camera, its near plane, and what projecting takes worked out.
+//!
+//! Depth is near / distance along the view axis (infinite reversed Z): larger is nearer, 0 is endlessly far. It is linear
+//! on the page along a straight line of the world.
+
+use glam::{DVec2, DVec3};
+
+use super::Camera;
+
+/// How a camera sees, in both directions.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Perspective {
+    eye: DVec3,
+    /// Right, up and forward.
+    axes: [DVec3; 3],
+    /// Pixels across and down.
+    size: DVec2,
+    /// Pixels per unit of tangent.
+    focal: f64,
+    /// Metres along the view axis to the near plane.
+    near: f64,
+}
+
+impl Perspective {
+    /// What a camera sees, whose depths are those of a near plane `near` metres before it.
+    pub fn new(camera: &Camera, near: f64) -> Self {
+        let size = DVec2::new(f64::from(camera.width), f64::from(camera.height));
+        Self { eye: camera.eye, axes: camera.axes(), size, focal: camera.focal(), near }
+    }
+
+    /// Pixels across and down.
+    pub fn size(&self) -> DVec2 {
+        self.size
+    }
+
+    /// Metres along the view axis to the near plane.
+    pub fn near(&self) -> f64 {
+        self.near
+    }
+
+    /// Metres along the view axis to a point of the world.
+    pub fn distance(&self, point: DVec3) -> f64 {
+        (point - self.eye).dot(self.axes[2])
+    }
+
+    /// Place on the page in px and depth of a point of the world; meaningless where its distance is not positive.
+    pub fn project(&self, point: DVec3) -> (DVec2, f64) {
+        let [right, up, _] = self.axes;
+        let (p, distance) = (point - self.eye, self.distance(point));
+        (self.size / 2.0 + DVec2::new(p.dot(right), -p.dot(up)) * (self.focal / distance), self.near / distance)
+    }
+
+    /// The point of the world at a place on the page in px at a depth above 0.
+    pub fn unproject(&self, place: DVec2, depth: f64) -> DVec3 {
+        let [right, up, forward] = self.axes;
+        let d = (place - self.size / 2.0) / self.focal;
+        self.eye + (forward + right * d.x - up * d.y) * (self.near / depth)
+    }
+}

@@ -1,0 +1,83 @@
+//! The registry of methods: every entry is complete, and no two are mistaken for each other.
+
+use std::collections::HashSet;
+use std::fmt::Debug;
+use std::hash::Hash;
+
+use hachure::gpu::silhouette;
+use hachure::plan::Method;
+use hachure::plan::registry::{Entry, Look, Marker};
+
+use crate::common::gpu;
+
+/// What is wrong with these entries.
+fn faults(entries: &[Entry]) -> Vec<String> {
+    let mut faults = Vec::new();
+    for entry in entries {
+        let texts = [("name", entry.name), ("family", entry.family), ("brief", entry.brief), ("rule", entry.rule)];
+        let empty = texts.iter().filter(|(_, text)| text.trim().is_empty());
+        faults.extend(empty.map(|(what, _)| format!("{}: no {what}", entry.name)));
+        if entry.passes.is_empty() {
+            faults.push(format!("{}: no pass", entry.name));
+        }
+        let pass = |name| silhouette::pass(gpu(), name, true, [64, 48], entry.constants).err();
+        faults.extend(entry.passes.iter().filter_map(|name| pass(name)).map(|e| format!("{}: {e}", entry.name)));
+        if entries.iter().filter(|other| other.family == entry.family && other.name == entry.family).count() != 1 {
+            faults.push(format!("{}: its family has not one plain method", entry.name));
+        }
+    }
+    let looks = || entries.iter().map(|entry| entry.look);
+    faults.extend(twice("name", entries.iter().map(|entry| entry.name)));
+    faults.extend(twice("brief", entries.iter().map(|entry| entry.brief)));
+    faults.extend(twice("rule", entries.iter().map(|entry| entry.rule)));
+    faults.extend(twice("colour", looks().map(|look| look.colour)));
+    faults.extend(twice("dash", looks().map(|look| look.dash)));
+    faults.extend(twice("marker", looks().map(|look| look.marker)));
+    faults
+}
+
+/// What two entries have in common.
+fn twice<T: Copy + Debug + Eq + Hash>(what: &str, values: impl Iterator<Item = T>) -> Option<String> {
+    let mut seen = HashSet::new();
+    let mut values = values;
+    values.find(|value| !seen.insert(*value)).map(|value| format!("two have the {what} {value:?}"))
+}
+
+fn registry() -> Vec<Entry> {
+    Method::ALL.map(|method| *method.entry()).to_vec()
+}
+
+#[test]
+fn every_method_is_complete_and_unlike_the_others() {
+    assert_eq!(faults(&registry()), Vec::<String>::new());
+    for method in Method::ALL {
+        assert_eq!(Method::named(method.entry().name), Some(method));
+    }
+    assert_eq!(Method::named("pen"), None);
+    let default = Method::default().entry();
+    assert_eq!(default.name, default.family, "a default without flags of its own");
+}
+
+/// Spoils an entry.
+type Spoil = fn(&mut Entry);
+
+#[test]
+fn an_entry_that_lacks_something_is_noticed() {
+    let spoils: [(&str, Spoil); 9] = [
+        ("no brief", |entry| entry.brief = " "),
+        ("no rule", |entry| entry.rule = ""),
+        ("no pass", |entry| entry.passes = &[]),
+        ("no pass is named flood", |entry| entry.passes = &["flood"]),
+        ("not one plain method", |entry| entry.family = "flood"),
+        ("the name \"toward-away\"", |entry| entry.name = "toward-away"),
+        ("the colour [26, 26, 26]", |entry| entry.look = Look { colour: [26, 26, 26], ..entry.look }),
+        ("the dash None", |entry| entry.look = Look { dash: None, ..entry.look }),
+        ("the marker Disc", |entry| entry.look = Look { marker: Marker::Disc, ..entry.look }),
+    ];
+    for (fault, spoil) in spoils {
+        let mut entries = registry();
+        spoil(entries.last_mut().expect("an entry"));
+        let found = faults(&entries);
+        assert!(found.iter().any(|found| found.contains(fault)), "{fault}: {found:?}");
+    }
+}

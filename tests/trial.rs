@@ -1,0 +1,142 @@
+//! A method that yields curves goes through a trial as those do that yield ink: truth of a coarser level takes its part.
+
+use std::cell::RefCell;
+use std::time::Instant;
+
+use glam::{DVec2, DVec3};
+use hachure::error::Result;
+use hachure::line::{Chain, ChainPoint, Line};
+use hachure::measure::compare::{Found, Shown};
+use hachure::measure::figures::{DrawnLevel, PassFigures, Run};
+use hachure::measure::trial::{Draws, Trial, Yield};
+use hachure::report::pictures::of_shown;
+use hachure::surface::{Level, Surface};
+use hachure::truth::metrics::Judge;
+use hachure::truth::{Mask, Piece, Terrain, Truth};
+use hachure::view::{Camera, Perspective};
+
+use crate::scenes::{level, look, rough};
+
+/// Metres to a near plane.
+const NEAR: f64 = 1.0;
+
+/// Draws the lines of a level as curves.
+struct Curves<'a> {
+    terrain: &'a Terrain<'a>,
+    level: Level,
+    last: Option<(Truth, Perspective)>,
+}
+
+/// The curves of a frame.
+struct Seen {
+    truth: Truth,
+    perspective: Perspective,
+}
+
+impl Draws for Curves<'_> {
+    type Yield = Seen;
+
+    fn time_of_frame(&mut self, camera: &Camera) -> Result<f64> {
+        let start = Instant::now();
+        self.last = Some((self.terrain.truth(camera, self.level), Perspective::new(camera, NEAR)));
+        Ok(start.elapsed().as_secs_f64() * 1e3)
+    }
+
+    fn yielded(&mut self) -> Result<Seen> {
+        let (truth, perspective) = self.last.clone().expect("a frame");
+        Ok(Seen { truth, perspective })
+    }
+
+    fn passes(&mut self, camera: &Camera) -> Result<Vec<PassFigures>> {
+        Ok(vec![PassFigures { name: "truth", ms: self.time_of_frame(camera)?, bytes: 0, operations: 0 }])
+    }
+
+    fn facets(&self) -> u64 {
+        self.last.as_ref().map_or(0, |(truth, _)| truth.facets)
+    }
+
+    fn buffers_bytes(&self) -> u64 {
+        0
+    }
+}
+
+impl Yield for Seen {
+    fn mask(&self) -> Mask {
+        Mask::of_truth(&self.truth)
+    }
+
+    fn chains(&self) -> Vec<Chain> {
+        let point = |place: DVec2, distance: f64| {
+            let depth = NEAR / distance;
+            let world: DVec3 = self.perspective.unproject(place, depth);
+            ChainPoint { place, depth: depth as f32, world, crowd: 0 }
+        };
+        let chain = |piece: &Piece| Chain {
+            line: Line::Occluding,
+            points: piece.ends.map(|end| point(end, piece.distance)).to_vec(),
+            closed: false,
+        };
+        self.truth.on_page().map(chain).collect()
+    }
+
+    fn places(&self) -> Vec<DVec2> {
+        self.truth.on_page().map(Piece::middle).collect()
+    }
+}
+
+/// A run of the curves of a level against truth, and its mask as PNG.
+fn try_level(terrain: &Terrain<'_>, camera: &Camera, of: Level, judge: &Judge<'_>) -> (Run, Vec<u8>) {
+    let mask = RefCell::new(Vec::new());
+    let trial = Trial {
+        camera,
+        scene: "rough",
+        method: "curves",
+        level: DrawnLevel::Of(of.subdivisions()),
+        repeat: 2,
+        judge,
+        truth_pop: 0.0,
+        found: &|found| {
+            if let Found::Picture(name, shown @ Shown::Mask(_)) = found {
+                *mask.borrow_mut() = of_shown(name.to_owned(), shown)?.png;
+            }
+            Ok(())
+        },
+    };
+    let run = trial.run(&mut Curves { terrain, level: of, last: None }, 0.0).expect("a run");
+    (run, mask.take())
+}
+
+#[test]
+fn curves_are_judged_as_ink_is() {
+    let surface = Surface::new(rough(40, 36, 1.0, 4.0, false));
+    let [west, south, east, north] = surface.dem().extent();
+    let middle = DVec3::new((west + east) / 2.0, (south + north) / 2.0, 0.0);
+    let camera = look(middle + DVec3::new(0.0, -700.0, 160.0), middle, 60.0, [160, 96]);
+    let terrain = Terrain::new(&surface);
+    let truth = terrain.truth(&camera, level(8));
+    let judge = Judge::new(&truth).expect("a line");
+    let half = terrain.truth(&camera, level(4));
+    let mask = Mask::of_truth(&half);
+    let direct = judge.measure(&mask).scores();
+    let (run, png) = try_level(&terrain, &camera, level(4), &judge);
+
+    let agreement = direct.agreement();
+    assert!(mask.inked.len() > 100 && agreement.f() > 0.5, "{} px, {agreement:?}", mask.inked.len());
+    assert_eq!([run.precision, run.recall, run.f], [agreement.precision, agreement.recall, agreement.f()]);
+    assert_eq!([run.gaps, run.spurious, run.inked], [direct.gaps, direct.spurious, mask.inked.len()]);
+    assert_eq!([run.chamfer_px, run.h95_px], [direct.chamfer, direct.h95]);
+    assert_eq!((run.chains, run.facets), (half.on_page().count(), half.facets));
+    let place = run.place.as_ref().expect("curves have places");
+    assert_eq!(
+        Some(place.p95_px),
+        judge.offsets(&half.on_page().map(Piece::middle).collect::<Vec<_>>()).map(|o| o.p95)
+    );
+    assert_eq!((run.mask_hashes.len(), run.passes.len()), (2, 1));
+    let picture = image::load_from_memory(&png).expect("a PNG").to_luma8();
+    assert!(picture.pixels().map(|pixel| pixel.0[0] == 0).eq(mask.pixels()), "the mask is that of the curves");
+
+    // Negative control: the curves of another level.
+    let (coarse, other) = try_level(&terrain, &camera, level(1), &judge);
+    assert!(coarse.f < run.f && coarse.chamfer_px > run.chamfer_px && other != png, "level 1 passes for level 4");
+    assert_ne!(coarse.mask_hashes, run.mask_hashes);
+}
