@@ -41,7 +41,7 @@ pub struct Fixed {
 }
 
 /// Completes a view. A given eye looks at the middle of the DEM, level, unless told otherwise. The result is rounded to a
-/// power of ten below a tenth of a cell, 1 m at most, and tenths of degrees, so that the flags printed for it repeat it.
+/// power of ten below a tenth of a cell, 1 m at most, and tenths of degrees, so that what is printed of it repeats it.
 ///
 /// `dem` must hold a valid sample. Of a filed DEM a thinned one is looked at.
 ///

@@ -1,7 +1,7 @@
 //! Which band of a raster holds the elevations, and whether it can: colours and transparency are none.
 //!
-//! Where no band is asked for the one is taken whose name says that it is the elevation, else the first whose name says nothing else,
-//! and transparency is passed over. Not handled: names in other languages than English.
+//! Unless a band is asked for, the one is taken whose name says that it is the elevation, else the first whose name says
+//! nothing else, and transparency is passed over. Not handled: names in other languages than English.
 
 use gdal::Metadata;
 use gdal::raster::{ColorInterpretation, GdalDataType, RasterBand};

@@ -1,8 +1,9 @@
 //! Depths below zero, told from heights by what the file says of its band, in the words of the CF conventions.
 //!
-//! The encoding that is asked for is surer than any file, `positive` is sure, and so is the standard name. The long name is for people: where
-//! it, or the name of the band or variable, has a word for heights, too, depth is only spoken of; and where it alone speaks
-//! of depth the numbers have a say: those that are below zero already are heights. Not handled: other words and languages.
+//! An encoding that is asked for is surer than any file, `positive` is sure, and so is the standard name. The long name is
+//! for people: where it, or the name of the band or variable, has a word for heights, too, depth is only spoken of; and
+//! where it alone speaks of depth the numbers have a say: those that are below zero already are heights. Not handled:
+//! other words and languages.
 
 use super::choice::has_word;
 use super::elevation::{Elevation, Reading};
