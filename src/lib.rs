@@ -59,7 +59,7 @@
 //! | [`view`] | the camera, how it sees, and a view where none is given |
 //! | [`plan`] | what a frame needs: the registry of methods, levels, the horizon, pieces, batches; what is left out |
 //! | [`gpu`] | device, buffers, one adapter a pass; the mathematics stands in `shaders/` |
-//! | [`line`] | curves with kind and world place: ink traced to chains, smoothed; lines of the world projected |
+//! | [`mod@line`] | curves with kind and world place: ink traced to chains, smoothed; lines of the world projected |
 //! | [`ink`] | chains to strokes to pictures |
 //! | [`truth`] | where the lines really are, in f64, and how far ink is from them; knows nothing of the GPU |
 //! | [`render`] | the whole algorithm on one screen |

@@ -66,8 +66,9 @@ fn traced_chains_lie_on_the_surface_where_the_page_shows_them() {
     assert!(points > 60, "{points} points");
     assert!(page <= REPROJECTED_PX, "{page} px");
     assert!(surface <= CHAIN_OFF_SURFACE_PX, "{surface} px");
-    // Negative controls: a near plane that is not the raster's, and points moved by a pixel.
-    assert!(off_surface(&chains(1.05)) > CHAIN_OFF_SURFACE_PX, "another near plane is not noticed");
+    // Negative controls: a near plane that is not the raster's (along the line of sight a silhouette stays near the hill for
+    // a while), and points moved by a pixel.
+    assert!(off_surface(&chains(1.25)) > CHAIN_OFF_SURFACE_PX, "another near plane is not noticed");
     let mut moved = traced;
     moved.iter_mut().flat_map(|chain| &mut chain.points).for_each(|point| point.place.x += 1.0);
     assert!(reprojected(&moved) > REPROJECTED_PX, "a moved place is not noticed");

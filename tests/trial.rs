@@ -84,6 +84,11 @@ impl Yield for Seen {
     }
 }
 
+/// The camera so many metres on.
+fn moved(camera: &Camera, metres: f64) -> Camera {
+    Camera { eye: camera.eye + camera.axes()[2] * metres, ..*camera }
+}
+
 /// A run of the curves of a level against truth, and its mask as PNG.
 fn try_level(terrain: &Terrain<'_>, camera: &Camera, of: Level, judge: &Judge<'_>) -> (Run, Vec<u8>) {
     let mask = RefCell::new(Vec::new());
@@ -125,7 +130,9 @@ fn curves_are_judged_as_ink_is() {
     assert_eq!([run.precision, run.recall, run.f], [agreement.precision, agreement.recall, agreement.f()]);
     assert_eq!([run.gaps, run.spurious, run.inked], [direct.gaps, direct.spurious, mask.inked.len()]);
     assert_eq!([run.chamfer_px, run.h95_px], [direct.chamfer, direct.h95]);
-    assert_eq!((run.chains, run.facets), (half.on_page().count(), half.facets));
+    assert_eq!(run.chains, half.on_page().count());
+    let last = terrain.truth(&moved(&camera, 2.0), level(4));
+    assert_eq!(run.facets, last.facets, "facets are those of the last frame");
     let place = run.place.as_ref().expect("curves have places");
     assert_eq!(
         Some(place.p95_px),

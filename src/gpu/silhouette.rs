@@ -24,7 +24,7 @@ pub fn passes(
 /// Compiles the pass of this name, for pages of `size` pixels and frames whose vertices are all at hand or not.
 ///
 /// # Errors
-/// [`Error::Gpu`] where no pass has the name; see [`Pass::new`].
+/// [`Error::Mistake`] where no pass has the name; see [`Pass::new`].
 pub fn pass(
     gpu: &Gpu,
     name: &str,
@@ -39,6 +39,6 @@ pub fn pass(
         "pairs" => (pairs::pass(gpu, constants)?, pairs::EXTENT),
         "walk" => (walk::pass(gpu, keeps_vertices, constants)?, walk::EXTENT),
         "walk_rest" => (walk_rest::pass(gpu, keeps_vertices, constants)?, walk_rest::EXTENT),
-        _ => return Err(Error::Gpu { what: format!("no pass is named {name}") }),
+        _ => return Err(Error::Mistake { what: format!("no pass is named {name}") }),
     })
 }

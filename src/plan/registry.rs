@@ -1,8 +1,8 @@
 //! The registry of methods: all that the rest of the crate knows of one.
 //!
 //! A new method is a variant of [`Method`](super::Method), an entry here, its passes
-//! ([`silhouette`](crate::gpu::silhouette)) and what they cost ([`cost`](super::cost)). Names, help, lists, reports and
-//! tests follow from the entry.
+//! ([`silhouette`](crate::gpu::silhouette)) and what they cost ([`cost`](crate::measure::cost)). Names, help, lists,
+//! reports and tests follow from the entry.
 
 /// What is known of a method.
 #[derive(Debug, Clone, Copy, PartialEq)]
