@@ -72,6 +72,12 @@ pub enum Error {
         /// Which part, and the library's words.
         what: String,
     },
+    /// Something that no input and no driver can have caused.
+    #[error("{what}; that is hachure's mistake, please report it with the command")]
+    Mistake {
+        /// What is wrong, and where.
+        what: String,
+    },
     /// The device was lost or hung; trying again may help.
     #[error("the GPU was lost: {what}; try again, or use `--adapter cpu`")]
     DeviceLost {

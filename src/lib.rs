@@ -7,11 +7,12 @@
 //! use hachure::gpu::{AdapterChoice, Gpu, Int64};
 //! use hachure::view::{Fixed, choose};
 //! use hachure::{ink, plan::Plan, render::Renderer, surface::Surface};
+//! use std::sync::Arc;
 //!
-//! let surface = Surface::new(read("dem/golden-gate.tif", &ReadOptions::default())?);
+//! let surface = Arc::new(Surface::new(read("dem/golden-gate.tif", &ReadOptions::default())?));
 //! let camera = choose(surface.dem(), Fixed::default(), 60.0, 1200, 600)?;
-//! let gpu = Gpu::open(&AdapterChoice::Best, Int64::IfPresent)?;
-//! let page = Renderer::new(&gpu, &surface, Plan::default(), [1200, 600])?.page(&camera, |_| ())?;
+//! let gpu = Arc::new(Gpu::open(&AdapterChoice::Best, Int64::IfPresent)?);
+//! let page = Renderer::new(gpu, surface)?.page(&Plan::default(), &camera, |_| ())?;
 //! let drawing = ink::draw(&page.marks, &ink::Style::for_page(1200));
 //! ink::write_png(&drawing, std::fs::File::create("picture.png")?)?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -24,11 +25,11 @@
 //! | read | raster files | [`Dem`](dem::Dem): a north-up grid of metres, voids marked | [`dem::read()`], CPU |
 //! | surface | the grid | [`Surface`](surface::Surface): one normal a sample, cubic PN triangles between them | CPU, once a DEM |
 //! | view | flags, or nothing | [`Camera`](view::Camera): eye, directions, page | CPU |
-//! | plan | what is asked | [`Plan`](plan::Plan): method, level, border | CPU |
-//! | upload | surface and plan | [`Renderer`](render::Renderer): buffers and compiled passes | once a scene |
-//! | frame | a camera | the mask, on the device: tessellate, facing, rasterize, silhouette, border | [`Renderer::frame`](render::Renderer::frame), GPU |
-//! | read back | the mask | [`Frame`](render::Frame): ink, kind, sub-pixel place and depth a pixel | [`Renderer::read`](render::Renderer::read) |
-//! | page | a camera | [`Page`](render::Page): the ink alone, frame and read-back for each piece of a page of any size | [`Renderer::page`](render::Renderer::page) |
+//! | plan | what is asked ([`Plan`](plan::Plan): method, level, border), a camera | [`Frame`](plan::Frame): lattice, batches, passes, what is left out | CPU |
+//! | upload | surface and frame | [`Renderer`](render::Renderer): buffers and compiled passes | what is not there yet |
+//! | frame | plan and camera | the mask, on the device: tessellate, facing, rasterize, silhouette, border | [`Renderer::frame`](render::Renderer::frame), GPU |
+//! | read back | the mask | [`Drawn`](render::Drawn): ink, kind, sub-pixel place and depth a pixel | [`Renderer::read`](render::Renderer::read) |
+//! | page | plan and camera | [`Page`](render::Page): the ink alone, frame and read-back for each piece of a page of any size | [`Renderer::page`](render::Renderer::page) |
 //! | ink | the page | [`Drawing`](ink::Drawing): layers of smoothed strokes | [`ink::draw`], CPU |
 //! | write | the drawing | a PNG | [`ink::write_png`] |
 //! | truth | surface and camera | [`Truth`](truth::Truth): where the lines really are | [`Terrain::truth`](truth::Terrain::truth), CPU |
@@ -38,8 +39,8 @@
 //! World coordinates are metres, x east, y north, z up and exaggerated; angles are degrees, azimuth clockwise from grid
 //! north; pages are pixels from the top left corner. [`Georeference`](dem::Georeference) leads from there to the
 //! coordinates of the file and to longitude and latitude. Whatever can go wrong is an [`Error`](error::Error) of one
-//! line: what, where, remedy. A renderer draws as many frames as are asked of it; for each the camera is uploaded, and of an adaptive
-//! lattice what is not there yet.
+//! line: what, where, remedy. A renderer draws as many frames as are asked of it, by any plan, on a page of any size; for each the
+//! camera is uploaded, and what is not there yet.
 //!
 //! # Modules
 //!
@@ -52,7 +53,7 @@
 //! | [`dem`] | reads and holds the grid; alone knows GDAL |
 //! | [`surface`] | vertex normals, PN patches, the lattice and its IDs, bounds of chunks |
 //! | [`view`] | the camera, and a view where none is given |
-//! | [`plan`] | what a frame needs: method, batches |
+//! | [`plan`] | what a frame needs, as data: lattice, batches, passes |
 //! | [`gpu`] | device, buffers, one adapter a pass; the mathematics stands in `shaders/` |
 //! | [`ink`] | mask to chains to strokes to pictures |
 //! | [`truth`] | where the lines really are, in f64, and how far ink is from them; knows nothing of the GPU |

@@ -3,7 +3,7 @@
 use std::io::{Write, stderr};
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 use std::thread;
 
 use hachure::gpu::{AdapterChoice, Gpu, Int64};
@@ -12,9 +12,9 @@ use hachure::gpu::{AdapterChoice, Gpu, Int64};
 ///
 /// # Panics
 /// Without an adapter: nothing drawn is nothing proven.
-pub fn gpu() -> &'static Gpu {
-    static GPU: OnceLock<Gpu> = OnceLock::new();
-    GPU.get_or_init(|| Gpu::open(&AdapterChoice::Best, Int64::IfPresent).expect("an adapter"))
+pub fn gpu() -> &'static Arc<Gpu> {
+    static GPU: OnceLock<Arc<Gpu>> = OnceLock::new();
+    GPU.get_or_init(|| Arc::new(Gpu::open(&AdapterChoice::Best, Int64::IfPresent).expect("an adapter")))
 }
 
 /// The folder of shared terrain named by `HACHURE_DEMS`. `None`, with a line that says so, when the variable is

@@ -1,14 +1,16 @@
 //! What passes cost: bytes of small frames counted by hand, and that more work never costs less.
 
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
 use hachure::plan::cost::{PassCost, Quantities};
 use hachure::plan::{Border, Detail, Method, Plan, Share, Visibility};
-use hachure::render::Renderer;
 use hachure::surface::{Lattice, Surface};
 use hachure::view::Camera;
 
-use crate::scenes::{METHODS, gpu, gpu_without_int64, level, look, rough};
+use crate::frames::{METHODS, Planned};
+use crate::scenes::{gpu, gpu_without_int64, level, look, rough};
 
 /// 17 x 17 samples, flat: one chunk at level 1, four at level 2.
 fn flat() -> Surface {
@@ -136,17 +138,17 @@ fn more_work_never_costs_less() {
 
 #[test]
 fn every_pass_that_is_timed_has_a_cost() {
-    let surface = Surface::new(rough(70, 60, 1.0, 6.0, true));
+    let surface = Arc::new(Surface::new(rough(70, 60, 1.0, 6.0, true)));
     let camera = from_south(&surface);
     let details: [Detail; 2] = [level(4).into(), Detail::default()];
     for (name, method) in METHODS {
         for gpu in [gpu(), gpu_without_int64()] {
             for detail in details {
                 let plan = Plan::new(detail, method, Border::On);
-                let renderer = Renderer::new(gpu, &surface, plan, [camera.width, camera.height]).expect("a renderer");
+                let mut renderer = Planned::new(gpu, &surface, plan);
                 let timed = renderer.timed_frame(&camera).expect("a timed frame");
                 let frame = renderer.read().expect("its ink");
-                let costs = renderer.costs(&camera, &frame).expect("costs");
+                let costs = renderer.costs(&frame).expect("costs");
                 let names: Vec<_> = costs.iter().map(|cost| cost.name).collect();
                 assert_eq!(names, timed.passes.iter().map(|pass| pass.name).collect::<Vec<_>>(), "{name}, {detail:?}");
                 for cost in &costs {

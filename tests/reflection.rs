@@ -5,9 +5,9 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::mem::offset_of;
 
-use hachure::gpu::buffers::Room;
+use hachure::gpu::Capacity;
 use hachure::gpu::pass::reflect;
-use hachure::gpu::sizes::{BLOCK, LARGEST_BINDING, fits, written};
+use hachure::gpu::sizes::{BLOCK, LARGEST_BINDING, fits, of_page, of_scene};
 use hachure::gpu::uniforms::{BatchUniform, ChunkUniform, Counts, SceneUniform};
 use hachure::gpu::{CameraUniform, adjacency, border, candidates, compose, depth_draw, facing, pairs};
 use hachure::gpu::{project, rasterize, rasterize_large, seam, tessellate, toward_away, walk, walk_rest};
@@ -17,7 +17,7 @@ use hachure::surface::rim::RimEdge;
 use hachure::surface::{Lattice, lattice, quadtree, tile};
 use wgpu::naga;
 
-use crate::drawn::{BESIDE, CLIPPED, MISSING};
+use crate::frames::{BESIDE, CLIPPED, MISSING};
 use crate::scenes::level;
 
 mod on_device;
@@ -233,11 +233,11 @@ fn every_binding_fits_at_every_level() {
     for n in [1, 2, 4, 8, 16, 32, 64] {
         let lattice = Lattice::uniform(&dem, level(n)).expect("IDs suffice");
         let chunks = lattice.chunks().len() as u64;
-        let room = Room::of(&lattice);
+        let room = Capacity::of(&lattice);
         // Cells of 450 x 450 samples in tiles of 16 x 16.
         assert_eq!((room.chunks as usize, room.tiles), (lattice.chunks().len(), 29 * 29));
         assert_eq!(room.patched, if n == 1 { 0 } else { 29 * 29 }, "facets of level 1 are planes between samples");
-        let sizes = written(room, [16_384, 1024]).expect("a page of this size");
+        let sizes = [of_scene(room), of_page([16_384, 1024]).expect("a page of this size")].concat();
         for (name, size) in &sizes {
             assert!(fits(name, *size).is_ok(), "level {n}: {name} takes {size} bytes");
         }
@@ -250,5 +250,5 @@ fn every_binding_fits_at_every_level() {
     assert!(fits("heights", LARGEST_BINDING).is_ok());
     let line = fits("heights", LARGEST_BINDING + 1).expect_err("a byte too many").to_string();
     assert!(line.contains("129 MiB of heights, a device binds 128; use --level auto or a --crop"), "{line}");
-    assert!(written(Room { chunks: 1, nodes: 1, tiles: 1, patched: 0 }, [16_384, 1025]).is_err());
+    assert!(of_page([16_384, 1025]).is_err());
 }

@@ -3,6 +3,7 @@
 use std::cell::Cell;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::thread::available_parallelism;
 
 use super::cache::CacheArguments;
@@ -134,7 +135,7 @@ pub fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
     let folder = Folder::open(&arguments.output, pictures, Taken::inputs(inputs))?;
     let scenes_asked = (views().count() * sizes.len()) as f64;
     let extra = if arguments.floor { depth_draw::FEATURE } else { wgpu::Features::empty() };
-    let (done, gpu) = (Cell::new(0.0), arguments.device.open_with(extra, talk)?);
+    let (done, gpu) = (Cell::new(0.0), Arc::new(arguments.device.open_with(extra, talk)?));
     let hearing = Hearing {
         stage: &|stage, share| talk.progress(stage, (done.get() + share) / scenes_asked),
         warn: &|words| talk.warn(words),
@@ -148,7 +149,7 @@ pub fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
         dem.held()?;
         dem.check_patches()?;
         cells::warn(&dem, arguments.exaggeration, talk);
-        let surface = Surface::new(dem);
+        let surface = Arc::new(Surface::new(dem));
         let terrain = Terrain::new(&surface);
         for (named, size) in job.views.iter().flat_map(|view| sizes.iter().map(move |size| (view, *size))) {
             // Heights above ground are above the level of `hachure draw`.
@@ -156,7 +157,7 @@ pub fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
             (view.camera.width, view.camera.height) = (size.width, size.height);
             let name = scene_name(&named.name, size, &sizes);
             view.warn_below_ground(&surface, LevelChoice::Auto.near(), talk);
-            let found = comparison.scene(&gpu, &name, &terrain, &view.camera, &hearing);
+            let found = comparison.scene(&gpu, &surface, &name, &terrain, &view.camera, &hearing);
             let found = found.map_err(|error| blank::with_place(error, &surface, &view))?;
             let (scene, of_scene, drawn) = arguments.scene(name, &job.files, &surface, &view, found);
             scenes.push(scene);

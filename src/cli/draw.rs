@@ -2,6 +2,7 @@
 
 use std::panic::resume_unwind;
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::thread;
 use std::time::Instant;
 
@@ -20,11 +21,10 @@ use super::{blank, cells};
 use crate::dem::Dem;
 use crate::error::{Error, Result, shown};
 use crate::files::Taken;
-use crate::gpu::Gpu;
 use crate::ink::{self, Style};
 use crate::plan::detail::ERROR_PX;
-use crate::plan::left_out::{LeftOut, levels};
-use crate::plan::{Border, Detail, Method, Plan, Share};
+use crate::plan::left_out::LeftOut;
+use crate::plan::{Border, Detail, Frame, Method, Plan, Share};
 use crate::render::{Page, PassTime, Renderer};
 use crate::report::results::DrawnLevel;
 use crate::surface::Surface;
@@ -154,7 +154,6 @@ struct DemReport {
 pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     let method = arguments.method()?;
     arguments.detail()?;
-    let size = [arguments.view.size.width, arguments.view.size.height];
     arguments.view.check()?;
     arguments.outputs.check()?;
     let started = Instant::now();
@@ -166,7 +165,7 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     if !dem.is_filed() {
         dem.check_patches()?;
     }
-    let surface = Surface::new(dem);
+    let surface = Arc::new(Surface::new(dem));
     let cache = arguments.cache.cache();
     let prepare = || {
         cache.prepare(&surface, &|words| talk.warn(words), &|done| {
@@ -190,20 +189,21 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     view.warn_below_ground(&surface, arguments.level.near(), talk);
     talk.say(&format!("view: {}", view.flags()))?;
     view.lonlat_flag().map_or(Ok(()), |flag| talk.say(&format!("or with: {flag}")))?;
-    let gpu = gpu?;
+    let gpu = Arc::new(gpu?);
     DeviceArguments::tell(&gpu, talk)?;
     talk.progress("drawing", 0.3);
-    let renderer = Renderer::new(&gpu, &surface, Plan::new(arguments.detail()?, method, arguments.border), size)?;
-    let page = renderer.page(&view.camera, |share| talk.progress("drawing", 0.3 + 0.3 * share))?;
+    let mut renderer = Renderer::new(gpu, surface.clone())?;
+    let plan = Plan::new(arguments.detail()?, method, arguments.border);
+    let page = renderer.page(&plan, &view.camera, |share| talk.progress("drawing", 0.3 + 0.3 * share))?;
     cache.discard_damaged(surface.dem(), &|words| talk.warn(words));
     let drawing = ink::draw(&page.marks, &Style::for_page(view.camera.width));
     let report = || {
         talk.progress("timing more frames", 0.6);
-        arguments.report(&gpu, &surface, &renderer, &view, method, &page)
+        arguments.report(&mut renderer, &view, &page)
     };
     let report = outputs.want_report().then(report).transpose()?;
     if arguments.explain || talk.is_verbose() {
-        explain(talk, &renderer, &renderer.left_out(&view.camera)?, report.as_ref())?;
+        explain(talk, &page.frame, &page.frame.left_out(&surface)?, report.as_ref())?;
     }
     talk.progress("writing", 0.8);
     outputs.write(&drawing, &page, report.as_ref())?;
@@ -215,12 +215,12 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     talk.say(&format!(
         "{}: {} facets, {} of {} pixels inked, {:.2} s",
         shown(arguments.outputs.drawing()),
-        renderer.facets(),
+        page.frame.facets(&surface),
         page.marks.inked(),
         u64::from(view.camera.width) * u64::from(view.camera.height),
         started.elapsed().as_secs_f64()
     ))?;
-    blank::warn(&renderer, &surface, &view, arguments.level, &page, talk);
+    blank::warn(&mut renderer, &view, arguments.level, &page, talk);
     Ok(())
 }
 
@@ -251,26 +251,19 @@ impl DrawArguments {
         })
     }
 
-    fn report(
-        &self,
-        gpu: &Gpu,
-        surface: &Surface,
-        renderer: &Renderer<'_>,
-        view: &View,
-        method: Method,
-        page: &Page,
-    ) -> Result<Report> {
-        let camera = &view.camera;
-        let pieces = renderer.pieces().iter().len();
+    fn report(&self, renderer: &mut Renderer, view: &View, page: &Page) -> Result<Report> {
+        let Page { frame: Frame { plan, camera, pieces, .. }, .. } = page;
+        let (gpu, surface) = (renderer.gpu().clone(), renderer.surface().clone());
+        let pieces = pieces.iter().len();
         let warm_frames = if pieces == 1 { WARM_FRAMES } else { 1 };
-        let mut times = (0..warm_frames).map(|_| renderer.time_of_frame(camera)).collect::<Result<Vec<_>>>()?;
+        let mut times = (0..warm_frames).map(|_| renderer.time_of_frame(plan, camera)).collect::<Result<Vec<_>>>()?;
         times.sort_by(f64::total_cmp);
         Ok(Report {
             version: env!("CARGO_PKG_VERSION"),
             dem: DemReport::of(&self.terrain.dems, surface.dem()),
-            method: method.name(),
+            method: plan.method.name(),
             level: self.detail()?.into(),
-            facets: renderer.facets(),
+            facets: page.frame.facets(&surface),
             inked: page.marks.inked(),
             covered: page.covered,
             longest_walk: page.longest_walk,
@@ -278,24 +271,24 @@ impl DrawArguments {
             warm_frames,
             frame_ms: times[warm_frames / 2],
             timing: gpu.clock.describe(),
-            passes: renderer.timed_frame(camera)?.passes,
+            passes: renderer.timed_frame(plan, camera)?.passes,
             adapter: format!("{} ({})", gpu.info.name, gpu.info.driver_info),
             int64: gpu.int64,
             view: view.report(surface.dem().georeference(), self.exaggeration),
             flat_earth: self.flat_earth(renderer, view, page),
-            left_out: renderer.left_out(camera)?,
+            left_out: page.frame.left_out(&surface)?,
         })
     }
 
     /// Where the DEM lies on Earth.
-    fn flat_earth(&self, renderer: &Renderer<'_>, view: &View, page: &Page) -> Option<FlatEarth> {
+    fn flat_earth(&self, renderer: &Renderer, view: &View, page: &Page) -> Option<FlatEarth> {
         view.is_on_earth().then(|| FlatEarth::of(&page.marks, &view.camera, renderer.near()))?
     }
 }
 
 /// Says at which levels chunks are, what was left out and, where they were taken, the times.
-fn explain(talk: &Talk, renderer: &Renderer<'_>, left_out: &[LeftOut], report: Option<&Report>) -> Result<()> {
-    talk.say(&format!("chunks: {}", levels(&renderer.lattice())))?;
+fn explain(talk: &Talk, frame: &Frame, left_out: &[LeftOut], report: Option<&Report>) -> Result<()> {
+    talk.say(&format!("chunks: {}", frame.levels()))?;
     for LeftOut { what, why, saved } in left_out {
         let saved = saved.as_ref().map_or(String::new(), |saved| format!(" ({saved})"));
         talk.say(&format!("left out: {what}, {why}{saved}"))?;

@@ -1,6 +1,8 @@
 //! Pass `adjacency`: silhouettes where neighbouring pixels show facets that are no neighbours.
 
-use super::{Extent, Gpu, Pass};
+use std::sync::Arc;
+
+use super::{Gpu, Pass};
 use crate::error::Result;
 use crate::plan::Share;
 
@@ -10,13 +12,13 @@ pub const SOURCE: &str = crate::shader!("scene", "lattice", "ink", "adjacency");
 /// Compiles the pass.
 ///
 /// # Errors
-/// See [`Pass::new`].
-pub fn pass(gpu: &Gpu, share: Share, constants: &[(&str, f64)]) -> Result<Pass> {
+/// See [`Gpu::pass`].
+pub fn pass(gpu: &Gpu, share: Share, constants: &[(&str, f64)]) -> Result<Arc<Pass>> {
     let shared = if share == Share::Edge { 2.0 } else { 1.0 };
-    Pass::new(gpu, "adjacency", SOURCE, &[constants, &[("shared_vertices", shared)]].concat())
+    gpu.pass("adjacency", SOURCE, &[constants, &[("shared_vertices", shared)]].concat())
 }
 
 /// One invocation a pixel.
-pub fn extent([width, height]: [u32; 2]) -> Extent {
-    Extent::Invocations([width, height])
+pub fn invocations(size: [u32; 2]) -> [u32; 2] {
+    size
 }

@@ -5,6 +5,7 @@
 //! Each warm frame moves the eye 1 m along the view axis, so that nothing of an earlier frame can be used again.
 
 use std::cell::Cell;
+use std::sync::Arc;
 
 use glam::DVec2;
 
@@ -16,7 +17,7 @@ use crate::cache::Cache;
 use crate::error::{Error, Result};
 use crate::gpu::Gpu;
 use crate::plan::{Border, Detail, Method, Plan, Share};
-use crate::surface::Level;
+use crate::surface::{Level, Surface};
 use crate::truth::metrics::{FRAGMENT, Judge, Offsets};
 use crate::truth::{Line, Mask, Terrain, Truth};
 use crate::view::Camera;
@@ -100,13 +101,14 @@ impl Comparison {
         of_runs.chain([truth_name(scene)]).collect()
     }
 
-    /// Compares in one scene, whose `name` begins the names of its files.
+    /// Compares in one scene, whose `name` begins the names of its files; `terrain` is of the same surface.
     ///
     /// # Errors
     /// [`Error::Scene`] where there is nothing to compare; those of [`Renderer`](crate::render::Renderer).
     pub fn scene(
         &self,
-        gpu: &Gpu,
+        gpu: &Arc<Gpu>,
+        surface: &Arc<Surface>,
         name: &str,
         terrain: &Terrain<'_>,
         camera: &Camera,
@@ -128,7 +130,7 @@ impl Comparison {
                 (to.stage)(&words, TRUTH_SHARE + (1.0 - TRUTH_SHARE) * done);
                 let trial = Trial {
                     gpu,
-                    surface: terrain.surface,
+                    surface,
                     camera,
                     plan: Plan::new(level, method, self.border),
                     scene: name,

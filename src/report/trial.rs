@@ -3,6 +3,7 @@
 //! Each warm frame moves the eye 1 m along the view axis, so that nothing of an earlier frame can be used again. The first
 //! frame, of the eye that was asked for, is the one that is judged.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use glam::DVec2;
@@ -17,7 +18,7 @@ use crate::gpu::Gpu;
 use crate::ink::{InkRaster, Kind, Marks, Pixel, trace};
 use crate::plan::cost::PassCost;
 use crate::plan::{Method, Plan};
-use crate::render::{Floor, Frame, PassTime, Renderer};
+use crate::render::{Drawn, Floor, PassTime, Renderer};
 use crate::surface::Surface;
 use crate::truth::metrics::{BandScore, DISTANCES, FRAGMENT, Judge, Scores};
 use crate::truth::{Inked, Mask};
@@ -28,8 +29,8 @@ const BANDS: [&str; 3] = ["near", "middle", "far"];
 
 /// A method at a level, seen by a camera.
 pub(super) struct Trial<'a> {
-    pub gpu: &'a Gpu,
-    pub surface: &'a Surface,
+    pub gpu: &'a Arc<Gpu>,
+    pub surface: &'a Arc<Surface>,
     pub camera: &'a Camera,
     pub plan: Plan,
     /// Name of the scene.
@@ -48,7 +49,7 @@ pub(super) struct Trial<'a> {
 /// Frames and what they took.
 struct Timed {
     /// The one that is judged.
-    first: Frame,
+    first: Drawn,
     /// The mask of the next eye.
     next: Mask,
     setup_ms: f64,
@@ -81,25 +82,27 @@ impl Trial<'_> {
     fn time(&self) -> Result<Timed> {
         memory::reset_peak();
         let start = Instant::now();
-        let renderer = Renderer::new(self.gpu, self.surface, self.plan, [self.camera.width, self.camera.height])?;
+        let mut renderer = Renderer::new(self.gpu.clone(), self.surface.clone())?;
+        renderer.prepare(&self.plan, self.camera)?;
         let setup_ms = start.elapsed().as_secs_f64() * 1e3;
-        let first_frame_ms = renderer.time_of_frame(self.camera)?;
+        let first_frame_ms = renderer.time_of_frame(&self.plan, self.camera)?;
         let first = renderer.read()?;
         let one_more = moved(self.camera, self.repeat + 1);
-        let passes = renderer.timed_frame(&one_more)?.passes;
-        let costs = renderer.costs(&one_more, &renderer.read()?)?;
+        let passes = renderer.timed_frame(&self.plan, &one_more)?.passes;
+        let costs = renderer.costs(&renderer.read()?)?;
         let bytes = costs.iter().map(|pass| pass.bytes).sum();
-        let mut floor = self.floor.then(|| Floor::new(&renderer, bytes)).transpose()?;
+        let page = [self.camera.width, self.camera.height];
+        let mut floor = self.floor.then(|| Floor::new(self.gpu.clone(), page, bytes)).transpose()?;
         let mut floors = self.floor.then(|| Floors::new(bytes));
         let (mut times, mut mask_hashes, mut next) = (Vec::new(), Vec::new(), None);
         for step in 1..=self.repeat {
             let camera = moved(self.camera, step);
-            times.push(renderer.time_of_frame(&camera)?);
+            times.push(renderer.time_of_frame(&self.plan, &camera)?);
             let raster = renderer.read()?.raster;
             mask_hashes.push(hash(&raster));
             next.get_or_insert_with(|| mask_of(&raster, renderer.near()));
             if let (Some(floors), Some(floor)) = (&mut floors, &mut floor) {
-                floors.add(floor, &camera)?;
+                floors.add(floor, &renderer)?;
             }
         }
         times.sort_by(f64::total_cmp);
@@ -113,8 +116,8 @@ impl Trial<'_> {
             passes: passes.into_iter().map(|pass| figures(pass, &costs)).collect(),
             floors,
             peak_mib: memory::peak().map(|bytes| bytes as f64 / f64::from(1 << 20)),
-            facets: renderer.facets(),
-            buffers_bytes: renderer.buffers().bytes(),
+            facets: renderer.last().map_or(0, |frame| frame.facets(self.surface)),
+            buffers_bytes: renderer.on_device().bytes(),
             near: renderer.near(),
         })
     }
