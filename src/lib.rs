@@ -7,12 +7,13 @@
 //! use hachure::gpu::{AdapterChoice, Gpu, Int64};
 //! use hachure::view::{Fixed, Perspective, choose};
 //! use hachure::{ink, line::Lines, plan::Plan, render::Renderer, surface::Surface};
+//! use std::sync::Arc;
 //!
-//! let surface = Surface::new(read("dem/golden-gate.tif", &ReadOptions::default())?);
+//! let surface = Arc::new(Surface::new(read("dem/golden-gate.tif", &ReadOptions::default())?));
 //! let camera = choose(surface.dem(), Fixed::default(), 60.0, 1200, 600)?;
-//! let gpu = Gpu::open(&AdapterChoice::Best, Int64::IfPresent)?;
-//! let renderer = Renderer::new(&gpu, &surface, Plan::default(), [1200, 600])?;
-//! let page = renderer.page(&camera, |_| ())?;
+//! let gpu = Arc::new(Gpu::open(&AdapterChoice::Best, Int64::IfPresent)?);
+//! let mut renderer = Renderer::new(gpu, surface)?;
+//! let page = renderer.page(&Plan::default(), &camera, |_| ())?;
 //! let style = ink::Style::for_page(1200);
 //! let lines = Lines::of(&page.marks, &Perspective::new(&camera, renderer.near()), style.tolerance);
 //! let drawing = ink::draw(&lines, &style);
@@ -27,11 +28,11 @@
 //! | read | raster files | [`Dem`](dem::Dem): a north-up grid of metres, voids marked | [`geo::read()`], CPU |
 //! | surface | the grid | [`Surface`](surface::Surface): one normal a sample, cubic PN triangles between them | CPU, once a DEM |
 //! | view | flags, or nothing | [`Camera`](view::Camera): eye, directions, page | CPU |
-//! | plan | what is asked | [`Plan`](plan::Plan): method, level, border | CPU |
-//! | upload | surface and plan | [`Renderer`](render::Renderer): buffers and compiled passes | once a scene |
-//! | frame | a camera | the mask, on the device: tessellate, facing, rasterize, silhouette, border | [`Renderer::frame`](render::Renderer::frame), GPU |
-//! | read back | the mask | [`Frame`](render::Frame): ink, kind, sub-pixel place and depth a pixel | [`Renderer::read`](render::Renderer::read) |
-//! | page | a camera | [`Page`](render::Page): the ink alone, frame and read-back for each piece of a page of any size | [`Renderer::page`](render::Renderer::page) |
+//! | plan | what is asked ([`Plan`](plan::Plan): method, level, border), a camera | [`Frame`](plan::Frame): lattice, batches, passes, what is left out | CPU |
+//! | upload | surface and frame | [`Renderer`](render::Renderer): buffers and compiled passes | what is not there yet |
+//! | frame | plan and camera | the mask, on the device: tessellate, facing, rasterize, silhouette, border | [`Renderer::frame`](render::Renderer::frame), GPU |
+//! | read back | the mask | [`Drawn`](render::Drawn): ink, kind, sub-pixel place and depth a pixel | [`Renderer::read`](render::Renderer::read) |
+//! | page | plan and camera | [`Page`](render::Page): the ink alone, frame and read-back for each piece of a page of any size | [`Renderer::page`](render::Renderer::page) |
 //! | line | the page | [`Lines`](line::Lines): smoothed chains on the page and in the world | [`Lines::of`](line::Lines::of), CPU |
 //! | ink | the lines | [`Drawing`](ink::Drawing): layers of strokes | [`ink::draw`], CPU |
 //! | write | the drawing | a PNG | [`ink::write_png`] |
@@ -42,8 +43,8 @@
 //! World coordinates are metres, x east, y north, z up and exaggerated; angles are degrees, azimuth clockwise from grid
 //! north; pages are pixels from the top left corner. [`Georeference`](dem::Georeference) leads from there to the
 //! coordinates of the file and to longitude and latitude. Whatever can go wrong is an [`Error`](error::Error) of one
-//! line: what, where, remedy. A renderer draws as many frames as are asked of it; for each the camera is uploaded, and of an adaptive
-//! lattice what is not there yet.
+//! line: what, where, remedy. A renderer draws as many frames as are asked of it, by any plan, on a page of any size; for each the
+//! camera is uploaded, and what is not there yet.
 //!
 //! # Modules
 //!
@@ -57,7 +58,7 @@
 //! | [`geo`] | rasters and systems of coordinates; alone knows GDAL, without which (`--no-default-features`) it reads nothing |
 //! | [`surface`] | vertex normals, PN patches, the lattice and its IDs, bounds of chunks; what is kept of a DEM for them |
 //! | [`view`] | the camera, how it sees, and a view where none is given |
-//! | [`plan`] | what a frame needs: the registry of methods, levels, the horizon, pieces, batches; what is left out |
+//! | [`plan`] | what a frame needs, as data: lattice, batches, passes, pieces, what is left out; the registry of methods |
 //! | [`gpu`] | device, buffers, one adapter a pass; the mathematics stands in `shaders/` |
 //! | [`mod@line`] | curves with kind and world place: ink traced to chains, smoothed; lines of the world projected |
 //! | [`ink`] | chains to strokes to pictures |

@@ -1,14 +1,16 @@
 //! Adaptive frames show the lines that frames of one fine level show: as small errors as those among fine levels, border
 //! lines connected and in the same places.
 
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
 use hachure::line::{InkRaster, Kind};
 use hachure::plan::{Border, Detail, Method, Plan};
-use hachure::render::Renderer;
 use hachure::surface::Surface;
 use hachure::view::Camera;
 
+use crate::frames::Planned;
 use crate::judged::centres;
 use crate::mixed::variety;
 use crate::quadtrees::moor;
@@ -18,8 +20,8 @@ use crate::tolerances::{COARSE_STRAYS, LEVEL_STRAYS, REACH_PX};
 const PAGE: [u32; 2] = [384, 288];
 
 /// A frame; and how many levels and seams it has.
-fn draw(surface: &Surface, detail: impl Into<Detail>, camera: &Camera, border: Border) -> (InkRaster, [usize; 2]) {
-    let renderer = Renderer::new(gpu(), surface, Plan::new(detail, Method::Walk, border), PAGE).expect("a renderer");
+fn draw(surface: &Arc<Surface>, detail: impl Into<Detail>, camera: &Camera, border: Border) -> (InkRaster, [usize; 2]) {
+    let mut renderer = Planned::new(gpu(), surface, Plan::new(detail, Method::Walk, border));
     let raster = renderer.draw(camera).expect("a frame").raster;
     let variety = variety(&renderer.lattice());
     (raster, variety)
@@ -56,7 +58,7 @@ fn from_aside(surface: &Surface, eye: DVec3) -> Camera {
 
 #[test]
 fn small_errors_draw_what_fine_levels_draw() {
-    let surface = Surface::new(rough(18, 18, 1.0, 4.0, false));
+    let surface = Arc::new(Surface::new(rough(18, 18, 1.0, 4.0, false)));
     let camera = from_aside(&surface, DVec3::new(-120.0, -330.0, 130.0));
     let fine = [32, 64].map(|n| centres(&draw(&surface, level(n), &camera, Border::Off).0, Kind::Silhouette));
     let adaptive = |error_px| draw(&surface, Detail::Adaptive { error_px }, &camera, Border::Off);
@@ -82,7 +84,7 @@ fn hills() -> Dem {
 #[test]
 fn coarse_chunks_draw_what_the_grid_draws() {
     for (i, (dem, nearer)) in [(hills(), 1.0), (moor(), 0.45)].into_iter().enumerate() {
-        let surface = &Surface::new(dem);
+        let surface = &Arc::new(Surface::new(dem));
         for eye in [DVec3::new(-2600.0, -4300.0, 900.0), DVec3::new(300.0, -5000.0, 1500.0)].map(|eye| eye * nearer) {
             let camera = from_aside(surface, eye);
             let (raster, [levels, seams]) = draw(surface, Detail::Adaptive { error_px: 0.15 }, &camera, Border::On);

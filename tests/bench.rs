@@ -12,6 +12,7 @@ mod repeat;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::Arc;
 use std::time::Instant;
 
 use glam::DVec3;
@@ -78,9 +79,9 @@ fn main() -> ExitCode {
 
 fn run(filters: &[String]) -> Result<usize> {
     let (path, camera) = scene();
-    let surface = Surface::new(read(&path, &Default::default())?);
-    let gpu = Gpu::open_with(&AdapterChoice::Best, Int64::IfPresent, depth_draw::FEATURE)?;
-    let without_int64 = Gpu::open(&AdapterChoice::Best, Int64::Never)?;
+    let surface = Arc::new(Surface::new(read(&path, &Default::default())?));
+    let gpu = Arc::new(Gpu::open_with(&AdapterChoice::Best, Int64::IfPresent, depth_draw::FEATURE)?);
+    let without_int64 = Arc::new(Gpu::open(&AdapterChoice::Best, Int64::Never)?);
     println!("{} on {}", path.display(), gpu.info.name);
     println!("{camera:?}");
     println!("pass by pass: {}", gpu.clock.describe());
@@ -94,20 +95,24 @@ fn run(filters: &[String]) -> Result<usize> {
         if wanted.is_empty() {
             continue;
         }
-        let vertices = Renderer::new(&gpu, &surface, Plan::new(level, Method::Walk, Border::Off), PAGE)?;
+        let mut vertices = Renderer::new(gpu.clone(), surface.clone())?;
+        let plan = Plan::new(level, Method::Walk, Border::Off);
         let mut draw = DepthDraw::new(&gpu, PAGE)?;
-        draw.load(&gpu, &vertices.lattice(), 0..vertices.lattice().seen())?;
-        let baseline = Baseline { gpu: &gpu, vertices: &vertices, draw };
-        vertices.frame(&camera)?;
-        let pixels = gpu.read(vertices.buffers().get("pixels")?, u64::from(PAGE[0]) * u64::from(PAGE[1]) * 8)?;
+        let frame = vertices.frame(&plan, &camera)?;
+        draw.load(&gpu, &frame.lattice, 0..frame.seen)?;
+        let pixels: Vec<[u32; 2]> =
+            gpu.read(vertices.on_device().buffer("pixels")?, PAGE[0] as usize * PAGE[1] as usize)?;
+        let mut baseline = Baseline { vertices, plan, draw };
         baseline.frame(&camera)?;
-        let differ = baseline.compare(&bytemuck::pod_collect_to_vec(&pixels))?;
+        let differ = baseline.compare(&pixels)?;
         println!("level {n}: {:.3} % of the baseline's pixels show another facet than ours", differ * 100.0);
         for row in wanted {
             let gpu = if row.int64 == Int64::Never { &without_int64 } else { &gpu };
-            let ours = Renderer::new(gpu, &surface, Plan::new(level, row.method, Border::On), PAGE)?;
+            let mut ours = Renderer::new(gpu.clone(), surface.clone())?;
+            let plan = Plan::new(level, row.method, Border::On);
+            ours.prepare(&plan, &camera)?;
             let target = row.targets[column].filter(|_| std::env::var_os(TERRAIN).is_some());
-            measure(&format!("level{n} {}", row.name), target, &ours, &baseline, &camera)?;
+            measure(&format!("level{n} {}", row.name), target, (&mut ours, &plan), &mut baseline, &camera)?;
             rows += 1;
         }
     }
@@ -115,29 +120,31 @@ fn run(filters: &[String]) -> Result<usize> {
 }
 
 /// Vertices and the hardware draw of their facets.
-struct Baseline<'a> {
-    gpu: &'a Gpu,
-    vertices: &'a Renderer<'a>,
+struct Baseline {
+    vertices: Renderer,
+    plan: Plan,
     draw: DepthDraw,
 }
 
-impl Baseline<'_> {
+impl Baseline {
     /// Draws a frame and waits for it.
-    fn frame(&self, camera: &Camera) -> Result<()> {
-        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-        self.vertices.record_vertices(camera, &mut encoder)?;
-        self.draw.record(self.gpu, &self.vertices.buffers(), &mut encoder)?;
-        self.gpu.queue.submit([encoder.finish()]);
-        self.gpu.wait()
+    fn frame(&mut self, camera: &Camera) -> Result<()> {
+        let gpu = self.vertices.gpu().clone();
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        self.vertices.record_vertices(&self.plan, camera, &mut encoder)?;
+        self.draw.record(self.vertices.on_device(), &mut encoder)?;
+        gpu.queue.submit([encoder.finish()]);
+        gpu.wait()
     }
 
     /// Share of the covered pixels that show another facet than `pixels` (ID + 1, depth bits) of the same camera; where
     /// it is 1 % or more, the baseline would not draw what we draw.
     fn compare(&self, pixels: &[[u32; 2]]) -> Result<f64> {
         let covered = pixels.iter().filter(|pixel| pixel[1] != 0).count();
-        let differ = self.draw.ids(self.gpu)?.iter().zip(pixels).filter(|(id, pixel)| **id != pixel[0]).count();
+        let differ =
+            self.draw.ids(self.vertices.gpu())?.iter().zip(pixels).filter(|(id, pixel)| **id != pixel[0]).count();
         let share = differ as f64 / covered as f64;
-        if depth_draw::shows_facets(self.gpu) && (covered == 0 || share >= 0.01) {
+        if depth_draw::shows_facets(self.vertices.gpu()) && (covered == 0 || share >= 0.01) {
             return Err(Error::Gpu {
                 what: format!("{differ} of {covered} pixels of the baseline show another facet"),
             });
@@ -166,8 +173,8 @@ fn scene() -> (PathBuf, Camera) {
 fn measure(
     name: &str,
     target: Option<f64>,
-    ours: &Renderer<'_>,
-    baseline: &Baseline<'_>,
+    (ours, plan): (&mut Renderer, &Plan),
+    baseline: &mut Baseline,
     camera: &Camera,
 ) -> Result<()> {
     let at = |k| moved(camera, k);
@@ -178,7 +185,7 @@ fn measure(
         baseline.frame(&at(k))?;
         let theirs = start.elapsed().as_secs_f64() * 1e3;
         let start = Instant::now();
-        ours.frame(&at(k))?;
+        ours.frame(plan, &at(k))?;
         let mine = start.elapsed().as_secs_f64() * 1e3;
         let frame = ours.read()?;
         if k >= WARM_UP {
@@ -189,13 +196,13 @@ fn measure(
             inked = frame.inked();
         }
     }
-    let passes = (0..REPETITIONS).map(|k| Ok(ours.timed_frame(&at(k))?.passes)).collect::<Result<Vec<_>>>()?;
+    let passes = (0..REPETITIONS).map(|k| Ok(ours.timed_frame(plan, &at(k))?.passes)).collect::<Result<Vec<_>>>()?;
     let hash = fnv(masks.iter().flat_map(|m| m.to_le_bytes()));
     let distinct = masks.iter().collect::<HashSet<_>>().len();
     let promise = target.map_or(String::new(), |t| format!(" (target {t:.2})"));
     println!(
         "\n{name}: {} facets, {} pixels, {inked} inked, masks {hash:016x} ({distinct} of {REPETITIONS} differ)",
-        ours.facets(),
+        ours.last().map_or(0, |frame| frame.facets(ours.surface())),
         PAGE[0] * PAGE[1]
     );
     println!(

@@ -5,19 +5,20 @@
 //! lose both patches at its north-west and south-east and keep one at its north-east and south-west: a hole is a
 //! hexagon.
 
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3};
-use hachure::gpu::Gpu;
 use hachure::line::Kind;
-use hachure::plan::{Border, Method};
-use hachure::render::Renderer;
+use hachure::plan::{Border, Method, Plan};
 use hachure::surface::Surface;
 use hachure::truth::{Inked, Mask, Piece, Truth};
 use hachure::view::Camera;
 
 use crate::closed_forms::GAUSSIAN;
 use crate::forms::{Form, about_middle, from_middle};
+use crate::frames::{METHODS, Planned, count_ink, draw, draw_mask};
 use crate::judged::{centres, moved, piece, score, truth};
-use crate::scenes::{METHODS, count_ink, draw, draw_mask, gpu, level, look, renderer};
+use crate::scenes::{gpu, level, look};
 use crate::tolerances::{HIDDEN_SHARE, REACH_PX, RECALL, TRUTH_PIECE_PX};
 
 const PAGE: [u32; 2] = [384, 288];
@@ -113,11 +114,10 @@ fn rim(form: &Form, shape: &Shape, camera: &Camera, part: Part) -> Truth {
 }
 
 /// Which pixels a border line touches.
-fn border_bits(gpu: &Gpu, renderer: &Renderer<'_>, camera: &Camera) -> Vec<bool> {
+fn border_bits(renderer: &mut Planned, camera: &Camera) -> Vec<bool> {
     renderer.frame(camera).expect("a frame");
-    let pixels = u64::from(camera.width) * u64::from(camera.height);
-    let bytes = gpu.read(renderer.buffers().get("ink").expect("ink"), pixels * 4).expect("its words");
-    bytes.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]) & BORDER != 0).collect()
+    let words: Vec<u32> = renderer.values("ink", camera.width as usize * camera.height as usize);
+    words.into_iter().map(|word| word & BORDER != 0).collect()
 }
 
 /// The mask of pixels of [`PAGE`]; no depth is asked of it.
@@ -137,17 +137,17 @@ const EYES: [DVec3; 3] =
 #[test]
 fn the_rim_is_drawn_where_it_is_seen_by_every_method() {
     for (form, shape) in [(&PLANE, &WHOLE), (&PLANE, &ISLAND), (&PLANE, &HOLE), (&HILL, &ISLAND), (&HILL, &HOLE)] {
-        let surface = Surface::new(form.dem(shape.exists));
+        let surface = Arc::new(Surface::new(form.dem(shape.exists)));
         let camera = |eye| look(from_middle(eye), from_middle(DVec3::new(0.0, 0.0, 20.0)), 60.0, PAGE);
-        let make = |method| renderer(gpu(), &surface, &camera(EYES[0]), level(4), method, Border::On);
-        let renderers = METHODS.map(|(_, method)| make(method));
+        let make = |method| Planned::new(gpu(), &surface, Plan::new(level(4), method, Border::On));
+        let mut renderers = METHODS.map(|(_, method)| make(method));
         for eye in EYES {
             let camera = camera(eye);
             let truth = rim(form, shape, &camera, Part::Seen);
             let whole = rim(form, shape, &camera, Part::Whole);
             let mut first: Option<Vec<bool>> = None;
-            for ((name, _), renderer) in METHODS.iter().zip(&renderers) {
-                let bits = border_bits(gpu(), renderer, &camera);
+            for ((name, _), renderer) in METHODS.iter().zip(&mut renderers) {
+                let bits = border_bits(renderer, &camera);
                 let ink = mask_of(&bits);
                 let s = score(&ink, &truth);
                 let off = score(&ink, &whole).farthest;
@@ -182,7 +182,7 @@ fn a_tilted_plane_draws_only_its_border() {
     // even there, since facets across a vertex share no edge.
     let coarse = Form { samples: 9, cell: 160.0, ..PLANE };
     for (form, methods) in [(&PLANE, &METHODS[..3]), (&coarse, &METHODS[4..])] {
-        let surface = Surface::new(form.dem(|_, _| true));
+        let surface = Arc::new(Surface::new(form.dem(|_, _| true)));
         for eye in EYES {
             let camera = look(from_middle(eye), from_middle(DVec3::ZERO), 60.0, PAGE);
             let truth = rim(&PLANE, &WHOLE, &camera, Part::Seen);
@@ -200,10 +200,10 @@ fn a_tilted_plane_draws_only_its_border() {
 
 #[test]
 fn another_rim_is_noticed() {
-    let surface = Surface::new(PLANE.dem(HOLE.exists));
+    let surface = Arc::new(Surface::new(PLANE.dem(HOLE.exists)));
     let camera = look(from_middle(EYES[0]), from_middle(DVec3::ZERO), 60.0, PAGE);
-    let renderer = renderer(gpu(), &surface, &camera, level(4), Method::Walk, Border::On);
-    let ink = mask_of(&border_bits(gpu(), &renderer, &camera));
+    let mut renderer = Planned::new(gpu(), &surface, Plan::new(level(4), Method::Walk, Border::On));
+    let ink = mask_of(&border_bits(&mut renderer, &camera));
     let without_hole = score(&ink, &rim(&PLANE, &WHOLE, &camera, Part::Seen));
     assert!(without_hole.precision < 0.9 && without_hole.recall >= RECALL);
     let island = score(&ink, &rim(&PLANE, &ISLAND, &camera, Part::Seen));

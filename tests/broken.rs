@@ -3,6 +3,7 @@
 use std::fs::{self, File, FileTimes, OpenOptions};
 use std::io::{Seek, SeekFrom, Write};
 use std::path::Path;
+use std::sync::Arc;
 use std::thread::sleep;
 use std::time::Duration;
 
@@ -10,12 +11,12 @@ use glam::DVec3;
 use hachure::cache::Cache;
 use hachure::geo::{ReadOptions, read, write};
 use hachure::plan::{Border, Detail, Method, Plan};
-use hachure::render::Renderer;
 use hachure::surface::{Level, Surface};
 use hachure::view::Camera;
 
 use crate::cli::{Place, stderr};
 use crate::common::gpu;
+use crate::frames::Planned;
 
 const PAGE: [u32; 2] = [96, 64];
 const SAMPLES: [usize; 2] = [700, 520];
@@ -82,22 +83,22 @@ fn a_file_that_breaks_between_frames_fails_the_next() {
             let path = folder.path().join("hills.tif");
             write_hills(&path, 200.0);
             let options = ReadOptions { memory: 1 << 20, ..Default::default() };
-            let surface = Surface::new(read(&path, &options).expect("a DEM"));
+            let surface = Arc::new(Surface::new(read(&path, &options).expect("a DEM")));
             assert!(surface.dem().is_filed());
             if prepared {
                 let cache = Cache::in_folder(folder.path().join("cache"));
                 cache.prepare(&surface, &|_| (), &|_| ()).expect("overviews");
             }
             let plan = Plan::new(detail, Method::Walk, Border::On);
-            let renderer = Renderer::new(gpu(), &surface, plan, PAGE).expect("a renderer");
-            renderer.page(&camera(&surface, 30.0, 0.2), |_| ()).expect("a page of the whole file");
+            let mut renderer = Planned::new(gpu(), &surface, plan);
+            renderer.page(&camera(&surface, 30.0, 0.2)).expect("a page of the whole file");
             renderer.time_of_frame(&camera(&surface, 35.0, 0.2)).expect("a frame of the whole file");
             // Clocks of file systems tick every few milliseconds.
             sleep(Duration::from_millis(20));
             breaking(&path);
             let other = camera(&surface, 250.0, 0.9);
             let about = format!("{detail:?}, prepared: {prepared}, {way}");
-            let error = renderer.page(&other, |_| ()).map(drop).expect_err(&about).to_string();
+            let error = renderer.page(&other).map(drop).expect_err(&about).to_string();
             assert!(error.contains("hills.tif: "), "{about}: {error}");
             assert!(renderer.frame(&other).is_err(), "{about}: a frame");
             assert!(renderer.draw(&other).is_err(), "{about}: a frame read back");

@@ -1,6 +1,7 @@
 //! The view that is chosen where none is given: above the ground, repeatable from its decimals, and with lines in it.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
@@ -10,7 +11,8 @@ use hachure::surface::Surface;
 use hachure::view::{Camera, Fixed, choose};
 
 use crate::common::shared_dems;
-use crate::scenes::{count_ink, draw, level, rough};
+use crate::frames::{count_ink, draw};
+use crate::scenes::{level, rough};
 
 const PAGE: [u32; 2] = [480, 270];
 
@@ -20,7 +22,7 @@ fn chosen(dem: &Dem, fixed: Fixed) -> Camera {
 
 /// Silhouette pixels in the chosen view of a DEM, after checks of the eye.
 fn ink_in_view(dem: Dem) -> usize {
-    let surface = Surface::new(dem);
+    let surface = Arc::new(Surface::new(dem));
     let camera = chosen(surface.dem(), Fixed::default());
     assert!(surface.height_below(camera.eye.truncate(), level(4)).is_none_or(|ground| camera.eye.z > ground));
     for x in camera.eye.to_array() {

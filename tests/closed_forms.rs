@@ -4,6 +4,8 @@
 //! that. A hemisphere's rim is vertical, which no grid holds: it is cut at a slope of 60 degrees and goes on as the
 //! cone that touches it there. The cone's apex stands on a sample and is rounded by a fraction of a cell.
 
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3};
 use hachure::line::Kind;
 use hachure::plan::{Border, Method, Share};
@@ -13,8 +15,9 @@ use hachure::truth::metrics::Judge;
 use hachure::view::Camera;
 
 use crate::forms::{Form, from_middle};
+use crate::frames::{METHODS, draw, draw_mask};
 use crate::judged::{Score, inked, moved, score};
-use crate::scenes::{METHODS, draw, draw_mask, level, look};
+use crate::scenes::{level, look};
 use crate::tolerances::{
     ADJACENCY_CORNER, CLOSED_FORM, GRID_ERROR_PX, PLACE_GAIN, PLACE_MEAN_PX, REACH_PX, RECALL, RECALL_TOWARD_AWAY,
     WIDE_PRECISION, WIDE_REACH_PX,
@@ -133,9 +136,9 @@ const CASES: [Case; 4] = [
 ];
 
 /// Calls `check` with each form from each eye: surface, camera, truth.
-pub fn each_view(check: impl Fn(&Case, &Surface, &Camera, &Truth)) {
+pub fn each_view(check: impl Fn(&Case, &Arc<Surface>, &Camera, &Truth)) {
     for case in &CASES {
-        let surface = Surface::new(case.form.dem(|_, _| true));
+        let surface = Arc::new(Surface::new(case.form.dem(|_, _| true)));
         for &eye in case.eyes {
             let camera = look(from_middle(eye), from_middle(case.target), 60.0, PAGE);
             let (truth, _) = case.form.contours(&camera);
@@ -178,7 +181,7 @@ fn facets_lie_within_a_quarter_pixel_of_the_form() {
     // Negative control: every fourth sample is too few for the sphere.
     let coarse = Form { samples: 33, cell: 40.0, ..HEMISPHERE };
     let camera = look(from_middle(CASES[0].eyes[0]), from_middle(CASES[0].target), 60.0, PAGE);
-    assert!(coarse.deviation(&Surface::new(coarse.dem(|_, _| true)), level(4), &camera) > GRID_ERROR_PX);
+    assert!(coarse.deviation(&Arc::new(Surface::new(coarse.dem(|_, _| true))), level(4), &camera) > GRID_ERROR_PX);
 }
 
 #[test]
@@ -239,7 +242,7 @@ fn adjacency_finds_the_line_and_floods_beside_it() {
     // Facets of 40 m, some ten pixels wide but where they are seen edge-on: there neighbouring pixels show facets that
     // share nothing, so that adjacency draws more than the line whatever the level.
     let coarse = Form { samples: 33, cell: 40.0, ..HEMISPHERE };
-    let surface = Surface::new(coarse.dem(|_, _| true));
+    let surface = Arc::new(Surface::new(coarse.dem(|_, _| true)));
     let camera = look(from_middle(CASES[0].eyes[0]), from_middle(CASES[0].target), 60.0, PAGE);
     let (truth, _) = coarse.contours(&camera);
     let [edge, corner] = [Share::Edge, Share::Corner].map(|share| {

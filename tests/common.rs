@@ -3,7 +3,7 @@
 use std::io::{Write, stderr};
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 use std::thread;
 
 use hachure::cli::words::told;
@@ -14,9 +14,9 @@ use hachure::gpu::{AdapterChoice, Gpu, Int64};
 ///
 /// # Panics
 /// Without an adapter: nothing drawn is nothing proven.
-pub fn gpu() -> &'static Gpu {
-    static GPU: OnceLock<Gpu> = OnceLock::new();
-    GPU.get_or_init(|| Gpu::open(&AdapterChoice::Best, Int64::IfPresent).expect("an adapter"))
+pub fn gpu() -> &'static Arc<Gpu> {
+    static GPU: OnceLock<Arc<Gpu>> = OnceLock::new();
+    GPU.get_or_init(|| Arc::new(Gpu::open(&AdapterChoice::Best, Int64::IfPresent).expect("an adapter")))
 }
 
 /// What was converted or assumed, in the words of the command line.

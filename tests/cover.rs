@@ -1,13 +1,16 @@
 //! The hidden-surface cover: a polyline of the world vanishes behind a ridge and comes back with the cover off.
 
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3};
 use hachure::line::{Chain, Cover, Line, project_polyline};
-use hachure::plan::{Border, Method};
+use hachure::plan::{Border, Method, Plan};
 use hachure::surface::Surface;
 use hachure::view::{Camera, Perspective};
 
 use crate::forms::{Form, about_middle, from_middle};
-use crate::scenes::{gpu, level, look, renderer};
+use crate::frames::Planned;
+use crate::scenes::{gpu, level, look};
 use crate::tolerances::COVER_PX;
 
 const PAGE: [u32; 2] = [384, 288];
@@ -50,10 +53,9 @@ fn ends(chain: &Chain) -> [DVec2; 2] {
 
 /// The chains of a segment over the ridge's raster, with the camera that sees it.
 fn chains(camera: &Camera, a: DVec3, b: DVec3, cover: Cover) -> Vec<Chain> {
-    let surface = Surface::new(RIDGE.dem(|_, _| true));
-    let renderer = renderer(gpu(), &surface, camera, level(4), Method::Walk, Border::Off);
-    renderer.frame(camera).expect("a frame");
-    let raster = renderer.read().expect("its pixels").raster;
+    let surface = Arc::new(Surface::new(RIDGE.dem(|_, _| true)));
+    let mut renderer = Planned::new(gpu(), &surface, Plan::new(level(4), Method::Walk, Border::Off));
+    let raster = renderer.draw(camera).expect("a frame").raster;
     let seen = Perspective::new(camera, renderer.near());
     project_polyline(&[from_middle(a), from_middle(b)], Line::Own, &seen, &raster, cover)
 }

@@ -1,19 +1,20 @@
 //! Our rasterizer against the device's own over the same snapped triangles: the same pixels covered, and the same
 //! facets but for ties; and our three kinds of raster against each other, to the bit.
 
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
 use hachure::geo::read;
-use hachure::gpu::{AdapterChoice, Gpu, Int64};
-use hachure::plan::Method;
-use hachure::render::Renderer;
+use hachure::plan::{Border, Method, Plan};
 use hachure::surface::Surface;
 use hachure::surface::lattice::{CHUNK_FACETS, CHUNK_SIDE, CHUNK_VERTICES};
 use hachure::view::Camera;
 
 use crate::common::{gpu, shared_dems};
-use crate::drawn::{BESIDE, BY_ID, CLIPPED, MISSING, Shot, look, noise, over, renderer, rough, shoot, surface};
+use crate::frames::{BESIDE, CLIPPED, MISSING, Planned, Shot};
 use crate::hardware::{Vertex, draw};
+use crate::scenes::{aimed, gpu_without_int64, level, noise, noisy, over, surface};
 use crate::tolerances::raster::{HARDWARE_DEPTH, HARDWARE_IDS};
 
 /// How two rasters differ.
@@ -43,12 +44,12 @@ fn compare(ours: &[[u32; 2]], theirs: &[[u32; 2]]) -> Difference {
 }
 
 /// The triangles of a frame in the order of their IDs. Of those in view none may be clipped, by us or by the device.
-fn triangles(renderer: &Renderer<'_>, shot: &Shot, size: [u32; 2]) -> Vec<[Vertex; 3]> {
+fn triangles(shot: &Shot, size: [u32; 2]) -> Vec<[Vertex; 3]> {
     let mut found = Vec::new();
-    for id in 0..renderer.lattice().chunks().len() as u32 * CHUNK_FACETS {
+    for id in 0..shot.lattice.chunks().len() as u32 * CHUNK_FACETS {
         let slot = id / CHUNK_FACETS;
-        let chunk = renderer.lattice().chunks()[slot as usize];
-        let corners = renderer.lattice().facet(id).map(|at| {
+        let chunk = shot.lattice.chunks()[slot as usize];
+        let corners = shot.lattice.facet(id).map(|at| {
             let [x, y] = [at.x - chunk.origin[0], at.y - chunk.origin[1]].map(|d| d / chunk.step);
             shot.screens[(slot * CHUNK_VERTICES + y * CHUNK_SIDE + x) as usize]
         });
@@ -68,16 +69,14 @@ fn triangles(renderer: &Renderer<'_>, shot: &Shot, size: [u32; 2]) -> Vec<[Verte
     found
 }
 
-fn check(name: &str, surface: &Surface, n: u32, camera: &Camera) -> Vec<[Vertex; 3]> {
-    let renderer = renderer(gpu(), surface, n, BY_ID, [camera.width, camera.height]);
-    check_frame(&format!("{name}, level {n}"), &renderer, camera)
+fn check(name: &str, surface: &Arc<Surface>, n: u32, camera: &Camera) -> Vec<[Vertex; 3]> {
+    let shot = Planned::by_id(gpu(), surface, n).shoot(camera);
+    check_shot(&format!("{name}, level {n}"), &shot, [camera.width, camera.height])
 }
 
 /// Compares a frame with the device's own; returns its triangles.
-pub fn check_frame(name: &str, renderer: &Renderer<'_>, camera: &Camera) -> Vec<[Vertex; 3]> {
-    let size = [camera.width, camera.height];
-    let shot = shoot(gpu(), renderer, camera);
-    let triangles = triangles(renderer, &shot, size);
+pub fn check_shot(name: &str, shot: &Shot, size: [u32; 2]) -> Vec<[Vertex; 3]> {
+    let triangles = triangles(shot, size);
     let found = compare(&shot.pixels, &draw(gpu(), &triangles, size));
     println!("{name}, {} triangles: {found:?}", triangles.len());
     assert!(found.covered > 1000, "{name}: {found:?}");
@@ -93,14 +92,14 @@ pub fn from_outside(surface: &Surface, azimuth: f64, altitude: f64, away: f64, s
     let [west, south, east, north] = dem.extent();
     let [low, high] = dem.range().expect("heights").map(f64::from);
     let middle = DVec3::new(west + east, south + north, low + high) / 2.0;
-    let camera = look(middle, azimuth, altitude, size);
+    let camera = aimed(middle, azimuth, altitude, size);
     Camera { eye: middle - camera.axes()[2] * away * (east - west), ..camera }
 }
 
 #[test]
 fn coverage_is_the_hardwares_on_random_terrain() {
     for (seed, azimuth) in [(11, 20.0), (12, 140.0), (13, 275.0)] {
-        let scene = rough(seed, [40, 37], 50.0, 80.0);
+        let scene = noisy(seed, [40, 37], 50.0, 80.0);
         for n in [1, 2, 4] {
             for (altitude, away) in [(-35.0, 1.1), (-4.0, 1.3), (-90.0, 1.2)] {
                 check("random", &scene, n, &from_outside(&scene, azimuth, altitude, away, [1024, 512]));
@@ -121,7 +120,7 @@ fn is_large(triangle: &&[Vertex; 3]) -> bool {
 fn coverage_is_the_hardwares_where_facets_are_large() {
     let mut large = 0;
     for (seed, azimuth) in [(21, 20.0), (22, 140.0), (23, 275.0)] {
-        let scene = rough(seed, [4, 4], 50.0, 80.0);
+        let scene = noisy(seed, [4, 4], 50.0, 80.0);
         for n in [1, 2] {
             for altitude in [-60.0, -20.0, -90.0] {
                 let drawn = check("large", &scene, n, &from_outside(&scene, azimuth, altitude, 1.6, [1024, 1024]));
@@ -135,7 +134,7 @@ fn coverage_is_the_hardwares_where_facets_are_large() {
 #[test]
 fn coverage_is_the_hardwares_where_thousands_of_facets_are_large() {
     // Noise of 60 cells' height, from the side: every facet is a spike of hundreds of pixels.
-    let scene = rough(31, [101, 101], 10.0, 600.0);
+    let scene = noisy(31, [101, 101], 10.0, 600.0);
     let drawn = check("spikes", &scene, 1, &from_outside(&scene, 30.0, 0.0, 1.8, [1024, 1024]));
     let large = drawn.iter().filter(is_large).count();
     assert!(large > 10_000, "{large} large facets");
@@ -151,7 +150,7 @@ fn coverage_is_the_hardwares_where_edges_meet_pixel_centres() {
         let [_, south, east, _] = dem.extent();
         let eye = DVec3::new((east / 2.0 / cell).floor() * cell - 0.5, (south / 2.0 / cell).ceil() * cell + 0.5, 512.0);
         let camera = Camera { eye, azimuth: 0.0, altitude: -90.0, fov: 90.0, width: 1024, height: 1024 };
-        let scene = Surface::new(dem);
+        let scene = Arc::new(Surface::new(dem));
         for n in [1, 2] {
             let drawn = check("plain", &scene, n, &camera);
             assert!(drawn.iter().flatten().all(|v| v[0] % 128 == 0 && v[1] % 128 == 0), "a place between centres");
@@ -162,7 +161,8 @@ fn coverage_is_the_hardwares_where_edges_meet_pixel_centres() {
 #[test]
 fn coverage_is_the_hardwares_on_west_temple() {
     let Some(folder) = shared_dems() else { return };
-    let scene = Surface::new(read(folder.join("west_temple_50m.tif"), &Default::default()).expect("west-temple"));
+    let dem = read(folder.join("west_temple_50m.tif"), &Default::default()).expect("west-temple");
+    let scene = Arc::new(Surface::new(dem));
     for n in [1, 2, 4] {
         for (azimuth, altitude) in [(310.0, -10.0), (75.0, -30.0)] {
             check("west-temple", &scene, n, &from_outside(&scene, azimuth, altitude, 1.0, [1024, 512]));
@@ -172,22 +172,22 @@ fn coverage_is_the_hardwares_on_west_temple() {
 
 #[test]
 fn rasters_of_every_kind_agree_to_the_bit() {
-    let plain = Gpu::open(&AdapterChoice::Best, Int64::Never).expect("an adapter");
-    assert!(!plain.int64);
+    assert!(!gpu_without_int64().int64);
     let mut heights = noise(41, [24, 21], 50.0, 80.0);
     heights[250] = f32::NAN;
     let scene = surface(24, 50.0, heights);
     let size = [401, 300];
     for n in [1, 8] {
-        let by_id = renderer(gpu(), &scene, n, BY_ID, size);
-        let without_int64 = renderer(&plain, &scene, n, BY_ID, size);
-        let two_depths = renderer(gpu(), &scene, n, Method::TowardAway { wide: false }, size);
+        let mut by_id = Planned::by_id(gpu(), &scene, n);
+        let mut without_int64 = Planned::by_id(gpu_without_int64(), &scene, n);
+        let plan = Plan::new(level(n), Method::TowardAway { wide: false }, Border::Off);
+        let mut two_depths = Planned::new(gpu(), &scene, plan);
         let outside = from_outside(&scene, 33.0, -25.0, 1.1, size);
-        for camera in [outside, look(over(&scene, 5.0, 6.0, 1.0), 120.0, -5.0, size)] {
-            let shot = shoot(gpu(), &by_id, &camera).pixels;
+        for camera in [outside, aimed(over(&scene, 5.0, 6.0, 1.0), 120.0, -5.0, size)] {
+            let shot = by_id.shoot(&camera).pixels;
             assert!(shot.iter().filter(|p| p[1] != 0).count() > 1000);
-            assert!(shot == shoot(&plain, &without_int64, &camera).pixels, "level {n}, u32 against u64");
-            let depths = shoot(gpu(), &two_depths, &camera).pixels;
+            assert!(shot == without_int64.shoot(&camera).pixels, "level {n}, u32 against u64");
+            let depths = two_depths.shoot(&camera).pixels;
             let nearest = depths.iter().zip(&shot).filter(|(two, one)| two[0].max(two[1]) != one[1]).count();
             assert_eq!(nearest, 0, "level {n}, two depths against u64");
         }
@@ -196,12 +196,11 @@ fn rasters_of_every_kind_agree_to_the_bit() {
 
 #[test]
 fn comparison_with_the_hardware_can_fail() {
-    let scene = rough(51, [20, 20], 50.0, 80.0);
+    let scene = noisy(51, [20, 20], 50.0, 80.0);
     let size = [512, 512];
     let camera = from_outside(&scene, 20.0, -35.0, 1.2, size);
-    let renderer = renderer(gpu(), &scene, 2, BY_ID, size);
-    let shot = shoot(gpu(), &renderer, &camera);
-    let whole = triangles(&renderer, &shot, size);
+    let shot = Planned::by_id(gpu(), &scene, 2).shoot(&camera);
+    let whole = triangles(&shot, size);
     let differ = |drawn: &[[Vertex; 3]]| compare(&shot.pixels, &draw(gpu(), drawn, size));
     assert_eq!(differ(&whole).coverage, 0);
     // One vertex a pixel aside, in every facet that has it: the rim moves.

@@ -1,16 +1,16 @@
 //! The hardware depth draw shows what our visibility passes show, and the bare copy copies.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
 use hachure::gpu::{AdapterChoice, Clock, Gpu, Int64};
 use hachure::measure::depth_draw::{self, shows_facets};
 use hachure::measure::{BareCopy, Floor};
 use hachure::plan::{Border, Detail, Method, Plan};
-use hachure::render::Renderer;
 use hachure::surface::Surface;
 use hachure::view::Camera;
 
+use crate::frames::Planned;
 use crate::scenes::{level, look, rough};
 
 /// Sides that are no powers of two, and rows that are no multiple of what those of a texture are aligned to.
@@ -19,12 +19,13 @@ const PAGE: [u32; 2] = [331, 200];
 const MOST_OTHERS: f64 = 0.01;
 
 /// A device that numbers primitives, timed by a clock of its own.
-fn numbering(clock: Clock) -> &'static Gpu {
-    static GPUS: [OnceLock<Gpu>; 2] = [OnceLock::new(), OnceLock::new()];
+fn numbering(clock: Clock) -> &'static Arc<Gpu> {
+    static GPUS: [OnceLock<Arc<Gpu>>; 2] = [OnceLock::new(), OnceLock::new()];
     let stamps = clock == Clock::Timestamps;
     let gpu = GPUS[usize::from(stamps)].get_or_init(|| {
         let extra = if stamps { wgpu::Features::TIMESTAMP_QUERY } else { wgpu::Features::empty() };
-        Gpu::open_with(&AdapterChoice::Best, Int64::IfPresent, depth_draw::FEATURE | extra).expect("an adapter")
+        let gpu = Gpu::open_with(&AdapterChoice::Best, Int64::IfPresent, depth_draw::FEATURE | extra);
+        Arc::new(gpu.expect("an adapter"))
     });
     assert!(shows_facets(gpu), "{} numbers no primitives, nothing is proven", gpu.info.name);
     gpu
@@ -38,10 +39,9 @@ fn camera(surface: &Surface) -> Camera {
 }
 
 /// ID + 1 of each pixel of the last frame, by our passes.
-fn ours(gpu: &Gpu, renderer: &Renderer<'_>) -> Vec<u32> {
-    let size = u64::from(PAGE[0]) * u64::from(PAGE[1]) * 8;
-    let bytes = gpu.read(renderer.buffers().get("pixels").expect("pixels"), size).expect("pixels");
-    bytemuck::pod_collect_to_vec::<u8, [u32; 2]>(&bytes).iter().map(|pixel| pixel[0]).collect()
+fn ours(renderer: &Planned) -> Vec<u32> {
+    let pixels: Vec<[u32; 2]> = renderer.values("pixels", PAGE[0] as usize * PAGE[1] as usize);
+    pixels.iter().map(|pixel| pixel[0]).collect()
 }
 
 /// Share of the pixels that either covers in which they differ.
@@ -53,18 +53,18 @@ fn others(a: &[u32], b: &[u32]) -> f64 {
 }
 
 /// Draws two views one after the other, of which the lattice may differ, and compares each with our passes.
-fn draw_and_compare(surface: &Surface, detail: Detail) {
+fn draw_and_compare(surface: &Arc<Surface>, detail: Detail) {
     let (gpu, view) = (numbering(Clock::Wall), camera(surface));
     let plan = Plan::new(detail, Method::Walk, Border::Off);
-    let renderer = Renderer::new(gpu, surface, plan, PAGE).expect("a renderer");
-    let mut floor = Floor::new(&renderer, 1 << 20).expect("a floor");
+    let mut renderer = Planned::new(gpu, surface, plan);
+    let mut floor = Floor::new(gpu.clone(), PAGE, 1 << 20).expect("a floor");
     let mut lattices = Vec::new();
     for eye in [view.eye, view.eye + DVec3::new(200.0, 300.0, 0.0)] {
         let camera = Camera { eye, ..view };
         renderer.frame(&camera).expect("a frame");
         lattices.push(renderer.lattice().chunks().to_vec());
-        assert!(floor.draw_ms(&camera).expect("a draw").expect("a time") > 0.0);
-        let (expected, drawn) = (ours(gpu, &renderer), floor.ids().expect("IDs"));
+        assert!(floor.draw_ms(&renderer).expect("a draw").expect("a time") > 0.0);
+        let (expected, drawn) = (ours(&renderer), floor.ids().expect("IDs"));
         let share = others(&expected, &drawn);
         println!("{detail:?}: {:.3} % of the pixels show another facet", share * 100.0);
         assert!(share < MOST_OTHERS, "{detail:?}: {share} of the pixels show another facet");
@@ -80,7 +80,7 @@ fn draw_and_compare(surface: &Surface, detail: Detail) {
 #[test]
 fn the_draw_shows_the_facets_of_our_passes() {
     for voids in [false, true] {
-        let surface = Surface::new(rough(120, 110, 1.0, 6.0, voids));
+        let surface = Arc::new(Surface::new(rough(120, 110, 1.0, 6.0, voids)));
         for detail in [level(1).into(), level(4).into(), Detail::Adaptive { error_px: 0.2 }] {
             draw_and_compare(&surface, detail);
         }
@@ -89,7 +89,7 @@ fn the_draw_shows_the_facets_of_our_passes() {
 
 #[test]
 fn stamps_time_copy_and_draw() {
-    let surface = Surface::new(rough(70, 60, 1.0, 6.0, false));
+    let surface = Arc::new(Surface::new(rough(70, 60, 1.0, 6.0, false)));
     let camera = camera(&surface);
     for clock in [Clock::Wall, Clock::Timestamps] {
         let gpu = numbering(clock);
@@ -97,10 +97,10 @@ fn stamps_time_copy_and_draw() {
             assert_eq!(gpu.clock, clock);
         }
         let plan = Plan::new(level(4), Method::Walk, Border::Off);
-        let renderer = Renderer::new(gpu, &surface, plan, PAGE).expect("a renderer");
-        let [mut little, much] = [1 << 12, 1 << 28].map(|bytes| Floor::new(&renderer, bytes).expect("a floor"));
+        let mut renderer = Planned::new(gpu, &surface, plan);
+        let [mut little, much] = [1 << 12, 1 << 28].map(|bytes| Floor::new(gpu.clone(), PAGE, bytes).expect("a floor"));
         renderer.frame(&camera).expect("a frame");
-        let draw = little.draw_ms(&camera).expect("a draw").expect("a time");
+        let draw = little.draw_ms(&renderer).expect("a draw").expect("a time");
         assert!(draw.is_finite() && draw > 0.0, "{clock:?}: {draw} ms");
         let [few, many] = [&little, &much].map(|floor| floor.copy_ms().expect("a copy").expect("a time"));
         assert!(many > few, "{clock:?}: 256 MiB take {many} ms, 4 KiB {few} ms");
@@ -110,14 +110,12 @@ fn stamps_time_copy_and_draw() {
 #[test]
 fn several_vertex_batches_cannot_be_drawn() {
     // 66 x 66 cells at level 32: more chunks than a batch takes.
-    let surface = Surface::new(rough(67, 67, 1.0, 0.0, false));
+    let surface = Arc::new(Surface::new(rough(67, 67, 1.0, 0.0, false)));
     let gpu = numbering(Clock::Wall);
-    let renderer =
-        Renderer::new(gpu, &surface, Plan::new(level(32), Method::Walk, Border::Off), PAGE).expect("a renderer");
-    let camera = camera(&surface);
-    renderer.frame(&camera).expect("a frame");
-    let mut floor = Floor::new(&renderer, 1 << 20).expect("a floor");
-    assert!(floor.lacks_vertices() && floor.draw_ms(&camera).expect("no error").is_none());
+    let mut renderer = Planned::new(gpu, &surface, Plan::new(level(32), Method::Walk, Border::Off));
+    let frame = renderer.frame(&camera(&surface)).expect("a frame");
+    let mut floor = Floor::new(gpu.clone(), PAGE, 1 << 20).expect("a floor");
+    assert!(!frame.keeps_vertices() && floor.draw_ms(&renderer).expect("no error").is_none());
 }
 
 #[test]
@@ -130,6 +128,6 @@ fn the_copy_copies_in_as_many_commands_as_it_takes() {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         copy.record(&mut encoder);
         gpu.queue.submit([encoder.finish()]);
-        assert_eq!(gpu.read(copy.to(), 1 << 15).expect("the copy"), [7; 1 << 15]);
+        assert_eq!(gpu.read::<u8>(copy.to(), 1 << 15).expect("the copy"), [7; 1 << 15]);
     }
 }

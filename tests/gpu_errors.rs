@@ -1,18 +1,19 @@
 //! What cannot be drawn is refused with what, where and remedy, before anything is allocated.
 
+use std::sync::Arc;
+
 use glam::DVec2;
 use hachure::cli::words::{exit_code, line};
 use hachure::dem::Dem;
 use hachure::error::{Error, Result};
 use hachure::gpu::{AdapterChoice, CameraUniform, Gpu, Int64};
-use hachure::plan::{Border, Method, Pieces, Plan};
-use hachure::render::Renderer;
+use hachure::plan::{Border, Method, PassName, Pieces, Plan};
 use hachure::surface::{Lattice, Surface};
 use hachure::view::Camera;
 
 use crate::common::gpu;
-use crate::drawn::{BY_ID, look, over, renderer, rough};
-use crate::scenes::level;
+use crate::frames::Planned;
+use crate::scenes::{aimed, gpu_without_int64, level, noisy, over};
 
 /// The error of a call that must fail, with the words it must contain.
 fn refused<T>(outcome: Result<T>, words: &[&str]) -> Error {
@@ -36,15 +37,10 @@ fn an_adapter_of_no_name_is_refused_with_those_there_are() {
     assert_eq!(exit_code(&error), 1);
 }
 
-#[test]
-fn a_camera_of_another_page_is_refused() {
-    let scene = Surface::new(flat(4, 4));
-    let renderer =
-        Renderer::new(gpu(), &scene, Plan::new(level(1), Method::Walk, Border::On), [64, 48]).expect("small");
+/// From south of a [`flat`] DEM.
+fn from_south(width: u32, height: u32) -> Camera {
     let eye = glam::DVec3::new(50.0, -200.0, 100.0);
-    let camera = |width, height| Camera { eye, azimuth: 0.0, altitude: -20.0, fov: 60.0, width, height };
-    assert!(renderer.frame(&camera(64, 48)).is_ok());
-    refused(renderer.frame(&camera(65, 48)), &["65x48", "64x48"]);
+    Camera { eye, azimuth: 0.0, altitude: -20.0, fov: 60.0, width, height }
 }
 
 #[test]
@@ -63,8 +59,14 @@ fn facets_beyond_their_ids_are_refused_with_numbers() {
 
 #[test]
 fn pages_too_large_are_refused_with_numbers() {
-    let scene = Surface::new(flat(4, 4));
-    let draw = |size| Renderer::new(gpu(), &scene, Plan::new(level(1), Method::Walk, Border::On), size);
+    let scene = Arc::new(Surface::new(flat(4, 4)));
+    let mut renderer = Planned::new(gpu(), &scene, Plan::new(level(1), Method::Walk, Border::On));
+    let plan = renderer.plan;
+    let mut draw = |pieces: Pieces| {
+        let [width, height] = pieces.page();
+        let frame = renderer.plan(&plan, &from_south(width, height))?.cut(pieces)?;
+        renderer.page_of(frame, |_| ()).map(drop)
+    };
     let piece = |size| Pieces::new(size, size);
     for (size, words) in [
         (piece([5000, 4000]), ["5000x4000", "20000000", "16777216", "--size"]),
@@ -76,17 +78,15 @@ fn pages_too_large_are_refused_with_numbers() {
     }
     assert!(draw(piece([16_384, 16])).is_ok());
     // One piece can be read back whole, of several the device holds the last alone.
-    let cut = draw(Pieces::new([64, 48], [33, 48])).expect("two pieces");
-    let eye = glam::DVec3::new(50.0, -200.0, 100.0);
-    let camera = Camera { eye, azimuth: 0.0, altitude: -20.0, fov: 60.0, width: 64, height: 48 };
-    refused(cut.draw(&camera), &["2 pieces", "--size"]);
+    draw(Pieces::new([64, 48], [33, 48])).expect("two pieces");
+    refused(renderer.read(), &["2 pieces", "--size"]);
 }
 
 #[test]
 fn an_eye_out_of_reach_is_wrong_usage() {
-    let scene = rough(1, [8, 8], 50.0, 40.0);
-    let renderer = renderer(gpu(), &scene, 1, BY_ID, [64, 64]);
-    let near = look(over(&scene, 3.0, 3.0, 50.0), 0.0, 0.0, [64, 64]);
+    let scene = noisy(1, [8, 8], 50.0, 40.0);
+    let mut renderer = Planned::by_id(gpu(), &scene, 1);
+    let near = aimed(over(&scene, 3.0, 3.0, 50.0), 0.0, 0.0, [64, 64]);
     renderer.frame(&near).expect("an eye over the DEM");
     for eye in [near.eye * 1e6, near.eye.with_x(f64::NAN), near.eye.with_y(f64::INFINITY)] {
         let far = hachure::view::Camera { eye, ..near };
@@ -95,6 +95,110 @@ fn an_eye_out_of_reach_is_wrong_usage() {
         assert_eq!(exit_code(&error), 2);
         assert!(CameraUniform::new(scene.dem(), &far).is_err());
     }
+}
+
+/// A pass of a shader with one override that it needs, one that it does not, and one that it only declares.
+const SHADER: &str = "
+    override needed: u32;
+    override optional: u32 = 3u;
+    override unused: u32;
+    @group(0) @binding(0) var<storage, read_write> out_words: array<u32>;
+    @compute @workgroup_size(1)
+    fn fill(@builtin(global_invocation_id) at: vec3<u32>) { out_words[at.x] = needed + optional; }
+";
+
+/// The error of a call that fails by our mistake, and says so.
+fn mistake<T>(outcome: Result<T>, words: &[&str]) {
+    let error = refused(outcome, &[words, &["hachure's mistake", "report it"]].concat());
+    assert!(matches!(error, Error::Mistake { .. }), "{error:?}");
+    assert_eq!(exit_code(&error), 1);
+}
+
+#[test]
+fn constants_that_a_shader_does_not_know_or_lacks_are_mistakes() {
+    let pass = |constants: &[(&str, f64)]| gpu().pass("fill", SHADER, constants);
+    mistake(pass(&[("needed", 1.0), ("needles", 1.0)]), &["pass fill", "no constant is named needles"]);
+    mistake(pass(&[("optional", 1.0)]), &["pass fill", "needed has no value"]);
+    assert!(pass(&[("needed", 1.0)]).is_ok() && pass(&[("needed", 1.0), ("unused", 1.0)]).is_ok());
+}
+
+#[test]
+fn a_pass_is_compiled_once_for_the_constants_on_which_it_depends() {
+    let gpu = Gpu::open(&AdapterChoice::Best, Int64::IfPresent).expect("an adapter");
+    let pass = |constants: &[(&str, f64)]| gpu.pass("fill", SHADER, constants).expect("a pass");
+    let first = pass(&[("needed", 1.0), ("unused", 1.0)]);
+    assert!(Arc::ptr_eq(&first, &pass(&[("needed", 1.0), ("unused", 2.0)])));
+    assert_eq!(gpu.compiled(), 1);
+    assert!(!Arc::ptr_eq(&first, &pass(&[("needed", 2.0)])));
+    assert!(!Arc::ptr_eq(&first, &pass(&[("needed", 1.0), ("optional", 1.0)])));
+    assert_eq!(gpu.compiled(), 3);
+}
+
+#[test]
+fn wrong_shaders_and_missing_buffers_are_mistakes() {
+    mistake(gpu().pass("fill", "fn fill( {", &[]), &["pass fill", "error"]);
+    mistake(gpu().pass("fill", "@compute @workgroup_size(1) fn fill() { let a: u32 = 1.0f; }", &[]), &["pass fill"]);
+    mistake(gpu().pass("spill", SHADER, &[("needed", 1.0)]), &["pass spill", "no entry point"]);
+    let pass = gpu().pass("fill", SHADER, &[("needed", 1.0)]).expect("a pass");
+    mistake(pass.bind(gpu(), |_| None), &["pass fill", "no buffer is named words"]);
+}
+
+#[test]
+fn passes_and_groups_that_no_frame_planned_are_mistakes() {
+    let scene = Arc::new(Surface::new(flat(4, 4)));
+    for gpu in [gpu(), gpu_without_int64()] {
+        let mut renderer = Planned::by_id(gpu, &scene, 1);
+        mistake(renderer.read(), &["no frame"]);
+        let camera = from_south(64, 48);
+        let frame = renderer.frame(&camera).expect("a frame");
+        let on_device = renderer.on_device();
+        mistake(on_device.buffer("no such"), &["no buffer is named no such"]);
+        mistake(on_device.stages.get(PassName::Walk), &["pass walk is not of the plan"]);
+        let piece = frame.pieces.iter().next().expect("a piece");
+        let facing = frame.pass(PassName::Facing, 0).expect("planned");
+        assert!(on_device.dispatch(&frame, piece, facing, [0, 0]).expect("a batch").is_some());
+        let rounds = frame.visibility.rounds();
+        for at in [[1, 0], [0, rounds]] {
+            mistake(on_device.dispatch(&frame, piece, facing, at), &["pass facing binds nothing"]);
+        }
+        let tessellate = frame.pass(PassName::Tessellate, 0).expect("planned");
+        assert!(on_device.dispatch(&frame, piece, tessellate, [0, 0]).expect("a batch").is_none(), "vertices stay");
+        renderer.frame(&camera).expect("frames go on");
+    }
+}
+
+#[test]
+fn a_pixel_with_a_depth_and_no_facet_is_a_mistake() {
+    let scene = Arc::new(Surface::new(flat(4, 4)));
+    let mut renderer = Planned::by_id(gpu(), &scene, 1);
+    renderer.frame(&from_south(64, 48)).expect("a frame");
+    assert!(renderer.read().is_ok());
+    // A depth in the higher word, no ID in the lower one, in three pixels.
+    let words = [0, 1.0_f32.to_bits()].repeat(3);
+    gpu().queue.write_buffer(&renderer.buffer("pixels"), 0, bytemuck::cast_slice(&words));
+    mistake(renderer.read(), &["3 pixels have a depth and no facet"]);
+}
+
+#[test]
+fn a_device_that_grants_too_little_is_refused() {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+    let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
+    let open = |required_limits| {
+        let descriptor = wgpu::DeviceDescriptor { required_limits, ..Default::default() };
+        let (device, queue) = pollster::block_on(adapters[0].request_device(&descriptor)).expect("a device");
+        Gpu::from_parts(device, queue)
+    };
+    let few = wgpu::Limits { max_storage_buffers_per_shader_stage: 15, ..Gpu::limits() };
+    refused(open(few), &["grants 15 as max_storage_buffers_per_shader_stage, 16 are needed"]);
+    let small = wgpu::Limits { max_storage_buffer_binding_size: 64 << 20, ..Gpu::limits() };
+    refused(open(small), &["grants 67108864 as max_storage_buffer_binding_size, 134217728 are needed"]);
+    // One that grants enough draws what ours draws.
+    let scene = noisy(1, [20, 20], 50.0, 40.0);
+    let camera = aimed(over(&scene, 3.0, 3.0, 50.0), 140.0, -10.0, [64, 64]);
+    let theirs = Arc::new(open(Gpu::limits()).expect("a device"));
+    assert!(!theirs.int64, "it was not asked for");
+    let drawn = [&theirs, gpu_without_int64()].map(|gpu| Planned::by_id(gpu, &scene, 1).bytes(&camera));
+    assert!(drawn[0] == drawn[1], "another picture on a device of theirs");
 }
 
 #[test]

@@ -8,8 +8,8 @@ use std::collections::HashMap;
 use bytemuck::Zeroable;
 use glam::{DVec2, IVec2};
 use hachure::dem::Dem;
+use hachure::gpu::Gpu;
 use hachure::gpu::uniforms::{ChunkUniform, SceneUniform};
-use hachure::gpu::{Gpu, Pass};
 use hachure::surface::lattice::{CELL_STEPS, CHUNK_FACETS};
 use hachure::surface::quadtree::NO_SLOT;
 use hachure::surface::{Chunk, Lattice, LatticePoint};
@@ -65,12 +65,12 @@ pub fn run(
         gpu.queue.write_buffer(&buffer, 0, bytes);
         buffers.insert(label, buffer);
     }
-    let pass = Pass::new(gpu, name, source, constants).expect("a valid shader");
+    let pass = gpu.pass(name, source.to_owned(), constants).expect("a valid shader");
     let group = pass.bind(gpu, |label| Some(buffers.get(label)?.as_entire_binding())).expect("all buffers");
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     pass.record(&mut encoder.begin_compute_pass(&Default::default()), &group, [count, 1]);
     gpu.queue.submit([encoder.finish()]);
-    bytemuck::pod_collect_to_vec(&gpu.read(&buffers["results"], size).expect("the results"))
+    gpu.read(&buffers["results"], 4 * count as usize).expect("the results")
 }
 
 /// A lattice with facing bits: what a walk reads, and what its twin reads.

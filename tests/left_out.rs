@@ -1,25 +1,20 @@
 //! Leaving out changes time, never the picture: every frame is drawn with all shortcuts and with none, bit for bit.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use hachure::plan::{Border, Detail, Method, Plan, Thrift};
-use hachure::render::Renderer;
 use hachure::surface::Surface;
 use hachure::view::Camera;
 
 use crate::common::shared_dems;
-use crate::drawn::Random;
+use crate::frames::{METHODS, Planned};
 use crate::quadtrees::moor;
-use crate::scenes::{METHODS, gpu, level, rough};
+use crate::scenes::{Random, gpu, level, rough};
 
 const PAGE: [u32; 2] = [123, 77];
 /// Frames of each scene and method.
 const FRAMES: usize = 24;
-
-/// The page of a frame as packed for reading.
-fn page(renderer: &Renderer<'_>, camera: &Camera) -> Vec<u8> {
-    renderer.frame(camera).expect("a frame");
-    bytemuck::cast_slice(&renderer.read().expect("its pixels").raster.pixels).to_vec()
-}
 
 /// Eyes in, over, under and beside the DEM, looking anywhere, with narrow and wide fields of view.
 fn anywhere(surface: &Surface, random: &mut Random) -> Camera {
@@ -42,18 +37,15 @@ fn anywhere(surface: &Surface, random: &mut Random) -> Camera {
 }
 
 /// Compares frames of one scene; returns how many pixels were inked in all.
-fn compare(surface: &Surface, detail: Detail, method: Method, frames: usize, seed: u64) -> usize {
-    let make = |thrift| {
-        Renderer::new(gpu(), surface, Plan { thrift, ..Plan::new(detail, method, Border::On) }, PAGE)
-            .expect("a renderer")
-    };
-    let (thrifty, whole) = (make(Thrift::LeaveOut), make(Thrift::Nothing));
-    let mut random = Random(seed);
+fn compare(surface: &Arc<Surface>, detail: Detail, method: Method, frames: usize, seed: u64) -> usize {
+    let make = |thrift| Planned::new(gpu(), surface, Plan { thrift, ..Plan::new(detail, method, Border::On) });
+    let (mut thrifty, mut whole) = (make(Thrift::LeaveOut), make(Thrift::Nothing));
+    let mut random = Random::new(seed);
     let mut inked = 0;
     for _ in 0..frames {
         let camera = anywhere(surface, &mut random);
-        let expected = page(&whole, &camera);
-        assert!(page(&thrifty, &camera) == expected, "{method:?}, {detail:?}: {camera:?} differs");
+        let expected = whole.bytes(&camera);
+        assert!(thrifty.bytes(&camera) == expected, "{method:?}, {detail:?}: {camera:?} differs");
         inked += expected.chunks_exact(8).filter(|p| p[0] & 2 != 0).count();
     }
     inked
@@ -61,7 +53,7 @@ fn compare(surface: &Surface, detail: Detail, method: Method, frames: usize, see
 
 #[test]
 fn what_is_left_out_changes_no_bit() {
-    let scenes = [rough(60, 50, 3.0, 5.0, false), rough(60, 50, 2.0, 2.0, true)].map(Surface::new);
+    let scenes = [rough(60, 50, 3.0, 5.0, false), rough(60, 50, 2.0, 2.0, true)].map(|dem| Arc::new(Surface::new(dem)));
     for (surface, seed) in scenes.iter().zip([1, 2]) {
         for (_, method) in METHODS {
             for n in [1, 4] {
@@ -76,7 +68,7 @@ fn what_is_left_out_changes_no_bit() {
 fn what_is_left_out_of_real_terrain_changes_no_bit() {
     let Some(dems) = shared_dems() else { return };
     let read = |name: &str| hachure::geo::read(dems.join(name), &Default::default()).expect(name);
-    let surface = Surface::new(read("west_temple_50m.tif"));
+    let surface = Arc::new(Surface::new(read("west_temple_50m.tif")));
     assert!(compare(&surface, level(4).into(), Method::Walk, FRAMES, 77) > 1000);
 }
 
@@ -84,7 +76,7 @@ fn what_is_left_out_of_real_terrain_changes_no_bit() {
 fn compare_levels(frames: usize, errors: &[f64]) {
     let scenes = [rough(60, 50, 3.0, 5.0, false), rough(60, 50, 2.0, 2.0, true), moor()];
     let mut all_inked = 0;
-    for (surface, seed) in scenes.map(Surface::new).iter().zip([11, 12, 13]) {
+    for (surface, seed) in scenes.map(|dem| Arc::new(Surface::new(dem))).iter().zip([11, 12, 13]) {
         for (_, method) in METHODS {
             for error_px in errors {
                 let detail = Detail::Adaptive { error_px: *error_px };
@@ -116,12 +108,11 @@ fn what_is_left_out_of_views_of_real_terrain_changes_no_bit() {
     ];
     for (name, eye, azimuth, altitude) in views {
         let dem = hachure::geo::read(dems.join(name), &Default::default()).expect(name);
-        let surface = Surface::new(dem);
+        let surface = Arc::new(Surface::new(dem));
         let camera = Camera { eye, azimuth, altitude, fov: 60.0, width: 640, height: 360 };
         let [thrifty, whole] = [Thrift::LeaveOut, Thrift::Nothing].map(|thrift| {
             let plan = Plan { thrift, ..Plan::default() };
-            let renderer = Renderer::new(gpu(), &surface, plan, [640, 360]).expect("a renderer");
-            page(&renderer, &camera)
+            Planned::new(gpu(), &surface, plan).bytes(&camera)
         });
         assert!(thrifty == whole, "{name} differs");
         assert!(whole.chunks_exact(8).filter(|p| p[0] & 2 != 0).count() > 500, "{name}: too little ink");
@@ -130,18 +121,16 @@ fn what_is_left_out_of_views_of_real_terrain_changes_no_bit() {
 
 #[test]
 fn another_frame_is_noticed() {
-    let surface = Surface::new(rough(60, 50, 3.0, 5.0, false));
-    let renderer = |thrift| {
-        Renderer::new(gpu(), &surface, Plan { thrift, ..Plan::new(level(1), Method::Walk, Border::On) }, PAGE)
-            .expect("a renderer")
-    };
+    let surface = Arc::new(Surface::new(rough(60, 50, 3.0, 5.0, false)));
+    let plan = Plan::new(level(1), Method::Walk, Border::On);
+    let page = |thrift, camera| Planned::new(gpu(), &surface, Plan { thrift, ..plan }).bytes(camera);
     let [west, south, _, _] = surface.dem().extent();
     let camera = Camera {
         eye: DVec3::new(west, south, 400.0),
         azimuth: 45.0,
         altitude: -10.0,
-        ..anywhere(&surface, &mut Random(5))
+        ..anywhere(&surface, &mut Random::new(5))
     };
     let moved = Camera { azimuth: camera.azimuth + 0.1, ..camera };
-    assert!(page(&renderer(Thrift::LeaveOut), &moved) != page(&renderer(Thrift::Nothing), &camera));
+    assert!(page(Thrift::LeaveOut, &moved) != page(Thrift::Nothing, &camera));
 }

@@ -1,27 +1,28 @@
 //! Lines as data: where chains lie in the world, and what they draw.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
 use hachure::gpu::uniforms::near_plane;
 use hachure::line::{Chain, Line, Lines, Marks};
 use hachure::plan::{Border, Method};
-use hachure::render::Frame;
+use hachure::render::Drawn;
 use hachure::surface::Surface;
 use hachure::view::{Camera, Perspective};
 
 use crate::closed_forms::GAUSSIAN;
 use crate::forms::{about_middle, from_middle};
-use crate::scenes::{draw, level, look};
+use crate::frames::draw;
+use crate::scenes::{level, look};
 use crate::tolerances::{CHAIN_OFF_SURFACE_PX, REPROJECTED_PX};
 
 const PAGE: [u32; 2] = [384, 288];
 
 /// A hill against the sky, and a frame of it.
-fn hill() -> &'static (Camera, Frame, f64) {
-    static HILL: OnceLock<(Camera, Frame, f64)> = OnceLock::new();
+fn hill() -> &'static (Camera, Drawn, f64) {
+    static HILL: OnceLock<(Camera, Drawn, f64)> = OnceLock::new();
     HILL.get_or_init(|| {
-        let surface = Surface::new(GAUSSIAN.dem(|_, _| true));
+        let surface = Arc::new(Surface::new(GAUSSIAN.dem(|_, _| true)));
         let eye = from_middle(DVec3::new(-1000.0, -550.0, 60.0));
         let camera = look(eye, from_middle(DVec3::new(0.0, 0.0, 150.0)), 60.0, PAGE);
         let frame = draw(&surface, &camera, level(4), Method::Walk, Border::On);

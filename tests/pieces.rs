@@ -1,31 +1,33 @@
 //! Large pages: drawn in pieces, a page has the same bits as in one piece.
 
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3};
 use hachure::cli::words::line;
 use hachure::dem::Dem;
 use hachure::gpu::Gpu;
 use hachure::line::{Marks, Pixel};
 use hachure::plan::pieces::{HALO, LARGEST_PAGE, LARGEST_PIECE, LONGEST_PIECE, Rectangle};
-use hachure::plan::{Border, Method, Piece, Pieces, Plan, Share};
-use hachure::render::Renderer;
+use hachure::plan::{Border, Frame, Method, Piece, Pieces, Plan, Share};
 use hachure::surface::Surface;
 use hachure::view::Camera;
 
 use crate::common::shared_dems;
-use crate::drawn::over;
-use crate::scenes::{self, METHODS, gpu, gpu_without_int64, level, look, rough};
+use crate::frames::{METHODS, Planned};
+use crate::scenes::{self, gpu, gpu_without_int64, level, look, over, rough};
 
 const PAGE: [u32; 2] = [197, 131];
 
 /// The page as packed for readback, put together from pieces of at most `side` pixels, each changed by `cut` before.
-fn page_in(gpu: &Gpu, scene: &Scene<'_>, side: [u32; 2], cut: impl Fn(Piece) -> Piece) -> Vec<Pixel> {
+fn page_in(gpu: &Arc<Gpu>, scene: &Scene<'_>, side: [u32; 2], cut: impl Fn(Piece) -> Piece) -> Vec<Pixel> {
     let plan = Plan::new(level(scene.level), scene.method, Border::On);
     let pieces = Pieces::new([scene.camera.width, scene.camera.height], side);
-    let renderer = Renderer::new(gpu, scene.surface, plan, pieces).expect("a renderer");
+    let mut renderer = Planned::new(gpu, scene.surface, plan);
+    let frame = renderer.plan_in(&scene.camera, pieces);
     let width = scene.camera.width as usize;
     let mut page = vec![Pixel::new(hachure::line::Kind::Sky, DVec2::ZERO, 7.0); width * scene.camera.height as usize];
     for piece in pieces.iter().map(cut) {
-        let raster = renderer.draw_piece(&scene.camera, piece).expect("a piece").raster;
+        let raster = renderer.draw_piece(&frame, piece).expect("a piece").raster;
         for row in 0..piece.kept.size[1] {
             for column in 0..piece.kept.size[0] {
                 let [x, y] = [piece.kept.origin[0] + column, piece.kept.origin[1] + row];
@@ -39,7 +41,7 @@ fn page_in(gpu: &Gpu, scene: &Scene<'_>, side: [u32; 2], cut: impl Fn(Piece) -> 
 
 /// What is drawn.
 struct Scene<'a> {
-    surface: &'a Surface,
+    surface: &'a Arc<Surface>,
     camera: Camera,
     level: u32,
     method: Method,
@@ -67,7 +69,7 @@ fn views(surface: &Surface) -> [Camera; 4] {
 
 #[test]
 fn a_page_in_pieces_has_the_bits_of_one_piece() {
-    let surface = Surface::new(rough(60, 50, 2.0, 4.0, true));
+    let surface = Arc::new(Surface::new(rough(60, 50, 2.0, 4.0, true)));
     for (name, method) in METHODS {
         let mut inked = 0;
         for (camera, level) in views(&surface).into_iter().zip([4, 1, 2, 2]) {
@@ -85,13 +87,13 @@ fn a_page_in_pieces_has_the_bits_of_one_piece() {
 
 #[test]
 fn pieces_change_no_bit_without_int64_and_of_real_terrain() {
-    let rough = Surface::new(rough(60, 50, 2.0, 4.0, true));
+    let rough = Arc::new(Surface::new(rough(60, 50, 2.0, 4.0, true)));
     let narrow = Scene { surface: &rough, camera: views(&rough)[1], level: 4, method: Method::Walk };
     let whole = page_in(gpu(), &narrow, PAGE, |piece| piece);
     assert_eq!(different(&whole, &page_in(gpu_without_int64(), &narrow, [50, 50], |piece| piece)), 0);
     let Some(dems) = shared_dems() else { return };
     let dem: Dem = hachure::geo::read(dems.join("west_temple_50m.tif"), &Default::default()).expect("west-temple");
-    let surface = Surface::new(dem);
+    let surface = Arc::new(Surface::new(dem));
     let eye = DVec3::new(325_249.0, 4_117_889.0, 2000.0);
     let camera = Camera { eye, azimuth: 310.0, altitude: 0.0, fov: 60.0, width: 1280, height: 720 };
     for method in [Method::Walk, Method::TowardAway { wide: true }] {
@@ -103,25 +105,23 @@ fn pieces_change_no_bit_without_int64_and_of_real_terrain() {
 }
 
 /// A rectangle of a page as packed for readback.
-fn rectangle(scene: &Scene<'_>, renderer: &Renderer<'_>, origin: [u32; 2], size: [u32; 2]) -> Vec<Pixel> {
+fn rectangle(frame: &Frame, renderer: &mut Planned, origin: [u32; 2], size: [u32; 2]) -> Vec<Pixel> {
     let drawn = Rectangle { origin, size };
-    renderer.draw_piece(&scene.camera, Piece { kept: drawn, drawn }).expect("a piece").raster.pixels
+    renderer.draw_piece(frame, Piece { kept: drawn, drawn }).expect("a piece").raster.pixels
 }
 
 #[test]
 fn far_out_on_a_large_page_no_bit_depends_on_the_piece() {
-    let surface = Surface::new(rough(60, 50, 2.0, 4.0, true));
+    let surface = Arc::new(Surface::new(rough(60, 50, 2.0, 4.0, true)));
     for (name, method) in METHODS {
         let (mut inked, mut covered) = (0, 0);
         for (view, level) in views(&surface).into_iter().zip([4, 1, 2, 2]) {
             let camera = Camera { width: LARGEST_PAGE, height: 40_000, ..view };
-            let scene = Scene { surface: &surface, camera, level, method };
-            let plan = Plan::new(scenes::level(level), method, Border::On);
-            let pieces = Pieces::new([camera.width, camera.height], [400, 300]);
-            let renderer = Renderer::new(gpu(), &surface, plan, pieces).expect("a renderer");
+            let mut renderer = Planned::new(gpu(), &surface, Plan::new(scenes::level(level), method, Border::On));
+            let frame = renderer.plan_in(&camera, Pieces::new([camera.width, camera.height], [400, 300]));
             for origin in [[0, 39_700], [33_000, 20_000], [40_001, 24_003], [65_136, 30_007], [51_003, 39_700]] {
-                let whole = rectangle(&scene, &renderer, origin, [400, 300]);
-                let part = rectangle(&scene, &renderer, [origin[0] + 97, origin[1] + 41], [283, 251]);
+                let whole = rectangle(&frame, &mut renderer, origin, [400, 300]);
+                let part = rectangle(&frame, &mut renderer, [origin[0] + 97, origin[1] + 41], [283, 251]);
                 covered += whole.iter().filter(|p| p.depth() != 0.0).count();
                 // Without the halo of the part.
                 for (row, column) in (1..250).flat_map(|r| (1..282).map(move |c| (r, c))) {
@@ -142,20 +142,19 @@ fn far_out_on_a_large_page_no_bit_depends_on_the_piece() {
 
 #[test]
 fn a_large_page_shows_what_a_small_one_shows() {
-    let surface = Surface::new(rough(60, 50, 2.0, 4.0, true));
+    let surface = Arc::new(Surface::new(rough(60, 50, 2.0, 4.0, true)));
     let scale = 32.0;
     let small = Camera { width: LARGEST_PAGE / 32, height: 1250, ..views(&surface)[0] };
     let large = Camera { width: LARGEST_PAGE, height: 40_000, ..small };
-    let make = |pieces| Renderer::new(gpu(), &surface, Plan::new(level(1), Method::Walk, Border::Off), pieces);
-    let marks = make(Pieces::from([small.width, small.height])).unwrap().page(&small, |_| ()).unwrap().marks;
-    let renderer = make(Pieces::new([large.width, large.height], [200, 200])).unwrap();
-    let scene = Scene { surface: &surface, camera: large, level: 1, method: Method::Walk };
+    let mut renderer = Planned::new(gpu(), &surface, Plan::new(level(1), Method::Walk, Border::Off));
+    let marks = renderer.page(&small).unwrap().marks;
+    let frame = renderer.plan_in(&large, Pieces::new([large.width, large.height], [200, 200]));
     let place = |column: u32, row: u32, pixel: &Pixel| DVec2::new(column.into(), row.into()) + 0.5 + pixel.place();
     let mut far = 0;
     for mark in marks.ink().step_by(marks.inked() / 40) {
         let expected = place(mark.column, mark.row, &mark.pixel) * scale;
         let origin = [expected.x, expected.y].map(|v| (v - 100.0).max(0.0) as u32);
-        let pixels = rectangle(&scene, &renderer, origin, [200, 200]);
+        let pixels = rectangle(&frame, &mut renderer, origin, [200, 200]);
         let inked = (0..).zip(&pixels).filter(|(_, pixel)| pixel.is_ink());
         let places = inked.map(|(i, pixel): (u32, _)| place(origin[0] + i % 200, origin[1] + i / 200, pixel));
         let off = places.map(|p| p.distance(expected)).fold(f64::INFINITY, f64::min);
@@ -167,18 +166,18 @@ fn a_large_page_shows_what_a_small_one_shows() {
 
 #[test]
 fn the_ink_of_pieces_is_that_of_one_piece() {
-    let surface = Surface::new(rough(60, 50, 2.0, 4.0, true));
+    let surface = Arc::new(Surface::new(rough(60, 50, 2.0, 4.0, true)));
     let camera = views(&surface)[0];
     // Adjacency floods: there ink encloses pixels of the cover, also across pieces.
     for (n, method) in [(4, Method::Walk), (4, Method::Adjacency { share: Share::Edge })] {
-        let make =
-            |side| Renderer::new(gpu(), &surface, Plan::new(level(n), method, Border::On), Pieces::new(PAGE, side));
-        let whole = make(PAGE).unwrap().draw(&camera).unwrap();
+        let mut renderer = Planned::new(gpu(), &surface, Plan::new(level(n), method, Border::On));
+        let whole = renderer.draw(&camera).unwrap();
         let marks = Marks::from(&whole.raster);
         assert_eq!(marks.inked(), whole.inked());
         let enclosed = marks.iter().count() - marks.inked();
         assert!(method == Method::Walk || enclosed > 10, "{enclosed} pixels enclosed by ink");
-        let page = make([13, 11]).unwrap().page(&camera, |_| ()).unwrap();
+        let frame = renderer.plan_in(&camera, Pieces::new(PAGE, [13, 11]));
+        let page = renderer.page_of(frame, |_| ()).unwrap();
         assert!(page.marks == marks && page.longest_walk == whole.longest_walk, "{method:?}");
         assert!(page.marks != Marks::new(PAGE, marks.iter().copied().skip(1).collect()), "the comparison is blind");
     }
@@ -186,7 +185,7 @@ fn the_ink_of_pieces_is_that_of_one_piece() {
 
 #[test]
 fn a_piece_without_its_halo_is_noticed() {
-    let surface = Surface::new(rough(60, 50, 2.0, 4.0, true));
+    let surface = Arc::new(Surface::new(rough(60, 50, 2.0, 4.0, true)));
     for (name, method) in METHODS {
         let scene = Scene { surface: &surface, camera: views(&surface)[0], level: 4, method };
         let whole = page_in(gpu(), &scene, PAGE, |piece| piece);

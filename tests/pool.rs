@@ -2,18 +2,19 @@
 //! is what was brought.
 
 use std::collections::{HashMap, HashSet};
+use std::sync::Arc;
 
 use glam::DVec3;
 use hachure::gpu::pool::Pool;
 use hachure::plan::{Border, Detail, Method, Plan};
-use hachure::render::Renderer;
 use hachure::surface::lattice::CHUNK_VERTICES;
 use hachure::surface::tile::TILE_SAMPLES;
 use hachure::surface::{Chunk, Surface, Tile};
 use hachure::view::Camera;
 
 use crate::common::gpu;
-use crate::scenes::{METHODS, Random, gpu_without_int64, look, rough};
+use crate::frames::{METHODS, Planned};
+use crate::scenes::{Random, gpu_without_int64, look, rough};
 
 const PAGE: [u32; 2] = [200, 150];
 
@@ -69,19 +70,24 @@ fn more_tiles_than_places_are_refused() {
     let all: Vec<Tile> = (0..5).map(tile).collect();
     assert!(Pool::new(5).place(&all).is_some());
     assert_eq!(Pool::new(4).place(&all), None);
+    // Nothing has changed then, and growing moves nothing.
+    let mut pool = Pool::new(4);
+    let before = pool.place(&all[..3]).expect("three of four");
+    assert_eq!(pool.place(&all), None);
+    let again = pool.place(&all[..3]).expect("three of four");
+    assert!(again.places == before.places && again.missing.is_empty(), "{again:?} after {before:?}");
+    pool.grow(5);
+    let grown = pool.place(&all).expect("five of five");
+    assert!(grown.places[..3] == before.places && grown.missing.len() == 2, "{grown:?} after {before:?}");
     assert!(Pool::new(4).place(&[all[0], all[1], all[0], all[1], all[2], all[3]]).is_some(), "four different ones");
-}
-
-fn page(renderer: &Renderer<'_>, camera: &Camera) -> Vec<u8> {
-    bytemuck::cast_slice(&renderer.draw(camera).expect("a frame").raster.pixels).to_vec()
 }
 
 #[test]
 fn a_camera_that_jumps_draws_what_a_new_renderer_draws() {
-    let surface = Surface::new(rough(1100, 1000, 1.0, 0.5, false));
+    let surface = Arc::new(Surface::new(rough(1100, 1000, 1.0, 0.5, false)));
     let plan = Plan::new(Detail::Adaptive { error_px: 0.15 }, Method::Walk, Border::On);
-    let make = || Renderer::new(gpu(), &surface, plan, PAGE).expect("a renderer");
-    let jumping = make();
+    let make = || Planned::new(gpu(), &surface, plan);
+    let mut jumping = make();
     let [west, south, east, north] = surface.dem().extent();
     let mut random = Random::new(21);
     let (mut tiles, mut chunks, mut pages) = (HashSet::new(), HashSet::new(), HashSet::new());
@@ -89,13 +95,13 @@ fn a_camera_that_jumps_draws_what_a_new_renderer_draws() {
         let eye = DVec3::new(random.between(west, east), random.between(south, north), random.between(100.0, 900.0));
         let azimuth = random.between(0.0, 360.0);
         let camera = Camera { eye, azimuth, altitude: -20.0, fov: 70.0, width: PAGE[0], height: PAGE[1] };
-        let drawn = page(&jumping, &camera);
-        assert!(drawn == page(&make(), &camera), "frame {frame} differs");
+        let drawn = jumping.bytes(&camera);
+        assert!(drawn == make().bytes(&camera), "frame {frame} differs");
         tiles.extend(jumping.lattice().chunks().iter().map(Tile::of));
         chunks.extend(jumping.lattice().chunks().iter().copied());
         pages.insert(drawn);
     }
-    let room = |name, bytes| jumping.buffers().get(name).expect(name).size() / bytes;
+    let room = |name, bytes| jumping.buffer(name).size() / bytes;
     let held = [room("heights", 4 * u64::from(TILE_SAMPLES)), room("places", 16 * u64::from(CHUNK_VERTICES))];
     let asked = [tiles.len() as u64, chunks.len() as u64];
     println!("{asked:?} tiles and chunks in {held:?} places");
@@ -105,20 +111,20 @@ fn a_camera_that_jumps_draws_what_a_new_renderer_draws() {
 
 #[test]
 fn vertices_stay_while_the_camera_flies_on() {
-    let surface = Surface::new(rough(400, 300, 1.0, 0.5, true));
+    let surface = Arc::new(Surface::new(rough(400, 300, 1.0, 0.5, true)));
     let [west, south, east, north] = surface.dem().extent();
     let middle = DVec3::new(west + east, south + north, 0.0) / 2.0;
     for (gpu, (_, method)) in METHODS.into_iter().flat_map(|method| [(gpu(), method), (gpu_without_int64(), method)]) {
         let plan = Plan::new(Detail::Adaptive { error_px: 0.3 }, method, Border::On);
-        let make = || Renderer::new(gpu, &surface, plan, PAGE).expect("a renderer");
-        let flying = make();
+        let make = || Planned::new(gpu, &surface, plan);
+        let mut flying = make();
         let (mut made, mut chunks, mut pages) = (Vec::new(), Vec::new(), HashSet::new());
         for frame in 0..8 {
             let eye = middle + DVec3::new(-900.0 + 40.0 * f64::from(frame), -1100.0, 300.0);
             let camera = look(eye, middle, 60.0, PAGE);
-            let drawn = page(&flying, &camera);
-            assert!(drawn == page(&make(), &camera), "{method:?}, frame {frame} differs");
-            made.push(flying.buffers().made().len());
+            let drawn = flying.bytes(&camera);
+            assert!(drawn == make().bytes(&camera), "{method:?}, frame {frame} differs");
+            made.push(flying.on_device().scene.made().len());
             chunks.push(flying.lattice().chunks().len());
             pages.insert(drawn);
         }

@@ -4,6 +4,7 @@
 use std::cell::RefCell;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::thread;
 
 use glam::DVec3;
@@ -13,13 +14,13 @@ use hachure::dem::Dem;
 use hachure::error::Message;
 use hachure::geo::{ReadOptions, read, write};
 use hachure::plan::{Border, Detail, Method, Plan};
-use hachure::render::Renderer;
 use hachure::surface::lattice::CELL_STEPS;
 use hachure::surface::{Chunk, Surface};
 use hachure::view::Camera;
 use tempfile::TempDir;
 
 use crate::common::gpu;
+use crate::frames::Planned;
 use crate::mixed::variety;
 use crate::scenes::Random;
 
@@ -95,13 +96,13 @@ impl Place {
     }
 
     /// The DEM in its file, as another process would prepare it; and what was warned of.
-    fn prepared(&self, memory: u64) -> (Surface, Vec<String>) {
+    fn prepared(&self, memory: u64) -> (Arc<Surface>, Vec<String>) {
         self.prepared_times(memory, EXAGGERATION)
     }
 
     /// The same with another exaggeration.
-    fn prepared_times(&self, memory: u64, exaggeration: f64) -> (Surface, Vec<String>) {
-        let surface = Surface::new(exaggerated(&self.dem(), memory, exaggeration));
+    fn prepared_times(&self, memory: u64, exaggeration: f64) -> (Arc<Surface>, Vec<String>) {
+        let surface = Arc::new(Surface::new(exaggerated(&self.dem(), memory, exaggeration)));
         let warn = |message: &Message| self.said.borrow_mut().push(told(message));
         self.cache().prepare(&surface, &warn, &|_| ()).expect("samples");
         (surface, self.said.take())
@@ -124,14 +125,14 @@ fn cameras(surface: &Surface) -> Vec<Camera> {
 }
 
 /// Each frame's lattice and page, bit by bit.
-fn frames(surface: &Surface) -> Vec<(Vec<Chunk>, Vec<u8>)> {
+fn frames(surface: &Arc<Surface>) -> Vec<(Vec<Chunk>, Vec<u8>)> {
     let plan = Plan::new(Detail::Adaptive { error_px: 0.7 }, Method::Walk, Border::On);
-    let renderer = Renderer::new(gpu(), surface, plan, PAGE).expect("a renderer");
-    let frame = |camera| {
+    let mut renderer = Planned::new(gpu(), surface, plan);
+    let mut frame = |camera| {
         let drawn = renderer.draw(camera).expect("a frame");
         (renderer.lattice().chunks().to_vec(), bytemuck::cast_slice(&drawn.raster.pixels).to_vec())
     };
-    let frames = cameras(surface).iter().map(frame).collect();
+    let frames = cameras(surface).iter().map(&mut frame).collect();
     let [levels, seams] = variety(&renderer.lattice());
     assert!(levels > 3 && seams > 20, "{levels} levels, {seams} seams");
     frames
@@ -141,14 +142,14 @@ fn frames(surface: &Surface) -> Vec<(Vec<Chunk>, Vec<u8>)> {
 fn frames_of_a_filed_dem_are_those_of_the_held_one() {
     for voids in [false, true] {
         let place = Place::new(voids);
-        let held = Surface::new(dem(&place.dem(), 1 << 30));
+        let held = Arc::new(Surface::new(dem(&place.dem(), 1 << 30)));
         let expected = frames(&held);
         let steps: Vec<u32> = expected.iter().flat_map(|(chunks, _)| chunks.iter().map(|chunk| chunk.step)).collect();
         let coarse = [2, 4, 8].map(|spacing| steps.iter().filter(|step| **step == spacing * CELL_STEPS).count());
         assert!(coarse.iter().all(|chunks| *chunks > 2), "{coarse:?} chunks of levels 1/2, 1/4, 1/8");
         assert!(steps.iter().any(|step| *step < CELL_STEPS), "no chunk is finer than the grid");
         assert_eq!(held.dem().voids() > 1000, voids);
-        assert!(frames(&Surface::new(dem(&place.dem(), SMALL))) == expected, "voids {voids}: nothing kept");
+        assert!(frames(&Arc::new(Surface::new(dem(&place.dem(), SMALL)))) == expected, "voids {voids}: nothing kept");
         for sight in ["first", "second"] {
             let (surface, said) = place.prepared(SMALL);
             assert_eq!(said, Vec::<String>::new());
@@ -267,7 +268,7 @@ fn another_dem_of_the_same_name_is_looked_at_anew() {
     let (surface, _) = place.prepared(SMALL);
     let before = frames(&surface);
     write_hills(&place.dem(), 190.0, false);
-    let expected = frames(&Surface::new(dem(&place.dem(), 1 << 30)));
+    let expected = frames(&Arc::new(Surface::new(dem(&place.dem(), 1 << 30))));
     assert!(expected != before, "nothing can be noticed");
     let (surface, said) = place.prepared(SMALL);
     assert_eq!(said, Vec::<String>::new());
@@ -281,7 +282,7 @@ fn a_folder_that_cannot_be_written_costs_a_warning() {
     fs::write(place.folder.path().join("cache"), "a file where a folder should be").expect("a file");
     let (surface, said) = place.prepared(SMALL);
     assert!(said.len() == 1 && said[0].starts_with("what was made of the DEM is not cached"), "{said:?}");
-    assert!(frames(&surface) == frames(&Surface::new(dem(&place.dem(), 1 << 30))));
+    assert!(frames(&surface) == frames(&Arc::new(Surface::new(dem(&place.dem(), 1 << 30)))));
 }
 
 #[test]
@@ -290,7 +291,7 @@ fn heights_are_made_once_for_all_exaggerations() {
     place.prepared_times(SMALL, 2.5);
     let made = fs::read(place.only("heights")).expect("a file");
     for (exaggeration, looks) in [(2.5, false), (1.0, true), (0.4, true)] {
-        let held = Surface::new(exaggerated(&place.dem(), 1 << 30, exaggeration));
+        let held = Arc::new(Surface::new(exaggerated(&place.dem(), 1 << 30, exaggeration)));
         let expected = frames(&held);
         for looks in [looks, false] {
             let (surface, said) = place.prepared_times(SMALL, exaggeration);
@@ -324,7 +325,7 @@ fn who_wants_the_same_waits_and_others_wait_for_the_heights() {
         let prepared = |exaggeration: f64| {
             let (path, cache) = (path.clone(), cache.clone());
             scope.spawn(move || {
-                let surface = Surface::new(exaggerated(&path, SMALL, exaggeration));
+                let surface = Arc::new(Surface::new(exaggerated(&path, SMALL, exaggeration)));
                 cache.prepare(&surface, &|words| panic!("{words}"), &|_| ()).expect("samples");
                 surface.dem().samples_read() > 0
             })
@@ -341,7 +342,7 @@ fn neither_makes_room_for_the_other() {
     let place = Place::new(false);
     let cache = place.cache().with_size(1);
     for looks in [true, false, false] {
-        let surface = Surface::new(dem(&place.dem(), SMALL));
+        let surface = Arc::new(Surface::new(dem(&place.dem(), SMALL)));
         cache.prepare(&surface, &|words| panic!("{words}"), &|_| ()).expect("samples");
         assert_eq!(surface.dem().samples_read() > 0, looks);
         assert_eq!(place.kept(), [place.only("bounds"), place.only("heights")]);

@@ -9,9 +9,9 @@ use std::path::Path;
 
 use glam::DVec2;
 use hachure::cli::words::line;
-use hachure::gpu::buffers::Room;
+use hachure::gpu::Capacity;
 use hachure::gpu::pass::reflect;
-use hachure::gpu::sizes::{BLOCK, LARGEST_BINDING, fits, written};
+use hachure::gpu::sizes::{BLOCK, LARGEST_BINDING, fits, of_page, of_scene};
 use hachure::gpu::uniforms::{BatchUniform, ChunkUniform, Counts, SceneUniform};
 use hachure::gpu::{CameraUniform, adjacency, border, candidates, compose, facing, pairs};
 use hachure::gpu::{project, rasterize, rasterize_large, seam, tessellate, toward_away, walk, walk_rest};
@@ -24,7 +24,7 @@ use hachure::surface::{Lattice, lattice, quadtree, tile};
 use wgpu::naga;
 
 use crate::scenes::level;
-use crate::{borders, drawn, kernels};
+use crate::{borders, frames, kernels};
 
 mod bound;
 mod declared;
@@ -149,9 +149,9 @@ fn shared_constants() -> Vec<(&'static str, f64)> {
         tile::TILE_SAMPLES,
         rasterize::STRIP_FACETS,
         // What tests say of shaders.
-        drawn::BESIDE,
-        drawn::CLIPPED,
-        drawn::MISSING,
+        frames::BESIDE,
+        frames::CLIPPED,
+        frames::MISSING,
         kernels::UNITS,
         borders::BORDER,
     ]
@@ -293,11 +293,11 @@ fn every_binding_fits_at_every_level() {
     for n in [1, 2, 4, 8, 16, 32, 64] {
         let lattice = Lattice::uniform(&dem, level(n)).expect("IDs suffice");
         let chunks = lattice.chunks().len() as u64;
-        let room = Room::of(&lattice);
+        let room = Capacity::of(&lattice);
         // Cells of 450 x 450 samples in tiles of 16 x 16.
         assert_eq!((room.chunks as usize, room.tiles), (lattice.chunks().len(), 29 * 29));
         assert_eq!(room.patched, if n == 1 { 0 } else { 29 * 29 }, "facets of level 1 are planes between samples");
-        let sizes = written(room, [16_384, 1024]).expect("a page of this size");
+        let sizes = [of_scene(room), of_page([16_384, 1024]).expect("a page of this size")].concat();
         for (name, size) in &sizes {
             assert!(fits(name, *size).is_ok(), "level {n}: {name} takes {size} bytes");
         }
@@ -310,5 +310,5 @@ fn every_binding_fits_at_every_level() {
     assert!(fits("heights", LARGEST_BINDING).is_ok());
     let line = line(&fits("heights", LARGEST_BINDING + 1).expect_err("a byte too many"));
     assert!(line.contains("129 MiB of heights, a device binds 128; use --level auto or a --crop"), "{line}");
-    assert!(written(Room { chunks: 1, nodes: 1, tiles: 1, patched: 0 }, [16_384, 1025]).is_err());
+    assert!(of_page([16_384, 1025]).is_err());
 }

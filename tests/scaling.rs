@@ -12,6 +12,7 @@ mod resample;
 
 use std::path::Path;
 use std::process::ExitCode;
+use std::sync::Arc;
 use std::time::Instant;
 
 use glam::{DVec2, DVec3};
@@ -21,7 +22,7 @@ use hachure::files::{Output, output};
 use hachure::gpu::{AdapterChoice, Gpu, Int64};
 use hachure::measure::{Growth, Promise};
 use hachure::plan::{Border, Detail, Method, Plan};
-use hachure::render::Renderer;
+use hachure::render::{Page, Renderer};
 use hachure::report::growth_svg;
 use hachure::surface::{Level, Surface};
 use hachure::view::Camera;
@@ -68,8 +69,8 @@ fn main() -> ExitCode {
 
 /// Whether every promise is kept.
 fn run(asked: impl Fn(&str) -> bool) -> Result<bool> {
-    let gpu = Gpu::open(&AdapterChoice::Best, Int64::IfPresent)?;
-    let ground = Surface::new(terrain(*POWERS.start()));
+    let gpu = Arc::new(Gpu::open(&AdapterChoice::Best, Int64::IfPresent)?);
+    let ground = Arc::new(Surface::new(terrain(*POWERS.start())));
     let camera = camera(&ground);
     println!("fractal terrain, {} m a side, on {}\n{camera:?}", ground.dem().extent()[2] - ORIGIN.x, gpu.info.name);
     let mut kept = true;
@@ -83,13 +84,13 @@ fn run(asked: impl Fn(&str) -> bool) -> Result<bool> {
 }
 
 /// Each terrain on one page.
-fn samples(gpu: &Gpu, camera: &Camera) -> Result<Growth> {
+fn samples(gpu: &Arc<Gpu>, camera: &Camera) -> Result<Growth> {
     println!("\nsamples a side     facets   chunks   frame, ms   ink, px   normals, ms   pyramid, ms");
     let mut points = Vec::new();
     for power in POWERS {
         let dem = terrain(power);
         let start = Instant::now();
-        let surface = Surface::new(dem);
+        let surface = Arc::new(Surface::new(dem));
         let normals = start.elapsed();
         surface.pyramid()?;
         let pyramid = start.elapsed() - normals;
@@ -117,9 +118,9 @@ fn samples(gpu: &Gpu, camera: &Camera) -> Result<Growth> {
 }
 
 /// One terrain on each page.
-fn pixels(gpu: &Gpu, camera: &Camera) -> Result<Growth> {
+fn pixels(gpu: &Arc<Gpu>, camera: &Camera) -> Result<Growth> {
     println!("\n       page   pieces     facets   chunks   frame, ms   ink, px   ns a pixel");
-    let surface = Surface::new(terrain(PAGES_POWER));
+    let surface = Arc::new(Surface::new(terrain(PAGES_POWER)));
     let mut points = Vec::new();
     for [width, height] in PAGES {
         let camera = Camera { width, height, ..*camera };
@@ -149,7 +150,7 @@ fn pixels(gpu: &Gpu, camera: &Camera) -> Result<Growth> {
 }
 
 /// What the plot cannot show.
-fn note(gpu: &Gpu, frames: usize) -> String {
+fn note(gpu: &Arc<Gpu>, frames: usize) -> String {
     format!("Median of {frames} frames, each with the camera 1 m on; {}.", gpu.info.name)
 }
 
@@ -162,23 +163,24 @@ struct Row {
     inked: usize,
 }
 
-fn measure(gpu: &Gpu, surface: &Surface, camera: &Camera, repetitions: usize) -> Result<Row> {
+fn measure(gpu: &Arc<Gpu>, surface: &Arc<Surface>, camera: &Camera, repetitions: usize) -> Result<Row> {
     let plan = Plan::new(Detail::default(), Method::Walk, Border::Off);
-    let renderer = Renderer::new(gpu, surface, plan, [camera.width, camera.height])?;
+    let mut renderer = Renderer::new(gpu.clone(), surface.clone())?;
+    renderer.prepare(&plan, camera)?;
     let mut times = Vec::new();
     for k in 0..WARM_UP + repetitions {
         let camera = moved(camera, k);
         let start = Instant::now();
-        renderer.frame(&camera)?;
+        renderer.frame(&plan, &camera)?;
         times.push(start.elapsed().as_secs_f64() * 1e3);
     }
-    let inked = renderer.page(&moved(camera, WARM_UP + repetitions), |_| ())?.marks.inked();
+    let Page { marks, frame, .. } = renderer.page(&plan, &moved(camera, WARM_UP + repetitions), |_| ())?;
     Ok(Row {
         ms: median(times.split_off(WARM_UP)),
-        pieces: renderer.pieces().iter().len(),
-        facets: renderer.facets(),
-        chunks: renderer.lattice().chunks().len(),
-        inked,
+        pieces: frame.pieces.iter().len(),
+        facets: frame.facets(surface),
+        chunks: frame.lattice.chunks().len(),
+        inked: marks.inked(),
     })
 }
 

@@ -1,38 +1,25 @@
-//! Devices, cameras and pictures that several test modules share.
+//! Devices, terrains and cameras that several test modules share.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
 use hachure::gpu::{AdapterChoice, Gpu, Int64};
-use hachure::line::InkRaster;
-use hachure::plan::{Border, Method, Plan};
-use hachure::render::{Frame, Renderer};
-use hachure::surface::{Level, Surface};
-use hachure::truth::Mask;
+use hachure::surface::{LatticePoint, Level, Surface};
 use hachure::view::Camera;
 
 pub use crate::common::gpu;
-use crate::judged::mask;
 
-/// Every method with its name.
-pub const METHODS: [(&str, Method); Method::ALL.len()] = {
-    let mut named = [("", Method::Walk); Method::ALL.len()];
-    let mut i = 0;
-    while i < named.len() {
-        named[i] = (Method::ALL[i].entry().name, Method::ALL[i]);
-        i += 1;
-    }
-    named
-};
+/// A north-west sample far from the origin, as UTM has them.
+pub const ORIGIN: DVec2 = DVec2::new(325_249.3, 4_117_889.7);
 
 /// The same adapter without 64-bit atomics.
 ///
 /// # Panics
 /// Without an adapter.
-pub fn gpu_without_int64() -> &'static Gpu {
-    static GPU: OnceLock<Gpu> = OnceLock::new();
-    GPU.get_or_init(|| Gpu::open(&AdapterChoice::Best, Int64::Never).expect("an adapter"))
+pub fn gpu_without_int64() -> &'static Arc<Gpu> {
+    static GPU: OnceLock<Arc<Gpu>> = OnceLock::new();
+    GPU.get_or_init(|| Arc::new(Gpu::open(&AdapterChoice::Best, Int64::Never).expect("an adapter")))
 }
 
 /// The level with `n` subdivisions.
@@ -48,34 +35,15 @@ pub fn look(eye: DVec3, target: DVec3, fov: f64, [width, height]: [u32; 2]) -> C
     Camera { eye, azimuth, altitude, fov, width, height }
 }
 
-/// One frame.
-pub fn draw(surface: &Surface, camera: &Camera, level: Level, method: Method, border: Border) -> Frame {
-    let renderer = renderer(gpu(), surface, camera, level, method, border);
-    renderer.frame(camera).expect("a frame");
-    renderer.read().expect("its pixels")
+/// A camera at `eye` that looks this way, 60 degrees across.
+pub fn aimed(eye: DVec3, azimuth: f64, altitude: f64, [width, height]: [u32; 2]) -> Camera {
+    Camera { eye, azimuth, altitude, fov: 60.0, width, height }
 }
 
-/// The ink of one frame.
-pub fn draw_mask(surface: &Surface, camera: &Camera, level: Level, method: Method, border: Border) -> Mask {
-    let renderer = renderer(gpu(), surface, camera, level, method, border);
-    mask(&renderer.draw(camera).expect("a frame").raster, renderer.near())
-}
-
-/// A renderer for pages of the camera's size.
-pub fn renderer<'a>(
-    gpu: &'a Gpu,
-    surface: &'a Surface,
-    camera: &Camera,
-    level: Level,
-    method: Method,
-    border: Border,
-) -> Renderer<'a> {
-    Renderer::new(gpu, surface, Plan::new(level, method, border), [camera.width, camera.height]).expect("a renderer")
-}
-
-/// How many pixels are ink.
-pub fn count_ink(raster: &InkRaster) -> usize {
-    raster.pixels.iter().filter(|p| p.is_ink()).count()
+/// The point `above` metres over the surface at a place in columns and rows, to the nearest 1/64 cell.
+pub fn over(surface: &Surface, column: f64, row: f64, above: f64) -> DVec3 {
+    let at = LatticePoint { x: (column * 64.0) as u32, y: (row * 64.0) as u32 };
+    surface.position(at).expect("a place on the surface") + DVec3::Z * above
 }
 
 /// Numbers that look random and are the same on every run (Marsaglia 2003, xorshift64*).
@@ -84,7 +52,17 @@ pub struct Random(u64);
 impl Random {
     /// Starts the sequence of a seed other than 0.
     pub fn new(seed: u64) -> Self {
+        assert!(seed != 0, "0 stays 0");
         Self(seed)
+    }
+
+    /// Starts the sequence of any seed, unlike those of seeds that differ little: the first numbers of those are alike.
+    pub fn of_any(seed: u64) -> Self {
+        let mut random = Self::new(seed ^ 0x9e37_79b9_7f4a_7c15);
+        for _ in 0..16 {
+            random.bits();
+        }
+        random
     }
 
     /// The next 32 bits.
@@ -121,5 +99,21 @@ pub fn rough(columns: usize, rows: usize, exaggeration: f64, noise: f64, voids: 
             heights.push(if voids && void { f32::NAN } else { (height * exaggeration) as f32 });
         }
     }
-    Dem::from_heights(columns, glam::DVec2::splat(20.0), glam::DVec2::new(325_000.0, 4_118_000.0), heights)
+    Dem::from_heights(columns, DVec2::splat(20.0), DVec2::new(325_000.0, 4_118_000.0), heights)
+}
+
+/// White noise of `relief` metres around 1500 m: every slope at every cell.
+pub fn noise(seed: u64, samples: [usize; 2], cell: f64, relief: f64) -> Vec<f32> {
+    let mut random = Random::of_any(seed ^ (cell as u64) << 32);
+    (0..samples[0] * samples[1]).map(|_| (1500.0 + random.between(-0.5, 0.5) * relief) as f32).collect()
+}
+
+/// The surface of such heights, square cells of `cell` metres, far from the origin.
+pub fn surface(columns: usize, cell: f64, heights: Vec<f32>) -> Arc<Surface> {
+    Arc::new(Surface::new(Dem::from_heights(columns, DVec2::splat(cell), ORIGIN, heights)))
+}
+
+/// A surface of [`noise`].
+pub fn noisy(seed: u64, samples: [usize; 2], cell: f64, relief: f64) -> Arc<Surface> {
+    surface(samples[0], cell, noise(seed, samples, cell, relief))
 }

@@ -2,40 +2,33 @@
 //! the device's own rasterizer covers the same pixels.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use glam::DVec3;
 use hachure::plan::{Border, Detail, Plan, Thrift, batches};
-use hachure::render::Renderer;
 use hachure::surface::lattice::{CHUNK_QUADS, CHUNK_SIDE, CHUNK_VERTICES};
 use hachure::surface::{Chunk, LatticePoint, Surface};
 use hachure::view::Camera;
 
 use crate::common::gpu;
 use crate::coverage;
-use crate::drawn;
-use crate::drawn::{BY_ID, CLIPPED, Random, Shot, look, over};
+use crate::frames::{BY_ID, CLIPPED, Planned, Shot};
 use crate::mesh::{facets, pinholes};
 use crate::mixed::variety;
 use crate::quadtrees::moor;
-use crate::scenes::rough;
+use crate::scenes::{Random, aimed, over, rough};
 
 const PAGE: [u32; 2] = [360, 240];
 
-fn renderer(surface: &Surface, error_px: f64, thrift: Thrift, size: [u32; 2]) -> Renderer<'_> {
+fn renderer(surface: &Arc<Surface>, error_px: f64, thrift: Thrift) -> Planned {
     let plan = Plan { thrift, ..Plan::new(Detail::Adaptive { error_px }, BY_ID, Border::Off) };
-    Renderer::new(gpu(), surface, plan, size).expect("a renderer")
+    Planned::new(gpu(), surface, plan)
 }
 
-/// A frame from a clean slate. The first one brings its lattice to the device.
-fn shoot(renderer: &Renderer<'_>, camera: &Camera) -> Shot {
-    renderer.frame(camera).expect("a frame");
-    drawn::shoot(gpu(), renderer, camera)
-}
-
-fn scenes() -> Vec<Surface> {
+fn scenes() -> Vec<Arc<Surface>> {
     let dems =
         [rough(90, 75, 1.0, 0.5, false), rough(60, 50, 2.0, 2.0, true), rough(200, 97, 0.1, 0.02, false), moor()];
-    dems.map(Surface::new).into()
+    dems.map(|dem| Arc::new(Surface::new(dem))).into()
 }
 
 /// Eyes near the ground, in it, above it and far away.
@@ -49,14 +42,14 @@ fn eyes(surface: &Surface, random: &mut Random, size: [u32; 2]) -> Vec<Camera> {
         });
         let at = place.into_iter().find(|at| surface.position(*at).is_some()).expect("land");
         let eye = over(surface, f64::from(at.x) / 64.0, f64::from(at.y) / 64.0, above * cell);
-        look(eye, random.between(0.0, 360.0), random.between(-50.0, 15.0), size)
+        aimed(eye, random.between(0.0, 360.0), random.between(-50.0, 15.0), size)
     };
     let mut cameras: Vec<_> = [8.0, 2.0, 0.5, 0.05, -0.02].into_iter().map(&mut near).collect();
     let [west, south, east, north] = dem.extent();
     let azimuth = random.between(0.0, 360.0);
     let (sin, cos) = azimuth.to_radians().sin_cos();
     let middle = DVec3::new(west + east, south + north, 0.0) / 2.0;
-    cameras.push(look(middle + DVec3::new(-sin, -cos, 0.4) * (east - west), azimuth, -22.0, size));
+    cameras.push(aimed(middle + DVec3::new(-sin, -cos, 0.4) * (east - west), azimuth, -22.0, size));
     cameras
 }
 
@@ -86,39 +79,39 @@ fn unlike(chunks: &[Chunk], screens: &[[i32; 4]]) -> [usize; 2] {
 #[test]
 fn a_vertex_unlike_its_neighbours_is_noticed() {
     let surface = &scenes()[0];
-    let renderer = renderer(surface, 1.0, Thrift::Nothing, PAGE);
-    let camera = eyes(surface, &mut Random(5), PAGE)[0];
-    let mut shot = shoot(&renderer, &camera);
-    assert_eq!(unlike(renderer.lattice().chunks(), &shot.screens)[1], 0);
-    let slot = renderer.lattice().chunks().iter().position(|chunk| chunk.coarser != 0).expect("a seam");
-    let bits = renderer.lattice().chunks()[slot].coarser;
+    let camera = eyes(surface, &mut Random::new(5), PAGE)[0];
+    let mut shot: Shot = renderer(surface, 1.0, Thrift::Nothing).shoot(&camera);
+    let chunks = shot.lattice.chunks();
+    assert_eq!(unlike(chunks, &shot.screens)[1], 0);
+    let slot = chunks.iter().position(|chunk| chunk.coarser != 0).expect("a seam");
+    let bits = chunks[slot].coarser;
     let (half, end) = (CHUNK_QUADS / 2, CHUNK_QUADS);
     let at =
         [half, half * CHUNK_SIDE + end, end * CHUNK_SIDE + half, half * CHUNK_SIDE][bits.trailing_zeros() as usize];
     shot.screens[slot * CHUNK_VERTICES as usize + at as usize][0] ^= 1;
-    assert!(unlike(renderer.lattice().chunks(), &shot.screens)[1] > 0);
+    assert!(unlike(shot.lattice.chunks(), &shot.screens)[1] > 0);
 }
 
 #[test]
 fn frames_of_several_levels_have_one_vertex_a_place_and_no_pinhole() {
     let (mut covered, mut uncovered, mut seams, mut clipped, mut compared) = (0, 0, 0, 0, 0);
     for (seed, surface) in (1..).zip(scenes()) {
-        let mut random = Random(seed + 50);
+        let mut random = Random::new(seed + 50);
         for error_px in [0.6, 8.0] {
-            let renderer = renderer(&surface, error_px, Thrift::LeaveOut, PAGE);
+            let mut renderer = renderer(&surface, error_px, Thrift::LeaveOut);
             for camera in eyes(&surface, &mut random, PAGE) {
-                let shot = shoot(&renderer, &camera);
+                let shot = renderer.shoot(&camera);
                 let what = format!("scene {seed}, {error_px} px, {camera:?}");
-                let [shared, wrong] = unlike(renderer.lattice().chunks(), &shot.screens);
+                let [shared, wrong] = unlike(shot.lattice.chunks(), &shot.screens);
                 assert_eq!(wrong, 0, "{what}: of {shared} shared vertices");
-                let mesh = facets(&surface, &renderer.lattice());
+                let mesh = facets(&surface, &shot.lattice);
                 let depths: Vec<u32> = shot.pixels.iter().map(|p| p[1]).collect();
                 let (holes, none) = pinholes(&mesh, &camera, renderer.near(), &depths);
                 assert!(holes.is_empty(), "{what}: {} pinholes, {:?}", holes.len(), holes[0]);
                 covered += depths.len() - none;
                 uncovered += none;
                 compared += shared;
-                seams += variety(&renderer.lattice())[1];
+                seams += variety(&shot.lattice)[1];
                 clipped += shot.screens.iter().filter(|s| s[3] & CLIPPED != 0).count();
             }
         }
@@ -129,20 +122,18 @@ fn frames_of_several_levels_have_one_vertex_a_place_and_no_pinhole() {
 
 #[test]
 fn the_last_of_several_batches_has_one_vertex_a_place() {
-    let surface = Surface::new(rough(90, 75, 1.0, 0.5, false));
+    let surface = Arc::new(Surface::new(rough(90, 75, 1.0, 0.5, false)));
     // Of chunks that are left out the buffer would keep what earlier batches have written.
-    let renderer = renderer(&surface, 0.0005, Thrift::Nothing, PAGE);
+    let mut renderer = renderer(&surface, 0.0005, Thrift::Nothing);
     let (mut compared, mut seams) = (0, 0);
-    for camera in eyes(&surface, &mut Random(7), PAGE) {
-        renderer.frame(&camera).expect("a frame");
-        let lattice = renderer.lattice();
+    for camera in eyes(&surface, &mut Random::new(7), PAGE) {
+        let lattice = renderer.frame(&camera).expect("a frame").lattice;
         let all = batches(lattice.chunks().len() as u32);
         let Some(last) = all.last().filter(|_| all.len() > 1) else { continue };
         let chunks = &lattice.chunks()[last.first_slot as usize..];
         // Its vertices have taken the place of those of the batches before it.
-        let size = chunks.len() as u64 * u64::from(CHUNK_VERTICES) * 16;
-        let screens = gpu().read(renderer.buffers().get("screens").expect("a buffer"), size).expect("vertices");
-        let [shared, wrong] = unlike(chunks, &bytemuck::pod_collect_to_vec::<u8, [i32; 4]>(&screens));
+        let screens = renderer.values("screens", chunks.len() * CHUNK_VERTICES as usize);
+        let [shared, wrong] = unlike(chunks, &screens);
         assert_eq!(wrong, 0, "{camera:?}: of {shared} shared vertices of {} chunks", chunks.len());
         compared += shared;
         seams += chunks.iter().filter(|chunk| chunk.coarser != 0).count();
@@ -158,10 +149,9 @@ fn coverage_of_several_levels_is_the_hardwares() {
         for (azimuth, altitude, error_px) in [(20.0, -35.0, 1.0), (140.0, -8.0, 2.0)] {
             let size = [1024, 512];
             let camera = coverage::from_outside(&surface, azimuth, altitude, 1.1, size);
-            let renderer = renderer(&surface, error_px, Thrift::LeaveOut, size);
-            renderer.frame(&camera).expect("a frame");
-            coverage::check_frame(&format!("scene {seed}, {error_px} px"), &renderer, &camera);
-            seams += variety(&renderer.lattice())[1];
+            let shot = renderer(&surface, error_px, Thrift::LeaveOut).shoot(&camera);
+            coverage::check_shot(&format!("scene {seed}, {error_px} px"), &shot, size);
+            seams += variety(&shot.lattice)[1];
         }
     }
     assert!(seams > 20, "{seams} seams");

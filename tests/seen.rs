@@ -2,20 +2,20 @@
 //! more than the page allows. What nearer land hides may be coarse; if it were taken for hidden and is not, this says so.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
 use hachure::plan::{Border, Detail, Plan, Thrift, detail};
-use hachure::render::Renderer;
 use hachure::surface::lattice::CHUNK_FACETS;
 use hachure::surface::{Chunk, Lattice, LatticePoint, Surface};
 use hachure::view::Camera;
 
 use crate::common::gpu;
-use crate::drawn::{BY_ID, Random, look, over};
+use crate::frames::{BY_ID, Planned};
 use crate::mixed::leaves;
 use crate::quadtrees::moor;
-use crate::scenes::{level, rough};
+use crate::scenes::{Random, aimed, level, over, rough};
 
 const PAGE: [u32; 2] = [240, 160];
 /// So small that what is seen is much finer than what is not.
@@ -30,15 +30,13 @@ fn tolerance(camera: &Camera, error_px: f64) -> f64 {
 }
 
 /// Facets that win pixels, of a uniform lattice, by their vertices.
-fn winners(renderer: &Renderer<'_>, camera: &Camera) -> Vec<[LatticePoint; 3]> {
-    renderer.frame(camera).expect("a frame");
-    let buffers = renderer.buffers();
-    let bytes = u64::from(PAGE[0] * PAGE[1]) * 8;
-    let pixels = gpu().read(buffers.get("pixels").expect("pixels"), bytes).expect("a copy");
-    let mut ids: Vec<u32> = bytemuck::pod_collect_to_vec::<u8, [u32; 2]>(&pixels).iter().map(|p| p[0]).collect();
+fn winners(renderer: &mut Planned, camera: &Camera) -> Vec<[LatticePoint; 3]> {
+    let lattice = renderer.frame(camera).expect("a frame").lattice;
+    let pixels: Vec<[u32; 2]> = renderer.values("pixels", (PAGE[0] * PAGE[1]) as usize);
+    let mut ids: Vec<u32> = pixels.iter().map(|p| p[0]).collect();
     ids.sort_unstable();
     ids.dedup();
-    ids.into_iter().filter(|id| *id > 0).map(|id| renderer.lattice().facet(id - 1)).collect()
+    ids.into_iter().filter(|id| *id > 0).map(|id| lattice.facet(id - 1)).collect()
 }
 
 /// Whether all facets of a chunk face an eye, or all face away.
@@ -114,7 +112,7 @@ fn eye(surface: &Surface, random: &mut Random) -> Camera {
         if surface.position(at).is_some() {
             let fov = [20.0, 60.0, 100.0][random.between(0.0, 3.0) as usize];
             let camera =
-                look(over(surface, c, r, above), random.between(0.0, 360.0), random.between(-15.0, 10.0), PAGE);
+                aimed(over(surface, c, r, above), random.between(0.0, 360.0), random.between(-15.0, 10.0), PAGE);
             return Camera { fov, ..camera };
         }
     }
@@ -129,13 +127,13 @@ fn check(eyes: usize) {
     ];
     let (mut all_seen, mut all_hidden) = (0, 0);
     for (seed, (dem, error_px)) in (1..).zip(scenes) {
-        let surface = Surface::new(dem);
+        let surface = Arc::new(Surface::new(dem));
         let plan = Plan { thrift: Thrift::Nothing, ..Plan::new(Detail::Uniform(level(4)), BY_ID, Border::Off) };
-        let renderer = Renderer::new(gpu(), &surface, plan, PAGE).expect("a renderer");
-        let mut random = Random(seed);
+        let mut renderer = Planned::new(gpu(), &surface, plan);
+        let mut random = Random::new(seed);
         for _ in 0..eyes {
             let camera = eye(&surface, &mut random);
-            let seen = winners(&renderer, &camera);
+            let seen = winners(&mut renderer, &camera);
             let lattice = detail::adaptive(&surface, &camera, error_px, Thrift::Nothing).expect("few chunks");
             let [wrong, hidden] = coarse(&surface, &lattice, &camera, error_px, &seen);
             assert_eq!(wrong, 0, "scene {seed}: of {} facets seen, {camera:?}", seen.len());
@@ -160,14 +158,14 @@ fn what_is_seen_is_fine_from_many_eyes() {
 
 #[test]
 fn what_another_eye_sees_is_coarse() {
-    let surface = Surface::new(rough(150, 130, 1.0, 2.0, false));
+    let surface = Arc::new(Surface::new(rough(150, 130, 1.0, 2.0, false)));
     let plan = Plan { thrift: Thrift::Nothing, ..Plan::new(Detail::Uniform(level(4)), BY_ID, Border::Off) };
-    let renderer = Renderer::new(gpu(), &surface, plan, PAGE).expect("a renderer");
-    let camera = look(over(&surface, 20.0, 60.0, 3.0), 90.0, 0.0, PAGE);
+    let mut renderer = Planned::new(gpu(), &surface, plan);
+    let camera = aimed(over(&surface, 20.0, 60.0, 3.0), 90.0, 0.0, PAGE);
     let lattice = detail::adaptive(&surface, &camera, ERROR_PX, Thrift::Nothing).expect("few chunks");
     let higher = Camera { eye: camera.eye + DVec3::Z * 200.0, altitude: -10.0, ..camera };
     assert!(
-        coarse(&surface, &lattice, &camera, ERROR_PX, &winners(&renderer, &higher))[0] > 0,
+        coarse(&surface, &lattice, &camera, ERROR_PX, &winners(&mut renderer, &higher))[0] > 0,
         "the comparison is blind"
     );
 }

@@ -2,6 +2,7 @@
 //! surfaces, levels.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
@@ -14,12 +15,13 @@ use hachure::view::Camera;
 use crate::closed_forms::GAUSSIAN;
 use crate::common::shared_dems;
 use crate::forms::{MIDDLE, from_middle};
+use crate::frames::{METHODS, count_ink, draw};
 use crate::judged::{centres, inked};
-use crate::scenes::{METHODS, count_ink, draw, gpu, level, look, renderer, rough};
+use crate::scenes::{level, look, rough};
 use crate::tolerances::{COUNT_SHARE, FACETS_A_LEAP, LEVEL_STRAYS, REACH_PX};
 
-fn west_temple(folder: &Path) -> Surface {
-    Surface::new(read(folder.join("west_temple_50m.tif"), &ReadOptions::default()).expect("west-temple"))
+fn west_temple(folder: &Path) -> Arc<Surface> {
+    Arc::new(Surface::new(read(folder.join("west_temple_50m.tif"), &ReadOptions::default()).expect("west-temple")))
 }
 
 #[test]
@@ -47,13 +49,13 @@ fn west_temple_has_the_published_ink() {
 
 /// A plain of 10 m cells, 65 columns wide and `rows` long; 600 m from its near end, if `hill`, a hill. At level 4 a
 /// width and length of whole blocks: a block that the DEM's edge cuts is walked quad by quad.
-fn plain(rows: usize, hill: bool) -> Surface {
+fn plain(rows: usize, hill: bool) -> Arc<Surface> {
     let height = |c: usize, r: usize| {
         let d = DVec2::new(c as f64 - 32.0, r as f64 - (rows - 60) as f64).length_squared();
         if hill { (30.0 * (-d / 20.0).exp()) as f32 } else { 0.0 }
     };
     let heights = (0..65 * rows).map(|i| height(i % 65, i / 65)).collect();
-    Surface::new(Dem::from_heights(65, DVec2::splat(10.0), MIDDLE, heights))
+    Arc::new(Surface::new(Dem::from_heights(65, DVec2::splat(10.0), MIDDLE, heights)))
 }
 
 #[test]
@@ -87,7 +89,7 @@ fn a_walk_over_a_plain_leaps_and_leaves_it_blank() {
 
 #[test]
 fn undersides_are_paper() {
-    let surface = Surface::new(GAUSSIAN.dem(|_, _| true));
+    let surface = Arc::new(Surface::new(GAUSSIAN.dem(|_, _| true)));
     // Below the ground, looking level, up at the hill from inside it, and straight up.
     let views = [(DVec3::new(-300.0, -200.0, -150.0), 60.0, 0.0), (DVec3::new(0.0, 0.0, 20.0), 10.0, 30.0)];
     let views = views.into_iter().chain([(DVec3::new(100.0, -300.0, -400.0), 0.0, 90.0)]);
@@ -106,7 +108,7 @@ fn undersides_are_paper() {
 
 #[test]
 fn a_stiff_and_folded_surface_draws() {
-    let surface = Surface::new(rough(60, 50, 100.0, 8.0, true));
+    let surface = Arc::new(Surface::new(rough(60, 50, 100.0, 8.0, true)));
     let [west, south, east, north] = surface.dem().extent();
     let top = f64::from(surface.dem().range().expect("heights")[1]);
     let middle = DVec3::new((west + east) / 2.0, (south + north) / 2.0, 0.0);
@@ -123,15 +125,12 @@ fn a_stiff_and_folded_surface_draws() {
 #[test]
 fn levels_converge() {
     // 25 m cells seen from a few hundred metres: facets of level 1 are many pixels wide.
-    let surface = Surface::new(rough(18, 18, 1.0, 4.0, false));
+    let surface = Arc::new(Surface::new(rough(18, 18, 1.0, 4.0, false)));
     let [west, south, east, north] = surface.dem().extent();
     let middle = DVec3::new((west + east) / 2.0, (south + north) / 2.0, 0.0);
     let camera = look(middle + DVec3::new(-120.0, -330.0, 130.0), middle, 60.0, [384, 288]);
-    let ink = [4, 16, 32, 64].map(|n| {
-        let surface = renderer(gpu(), &surface, &camera, level(n), Method::Walk, Border::Off);
-        surface.frame(&camera).expect("a frame");
-        inked(&surface.read().expect("its pixels").raster, Kind::Silhouette)
-    });
+    let ink = [4, 16, 32, 64]
+        .map(|n| inked(&draw(&surface, &camera, level(n), Method::Walk, Border::Off).raster, Kind::Silhouette));
     let strays = |a: usize, b: usize| {
         let near = |p: DVec2| ink[b].iter().any(|q| q.0.distance(p) <= REACH_PX);
         ink[a].iter().filter(|p| !near(p.0)).count() as f64 / ink[a].len() as f64

@@ -1,25 +1,27 @@
 //! Times of frames: every pass has one, they add up, and taking them changes no bit of the picture.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
 use hachure::gpu::clock::{CLEAR, PASSES_OF_SET, Stamps};
 use hachure::gpu::{AdapterChoice, Clock, Gpu, Int64};
 use hachure::plan::batches::BATCH_CHUNKS;
-use hachure::plan::{Border, Method};
-use hachure::render::{FrameTime, PassTime, Renderer};
+use hachure::plan::{Border, Method, Plan};
+use hachure::render::{FrameTime, PassTime};
 use hachure::surface::{Lattice, Surface};
 use hachure::view::Camera;
 
-use crate::scenes::{METHODS, gpu, gpu_without_int64, level, look, renderer, rough};
+use crate::frames::{METHODS, Planned};
+use crate::scenes::{gpu, gpu_without_int64, level, look, rough};
 
 const PAGE: [u32; 2] = [96, 64];
 
 /// The devices of [`gpu`] and [`gpu_without_int64`], made to stamp even where that is a software driver.
-fn stamping(int64: Int64) -> &'static Gpu {
-    static GPUS: [OnceLock<Gpu>; 2] = [OnceLock::new(), OnceLock::new()];
+fn stamping(int64: Int64) -> &'static Arc<Gpu> {
+    static GPUS: [OnceLock<Arc<Gpu>>; 2] = [OnceLock::new(), OnceLock::new()];
     let gpu = GPUS[usize::from(int64 == Int64::Never)].get_or_init(|| {
-        Gpu::open_with(&AdapterChoice::Best, int64, wgpu::Features::TIMESTAMP_QUERY).expect("an adapter")
+        let gpu = Gpu::open_with(&AdapterChoice::Best, int64, wgpu::Features::TIMESTAMP_QUERY);
+        Arc::new(gpu.expect("an adapter"))
     });
     assert_eq!(gpu.clock, Clock::Timestamps, "{} has no timestamps, nothing is proven", gpu.info.name);
     gpu
@@ -28,8 +30,8 @@ fn stamping(int64: Int64) -> &'static Gpu {
 /// The passes of a frame with border lines, in their order; vertices are made anew or stay.
 fn passes(method: Method, anew: bool) -> Vec<&'static str> {
     let vertices: &[&str] = if anew { &["tessellate"] } else { &[] };
-    [&[CLEAR], vertices, &["facing", "project", "rasterize", "rasterize_large"], method.entry().passes, &["border"]]
-        .concat()
+    let own: Vec<_> = method.entry().passes.iter().map(|pass| pass.name()).collect();
+    [&[CLEAR], vertices, &["facing", "project", "rasterize", "rasterize_large"], own.as_slice(), &["border"]].concat()
 }
 
 /// What is wrong with the time of a frame of these passes.
@@ -47,11 +49,9 @@ fn fault(time: &FrameTime, passes: &[&str]) -> Option<String> {
 }
 
 /// Page, depths and IDs of the last frame.
-fn picture(gpu: &Gpu, renderer: &Renderer<'_>) -> Vec<u8> {
+fn picture(renderer: &Planned) -> Vec<u8> {
     renderer.read().expect("no pixel without a facet");
-    let size = u64::from(PAGE[0]) * u64::from(PAGE[1]) * 8;
-    let read = |name| gpu.read(renderer.buffers().get(name).expect(name), size).expect(name);
-    [read("page"), read("pixels")].concat()
+    ["page", "pixels"].map(|name| renderer.values(name, PAGE[0] as usize * PAGE[1] as usize * 8)).concat()
 }
 
 /// Two views of a scene from outside.
@@ -63,19 +63,19 @@ fn views(surface: &Surface) -> [Camera; 2] {
 }
 
 /// Times a frame, and compares its picture with that of an untimed one on another device.
-fn time_and_compare(surface: &Surface, n: u32, method: Method, int64: Int64) -> FrameTime {
+fn time_and_compare(surface: &Arc<Surface>, n: u32, method: Method, int64: Int64) -> FrameTime {
     let [view, other] = views(surface);
     let plain = if int64 == Int64::Never { gpu_without_int64() } else { gpu() };
-    let make = |gpu| renderer(gpu, surface, &view, level(n), method, Border::On);
-    let untimed = make(plain);
+    let make = |gpu| Planned::new(gpu, surface, Plan::new(level(n), method, Border::On));
+    let mut untimed = make(plain);
     untimed.frame(&view).expect("a frame");
-    let expected = picture(plain, &untimed);
-    let timed = make(stamping(int64));
+    let expected = picture(&untimed);
+    let mut timed = make(stamping(int64));
     // Another picture first: one that is left to stand must not pass.
     timed.timed_frame(&other).expect("a timed frame");
-    assert!(picture(stamping(int64), &timed) != expected, "{method:?}: the comparison is blind");
+    assert!(picture(&timed) != expected, "{method:?}: the comparison is blind");
     let time = timed.timed_frame(&view).expect("a timed frame");
-    assert!(picture(stamping(int64), &timed) == expected, "{method:?}, level {n}: timing changes the picture");
+    assert!(picture(&timed) == expected, "{method:?}, level {n}: timing changes the picture");
     // The other frame left them, unless several batches share one buffer.
     let anew = timed.lattice().chunks().len() > BATCH_CHUNKS as usize;
     assert_eq!(fault(&time, &passes(method, anew)), None, "{method:?}, level {n}");
@@ -85,7 +85,7 @@ fn time_and_compare(surface: &Surface, n: u32, method: Method, int64: Int64) -> 
 
 #[test]
 fn stamps_time_every_pass_and_change_no_bit() {
-    let surface = Surface::new(rough(70, 60, 1.0, 6.0, true));
+    let surface = Arc::new(Surface::new(rough(70, 60, 1.0, 6.0, true)));
     for (_, method) in METHODS {
         for int64 in [Int64::IfPresent, Int64::Never] {
             let time = time_and_compare(&surface, 4, method, int64);
@@ -97,7 +97,7 @@ fn stamps_time_every_pass_and_change_no_bit() {
 #[test]
 fn stamps_survive_frames_of_several_submissions() {
     // 65 x 65 cells at level 32: 130 x 130 chunks, two batches.
-    let surface = Surface::new(rough(66, 66, 1.0, 0.0, false));
+    let surface = Arc::new(Surface::new(rough(66, 66, 1.0, 0.0, false)));
     let chunks = Lattice::uniform(surface.dem(), level(32)).expect("a lattice").chunks().len();
     assert!(chunks > BATCH_CHUNKS as usize, "one batch is enough here");
     for int64 in [Int64::IfPresent, Int64::Never] {
@@ -108,13 +108,13 @@ fn stamps_survive_frames_of_several_submissions() {
 
 #[test]
 fn a_software_driver_is_timed_by_the_wall_clock_unless_stamps_are_asked_for() {
-    let surface = Surface::new(rough(70, 60, 1.0, 6.0, false));
+    let surface = Arc::new(Surface::new(rough(70, 60, 1.0, 6.0, false)));
     let [view, _] = views(&surface);
     let is_cpu = gpu().info.device_type == wgpu::DeviceType::Cpu;
     assert_eq!(gpu().clock == Clock::Wall, is_cpu, "{:?} on {}", gpu().clock, gpu().info.name);
     let mut words = Vec::new();
     for gpu in [gpu(), stamping(Int64::IfPresent)] {
-        let renderer = renderer(gpu, &surface, &view, level(2), Method::Walk, Border::On);
+        let mut renderer = Planned::new(gpu, &surface, Plan::new(level(2), Method::Walk, Border::On));
         let time = renderer.timed_frame(&view).expect("a timed frame");
         assert_eq!(fault(&time, &passes(Method::Walk, true)), None, "{:?}", gpu.clock);
         let whole = renderer.time_of_frame(&view).expect("the time of a frame");

@@ -4,14 +4,17 @@
 //! The promise is for what is on the page. Beside it a vertex is only an end of an edge that leaves the page, and f32
 //! grows coarser with the distance from the view axis; those are measured and printed.
 
+use std::sync::Arc;
+
 use glam::DVec3;
-use hachure::render::Renderer;
+use hachure::gpu::uniforms::near_plane;
 use hachure::surface::lattice::{CHUNK_SIDE, CHUNK_VERTICES};
 use hachure::surface::{LatticePoint, Surface};
 use hachure::view::Camera;
 
 use crate::common::gpu;
-use crate::drawn::{BESIDE, BY_ID, CLIPPED, MISSING, Shot, look, noise, over, renderer, rough, shoot, surface};
+use crate::frames::{BESIDE, CLIPPED, MISSING, Planned, Shot};
+use crate::scenes::{aimed, noise, noisy, over, surface};
 use crate::tolerances::raster::{VERTEX_DEPTH, VERTEX_PX};
 
 const PAGE: [u32; 2] = [1280, 720];
@@ -43,16 +46,16 @@ impl Worst {
 }
 
 /// Compares every vertex of a frame.
-fn compare(surface: &Surface, renderer: &Renderer<'_>, camera: &Camera, shot: &Shot) -> Worst {
+fn compare(surface: &Surface, camera: &Camera, shot: &Shot) -> Worst {
     let mut worst = Worst::default();
-    let lattice = renderer.lattice();
-    for (chunk, screens) in lattice.chunks().iter().zip(shot.screens.chunks_exact(CHUNK_VERTICES as usize)) {
+    let near = near_plane(surface.dem());
+    for (chunk, screens) in shot.lattice.chunks().iter().zip(shot.screens.chunks_exact(CHUNK_VERTICES as usize)) {
         let left_out = screens.iter().all(|s| *s == [0; 4]);
         for (v, screen) in (0..).zip(screens) {
             let [x, y] = [v % CHUNK_SIDE, v / CHUNK_SIDE];
             let at = LatticePoint { x: chunk.origin[0] + x * chunk.step, y: chunk.origin[1] + y * chunk.step };
             let truth = surface.position(at);
-            worst = worst.with(one(truth, left_out, *screen, camera, renderer.near()));
+            worst = worst.with(one(truth, left_out, *screen, camera, near));
         }
     }
     worst
@@ -89,11 +92,11 @@ fn one(truth: Option<DVec3>, left_out: bool, screen: [i32; 4], camera: &Camera, 
     worst
 }
 
-fn check(name: &str, surface: &Surface, n: u32, cameras: &[Camera]) -> Worst {
-    let renderer = renderer(gpu(), surface, n, BY_ID, PAGE);
+fn check(name: &str, surface: &Arc<Surface>, n: u32, cameras: &[Camera]) -> Worst {
+    let mut renderer = Planned::by_id(gpu(), surface, n);
     let mut worst = Worst::default();
     for camera in cameras {
-        let found = compare(surface, &renderer, camera, &shoot(gpu(), &renderer, camera));
+        let found = compare(surface, camera, &renderer.shoot(camera));
         assert!(found.on_page > 0, "{name}, level {n}: nothing on the page of {camera:?}");
         assert!(found.px <= VERTEX_PX, "{name}, level {n}: {} px off, {camera:?}", found.px);
         assert!(found.depth <= VERTEX_DEPTH, "{name}, level {n}: depth off by {}, {camera:?}", found.depth);
@@ -112,29 +115,29 @@ fn eyes(surface: &Surface, far: f64) -> Vec<Camera> {
     let middle = DVec3::new(west + east, south + north, low + high) / 2.0;
     let [c, r] = [dem.columns(), dem.rows()].map(|n| n as f64 / 2.0 - 0.8);
     let mut cameras = vec![
-        look(over(surface, c, r, 2.0), 17.0, 0.0, PAGE),
-        look(over(surface, c, r, 30.0), 133.0, -20.0, PAGE),
-        look(over(surface, c, r, 900.0), 271.0, -90.0, PAGE),
+        aimed(over(surface, c, r, 2.0), 17.0, 0.0, PAGE),
+        aimed(over(surface, c, r, 30.0), 133.0, -20.0, PAGE),
+        aimed(over(surface, c, r, 900.0), 271.0, -90.0, PAGE),
     ];
     for (k, azimuth) in [3.0, 95.0, 200.5, 310.0_f64].into_iter().enumerate() {
         let (sin, cos) = azimuth.to_radians().sin_cos();
         let eye = middle - DVec3::new(sin, cos, 0.0) * far + DVec3::Z * (300.0 * k as f64 + 100.0);
-        cameras.push(look(eye, azimuth, -1.0, PAGE));
+        cameras.push(aimed(eye, azimuth, -1.0, PAGE));
     }
     cameras
 }
 
 #[test]
 fn vertices_agree_with_f64_up_to_20_km_away() {
-    let wide = rough(1, [401, 401], 50.0, 120.0);
+    let wide = noisy(1, [401, 401], 50.0, 120.0);
     let mut cameras = eyes(&wide, 10_000.0);
     // From the north-east corner the farthest corner is 28 km away.
-    cameras.push(look(over(&wide, 399.0, 1.0, 60.0), 225.0, -1.0, PAGE));
+    cameras.push(aimed(over(&wide, 399.0, 1.0, 60.0), 225.0, -1.0, PAGE));
     let worst = check("20 km", &wide, 1, &cameras);
     assert!(worst.farthest_metres > 20_000.0, "{} m", worst.farthest_metres);
-    let small = rough(2, [61, 47], 30.0, 60.0);
+    let small = noisy(2, [61, 47], 30.0, 60.0);
     check("1.8 km", &small, 4, &eyes(&small, 20_000.0));
-    let tiny = rough(3, [9, 8], 25.0, 40.0);
+    let tiny = noisy(3, [9, 8], 25.0, 40.0);
     let worst = check("200 m", &tiny, 64, &eyes(&tiny, 20_000.0));
     assert!(worst.farthest_metres > 19_900.0, "{} m", worst.farthest_metres);
 }
@@ -157,22 +160,21 @@ fn vertices_agree_with_f64_when_exaggerated_and_around_voids() {
 
 #[test]
 fn comparison_of_vertices_can_fail() {
-    let scene = rough(5, [21, 21], 50.0, 60.0);
+    let scene = noisy(5, [21, 21], 50.0, 60.0);
     let camera = &eyes(&scene, 3000.0)[4];
-    let renderer = renderer(gpu(), &scene, 2, BY_ID, PAGE);
-    let mut shot = shoot(gpu(), &renderer, camera);
+    let mut shot = Planned::by_id(gpu(), &scene, 2).shoot(camera);
     let seen = |s: &[i32; 4]| s[3] == 0 && s[2] != 0;
     let v = shot.screens.iter().position(seen).expect("a vertex on the page");
     shot.screens[v][0] += 6; // 6/256 px
-    assert!(compare(&scene, &renderer, camera, &shot).px > VERTEX_PX);
+    assert!(compare(&scene, camera, &shot).px > VERTEX_PX);
     shot.screens[v][0] -= 6;
     shot.screens[v][2] += 32; // 2^-19 or more of an f32
-    assert!(compare(&scene, &renderer, camera, &shot).depth > VERTEX_DEPTH);
+    assert!(compare(&scene, camera, &shot).depth > VERTEX_DEPTH);
     shot.screens[v][2] -= 32;
     shot.screens[v][3] |= BESIDE;
-    assert_eq!(compare(&scene, &renderer, camera, &shot).wrong_flags, 1);
+    assert_eq!(compare(&scene, camera, &shot).wrong_flags, 1);
     shot.screens[v][3] = 0;
     let beside = Camera { eye: camera.eye + DVec3::X * 0.5, ..*camera };
-    assert!(compare(&scene, &renderer, &beside, &shot).px > VERTEX_PX, "half a metre must show");
-    assert_eq!(compare(&scene, &renderer, camera, &shot).wrong_flags, 0);
+    assert!(compare(&scene, &beside, &shot).px > VERTEX_PX, "half a metre must show");
+    assert_eq!(compare(&scene, camera, &shot).wrong_flags, 0);
 }

@@ -1,15 +1,17 @@
 //! Voids of a DEM in its file are drawn as those of a held one, bit by bit, and a second view reads what it needs of the
 //! samples alone.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use hachure::cache::Cache;
 use hachure::plan::{Border, Detail, Method, Plan};
-use hachure::render::Renderer;
 use hachure::surface::Surface;
 use hachure::view::Camera;
 
 use crate::common::gpu;
-use crate::scenes::{METHODS, level, look};
+use crate::frames::{METHODS, Planned};
+use crate::scenes::{level, look};
 use crate::validity::{SHAPES, dem, written};
 
 const PAGE: [u32; 2] = [96, 72];
@@ -23,9 +25,8 @@ fn camera(surface: &Surface) -> Camera {
     look(eye, DVec3::new((west + east) / 2.0, (south + north) / 2.0, 150.0), 60.0, PAGE)
 }
 
-fn page(surface: &Surface, detail: Detail, method: Method) -> Vec<u8> {
-    let renderer = Renderer::new(gpu(), surface, Plan::new(detail, method, Border::On), PAGE).expect("a renderer");
-    bytemuck::cast_slice(&renderer.draw(&camera(surface)).expect("a frame").raster.pixels).to_vec()
+fn page(surface: &Arc<Surface>, detail: Detail, method: Method) -> Vec<u8> {
+    Planned::new(gpu(), surface, Plan::new(detail, method, Border::On)).bytes(&camera(surface))
 }
 
 fn inked(page: &[u8]) -> usize {
@@ -39,7 +40,7 @@ fn filed_voids_are_drawn_as_held_ones() {
     let mut all_inked = 0;
     for (i, (name, shape)) in SHAPES.into_iter().enumerate() {
         let path = written(&folder, shape, [300, 200]);
-        let [held, filed] = [1 << 30, SMALL].map(|memory| Surface::new(dem(&path, memory)));
+        let [held, filed] = [1 << 30, SMALL].map(|memory| Arc::new(Surface::new(dem(&path, memory))));
         assert!(filed.dem().is_filed());
         for (k, (of, method)) in METHODS.into_iter().enumerate() {
             // Each shape with each method; each method with each detail.
@@ -61,16 +62,18 @@ fn a_second_view_reads_what_it_draws() {
     let all = (size[0] * size[1]) as u64;
     let cache = Cache::in_folder(folder.path().join("cache"));
     let view = |expected: Option<&[u8]>| {
-        let surface = Surface::new(dem(&path, 16 << 20));
+        let surface = Arc::new(Surface::new(dem(&path, 16 << 20)));
         cache.prepare(&surface, &|words| panic!("{words}"), &|_| ()).expect("samples");
         let looked = surface.dem().samples_read();
         let [_, _, east, north] = surface.dem().extent();
         let eye = DVec3::new(east - 3000.0, north - 2000.0, 700.0);
         let camera = look(eye, eye + DVec3::new(900.0, 500.0, -90.0), 40.0, PAGE);
         let plan = Plan::new(Detail::Adaptive { error_px: 2.0 }, Method::Walk, Border::On);
-        let renderer = Renderer::new(gpu(), &surface, plan, PAGE).expect("a renderer");
-        let drawn: Vec<u8> = bytemuck::cast_slice(&renderer.draw(&camera).expect("a frame").raster.pixels).to_vec();
-        assert!(inked(&drawn) > 50 && renderer.facets() > 0 && !renderer.left_out(&camera).expect("words").is_empty());
+        let mut renderer = Planned::new(gpu(), &surface, plan);
+        let drawn = renderer.bytes(&camera);
+        let frame = renderer.last().expect("a frame");
+        assert!(inked(&drawn) > 50 && frame.facets(&surface) > 0);
+        assert!(!frame.left_out(&surface).expect("words").is_empty());
         assert!(expected.is_none_or(|expected| drawn == expected), "another picture at second sight");
         (looked, surface.dem().samples_read() - looked, drawn)
     };

@@ -1,14 +1,17 @@
 //! No pixel of the surface is missed: seeded random terrain at several levels, seen from far and near, from within the
 //! ground, with facets across the near plane and facets larger than the 126 px one invocation draws alone.
 
+use std::sync::Arc;
+
 use glam::DVec3;
-use hachure::surface::Surface;
 use hachure::surface::lattice::{CHUNK_FACETS, CHUNK_SIDE, CHUNK_VERTICES};
+use hachure::surface::{Lattice, Surface};
 use hachure::view::Camera;
 
 use crate::common::gpu;
-use crate::drawn::{BY_ID, CLIPPED, Random, Shot, look, noise, over, renderer, rough, shoot, surface};
+use crate::frames::{CLIPPED, Planned, Shot};
 use crate::mesh::{distance, facets, pinholes};
+use crate::scenes::{Random, aimed, level, noise, noisy, over, surface};
 
 const PAGE: [u32; 2] = [360, 240];
 
@@ -23,10 +26,10 @@ struct Met {
 }
 
 impl Met {
-    fn add(&mut self, ids: u32, renderer: &hachure::render::Renderer<'_>, shot: &Shot) {
+    fn add(&mut self, shot: &Shot) {
         self.frames += 1;
-        for id in 0..ids {
-            let corners = corners(renderer, shot, id);
+        for id in 0..shot.lattice.chunks().len() as u32 * CHUNK_FACETS {
+            let corners = corners(shot, id);
             let flags = corners.map(|c| c[3]);
             if flags.iter().any(|f| f & 64 != 0) || flags[0] & flags[1] & flags[2] & 31 != 0 {
                 continue;
@@ -43,9 +46,9 @@ impl Met {
 }
 
 /// Screen vertices of a facet.
-fn corners(renderer: &hachure::render::Renderer<'_>, shot: &Shot, id: u32) -> [[i32; 4]; 3] {
-    let chunk = renderer.lattice().chunks()[(id / CHUNK_FACETS) as usize];
-    renderer.lattice().facet(id).map(|at| {
+fn corners(shot: &Shot, id: u32) -> [[i32; 4]; 3] {
+    let chunk = shot.lattice.chunks()[(id / CHUNK_FACETS) as usize];
+    shot.lattice.facet(id).map(|at| {
         let [x, y] = [at.x - chunk.origin[0], at.y - chunk.origin[1]].map(|d| d / chunk.step);
         shot.screens[(id / CHUNK_FACETS * CHUNK_VERTICES + y * CHUNK_SIDE + x) as usize]
     })
@@ -62,7 +65,7 @@ fn eyes(surface: &Surface, random: &mut Random) -> Vec<Camera> {
         .map(|above| {
             let aside = DVec3::new(random.between(0.0, 0.015), random.between(-0.015, 0.0), 0.0) * cell;
             let eye = over(surface, random.between(0.2, columns), random.between(0.2, rows), above) + aside;
-            look(eye, random.between(0.0, 360.0), random.between(-40.0, 15.0), PAGE)
+            aimed(eye, random.between(0.0, 360.0), random.between(-40.0, 15.0), PAGE)
         })
         .collect();
     let [west, south, east, north] = dem.extent();
@@ -70,31 +73,31 @@ fn eyes(surface: &Surface, random: &mut Random) -> Vec<Camera> {
     let (sin, cos) = azimuth.to_radians().sin_cos();
     let middle = DVec3::new(west + east, south + north, 3000.0) / 2.0;
     let back = DVec3::new(-sin, -cos, 0.5) * (east - west);
-    cameras.push(look(middle + back, azimuth, -25.0, PAGE));
-    cameras.push(look(middle + DVec3::Z * 3.0 * cell, azimuth, -90.0, PAGE));
+    cameras.push(aimed(middle + back, azimuth, -25.0, PAGE));
+    cameras.push(aimed(middle + DVec3::Z * 3.0 * cell, azimuth, -90.0, PAGE));
     cameras
 }
 
-fn check(surface: &Surface, n: u32, random: &mut Random, met: &mut Met) {
-    let renderer = renderer(gpu(), surface, n, BY_ID, PAGE);
-    let mesh = facets(surface, &renderer.lattice());
+fn check(surface: &Arc<Surface>, n: u32, random: &mut Random, met: &mut Met) {
+    let mut renderer = Planned::by_id(gpu(), surface, n);
+    let mesh = facets(surface, &Lattice::uniform(surface.dem(), level(n)).expect("IDs suffice"));
     for camera in eyes(surface, random) {
-        let shot = shoot(gpu(), &renderer, &camera);
+        let shot = renderer.shoot(&camera);
         let depths: Vec<u32> = shot.pixels.iter().map(|p| p[1]).collect();
         let (holes, uncovered) = pinholes(&mesh, &camera, renderer.near(), &depths);
         assert!(holes.is_empty(), "level {n}: {} pinholes, first {:?}, {camera:?}", holes.len(), &holes[..1]);
         met.uncovered += uncovered;
         met.covered += depths.len() - uncovered;
-        met.add(renderer.lattice().chunks().len() as u32 * CHUNK_FACETS, &renderer, &shot);
+        met.add(&shot);
     }
 }
 
 fn random_terrain_has_no_pinhole(n: u32, samples: usize, seeds: u64) {
     let mut met = Met::default();
     for seed in 0..seeds {
-        let mut random = Random(1000 * u64::from(n) + seed);
+        let mut random = Random::new(1000 * u64::from(n) + seed);
         let cell = [10.0, 50.0, 400.0][seed as usize % 3];
-        let scene = rough(seed + 77, [samples, samples + 1], cell, cell * random.between(0.2, 2.0));
+        let scene = noisy(seed + 77, [samples, samples + 1], cell, cell * random.between(0.2, 2.0));
         check(&scene, n, &mut random, &mut met);
     }
     println!("level {n}: no pinhole in {met:?}");
@@ -129,11 +132,11 @@ fn no_pinhole_around_voids() {
         let mut heights = noise(seed, [12, 11], 50.0, 60.0);
         heights[40 + seed as usize] = f32::NAN;
         let holed = surface(12, 50.0, heights);
-        let renderer = renderer(gpu(), &holed, 4, BY_ID, PAGE);
-        let mesh = facets(&holed, &renderer.lattice());
+        let mut renderer = Planned::by_id(gpu(), &holed, 4);
+        let mesh = facets(&holed, &Lattice::uniform(holed.dem(), level(4)).expect("IDs suffice"));
         for azimuth in [0.0, 100.0, 200.0, 300.0] {
-            let camera = look(over(&holed, 1.0, 1.0, 300.0 + azimuth), azimuth, -70.0, PAGE);
-            let shot = shoot(gpu(), &renderer, &camera);
+            let camera = aimed(over(&holed, 1.0, 1.0, 300.0 + azimuth), azimuth, -70.0, PAGE);
+            let shot = renderer.shoot(&camera);
             let depths: Vec<u32> = shot.pixels.iter().map(|p| p[1]).collect();
             assert!(pinholes(&mesh, &camera, renderer.near(), &depths).0.is_empty(), "seed {seed}, {camera:?}");
             met.covered += depths.iter().filter(|d| **d != 0).count();
@@ -148,16 +151,16 @@ fn pinholes_are_found() {
     let whole = surface(9, 50.0, heights.clone());
     heights[40] = f32::NAN;
     let holed = surface(9, 50.0, heights);
-    let camera = look(over(&whole, 4.0, 4.0, 150.0), 20.0, -90.0, PAGE);
-    let [whole_renderer, holed_renderer] = [&whole, &holed].map(|s| renderer(gpu(), s, 2, BY_ID, PAGE));
-    let mesh = facets(&whole, &whole_renderer.lattice());
-    let near = whole_renderer.near();
-    let depths = |r| shoot(gpu(), r, &camera).pixels.iter().map(|p| p[1]).collect::<Vec<_>>();
+    let camera = aimed(over(&whole, 4.0, 4.0, 150.0), 20.0, -90.0, PAGE);
+    let mesh = facets(&whole, &Lattice::uniform(whole.dem(), level(2)).expect("IDs suffice"));
+    let near = hachure::gpu::uniforms::near_plane(whole.dem());
+    let depths =
+        |surface| Planned::by_id(gpu(), surface, 2).shoot(&camera).pixels.iter().map(|p| p[1]).collect::<Vec<_>>();
     // Drawn without the patches around one sample: a hexagon is missing.
-    let missing = pinholes(&mesh, &camera, near, &depths(&holed_renderer)).0;
+    let missing = pinholes(&mesh, &camera, near, &depths(&holed)).0;
     assert!(missing.len() > 1000, "{} pinholes", missing.len());
     // Drawn whole, but for one pixel.
-    let mut punched = depths(&whole_renderer);
+    let mut punched = depths(&whole);
     assert!(pinholes(&mesh, &camera, near, &punched).0.is_empty());
     punched[(100 * PAGE[0] + 200) as usize] = 0;
     assert_eq!(pinholes(&mesh, &camera, near, &punched).0, [[200, 100]]);

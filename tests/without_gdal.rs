@@ -80,11 +80,11 @@ impl Transform for Plain {
 
 /// How many pixels a frame covers, and its ink.
 fn drawn(dem: Dem) -> (u64, Marks) {
-    let surface = Surface::new(dem);
+    let surface = Arc::new(Surface::new(dem));
     let camera = choose(surface.dem(), Fixed::default(), 60.0, 160, 120).expect("a view");
-    let gpu = Gpu::open(&AdapterChoice::Best, Int64::IfPresent).expect("an adapter");
-    let renderer = Renderer::new(&gpu, &surface, Plan::default(), [160, 120]).expect("a renderer");
-    let page = renderer.page(&camera, |_| ()).expect("a page");
+    let gpu = Arc::new(Gpu::open(&AdapterChoice::Best, Int64::IfPresent).expect("an adapter"));
+    let mut renderer = Renderer::new(gpu, surface).expect("a renderer");
+    let page = renderer.page(&Plan::default(), &camera, |_| ()).expect("a page");
     (page.covered, page.marks)
 }
 

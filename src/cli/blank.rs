@@ -15,11 +15,12 @@ use crate::surface::Surface;
 use crate::view::{Camera, direction};
 
 /// Warns where a page holds no ink: says whether land is on it, where the DEM lies, and which flags show it.
-pub fn warn(renderer: &Renderer<'_>, surface: &Surface, view: &View, level: LevelChoice, page: &Page, talk: &Talk) {
+pub fn warn(renderer: &mut Renderer, view: &View, level: LevelChoice, page: &Page, talk: &Talk) {
     if page.marks.inked() > 0 {
         return;
     }
-    let (towards, lies) = where_it_lies(surface, view);
+    let surface = renderer.surface().clone();
+    let (towards, lies) = where_it_lies(&surface, view);
     let what = match page.covered {
         0 => format!("no part of the DEM is on the page: {lies}"),
         covered => {
@@ -30,13 +31,14 @@ pub fn warn(renderer: &Renderer<'_>, surface: &Surface, view: &View, level: Leve
     let Camera { fov, width, height, .. } = view.camera;
     let chosen = |fov| {
         let none_given = ViewArguments::of_file(None, None, [None; 2], fov, Size { width, height });
-        none_given.view(surface, level.near()).ok()
+        none_given.view(&surface, level.near()).ok()
     };
     let turned = || towards.map(|(azimuth, altitude)| view.turned(azimuth, altitude));
     let views: [&dyn Fn() -> Option<View>; 3] = [&turned, &|| chosen(fov), &|| chosen(FOV)];
     // What cannot be drawn is no remedy; why not is no concern of a drawing that is done.
-    let shows = |view: &View| renderer.page(&view.camera, |_| ()).is_ok_and(|page| page.marks.inked() > 0);
-    let remedy = match views.into_iter().find_map(|view| view().filter(shows)) {
+    let plan = page.frame.plan;
+    let mut shows = |view: &View| renderer.page(&plan, &view.camera, |_| ()).is_ok_and(|page| page.marks.inked() > 0);
+    let remedy = match views.into_iter().find_map(|view| view().filter(&mut shows)) {
         Some(view) => format!("give {}", view.flags()),
         None if page.covered == 0 => "give an eye above the land, near it".to_owned(),
         None => "look along the land, and draw its border (--border on)".to_owned(),

@@ -3,6 +3,7 @@
 use std::cell::{Cell, RefCell};
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::thread::available_parallelism;
 
 use super::cache::CacheArguments;
@@ -132,7 +133,7 @@ pub fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
     let folder = Folder::open(&arguments.output, pictures, Taken::inputs(inputs))?;
     let scenes_asked = (views().count() * sizes.len()) as f64;
     let extra = if arguments.floor { depth_draw::FEATURE } else { wgpu::Features::empty() };
-    let (done, gpu) = (Cell::new(0.0), arguments.device.open_with(extra, talk)?);
+    let (done, gpu) = (Cell::new(0.0), Arc::new(arguments.device.open_with(extra, talk)?));
     let drawn = RefCell::new(Vec::new());
     let hearing = Hearing {
         stage: &|stage, share| talk.progress(stage, (done.get() + share) / scenes_asked),
@@ -149,11 +150,11 @@ pub fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
     };
     let (mut scenes, mut runs) = (Vec::new(), Vec::new());
     for (job, reading) in jobs.iter().zip(readings) {
-        let surface = arguments.surface(reading, talk)?;
+        let surface = Arc::new(arguments.surface(reading, talk)?);
         let terrain = Terrain::new(&surface);
         for (named, size) in job.views.iter().flat_map(|view| sizes.iter().map(move |size| (view, *size))) {
             let (name, view) = (scene_name(&named.name, size, &sizes), view_of(named, size, &surface, talk)?);
-            let found = comparison.scene(&gpu, &name, &terrain, &view.camera, &hearing);
+            let found = comparison.scene(&gpu, &surface, &name, &terrain, &view.camera, &hearing);
             let found = found.map_err(|error| blank::with_place(error, &surface, &view))?;
             let (scene, of_scene) = arguments.scene(name, &job.files, &surface, &view, found);
             scenes.push(scene);

@@ -2,6 +2,7 @@
 
 use std::panic::resume_unwind;
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::thread;
 use std::time::Instant;
 
@@ -27,8 +28,8 @@ use crate::ink::{self, Drawing, Style};
 use crate::line::Lines;
 use crate::measure::figures::DrawnLevel;
 use crate::plan::detail::ERROR_PX;
-use crate::plan::left_out::{LeftOut, levels};
-use crate::plan::{Border, Detail, Method, Plan, Share};
+use crate::plan::left_out::LeftOut;
+use crate::plan::{Border, Detail, Frame, Method, Plan, Share};
 use crate::render::{Page, PassTime, Renderer};
 use crate::surface::Surface;
 use crate::view::Perspective;
@@ -146,9 +147,7 @@ struct LeftOutReport {
 
 /// A DEM on a device, and its page as seen from somewhere.
 struct Drawn<'a> {
-    gpu: &'a Gpu,
-    surface: &'a Surface,
-    renderer: &'a Renderer<'a>,
+    renderer: &'a mut Renderer,
     view: &'a View,
     page: Page,
 }
@@ -162,21 +161,21 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     let started = Instant::now();
     let reading = arguments.terrain.open(&arguments.terrain.dems, arguments.exaggeration)?;
     let mut outputs = arguments.outputs.open(Taken::inputs(reading.files()))?;
-    let surface = arguments.surface(reading, talk)?;
+    let surface = Arc::new(arguments.surface(reading, talk)?);
     let cache = arguments.cache.cache();
     let gpu = arguments.prepare(&surface, &cache, talk)?;
     let view = arguments.look(&surface, talk)?;
-    let gpu = gpu?;
+    let gpu = Arc::new(gpu?);
     DeviceArguments::tell(&gpu, talk)?;
     talk.progress("drawing", 0.3);
-    let renderer = Renderer::new(&gpu, &surface, plan, [view.camera.width, view.camera.height])?;
-    let page = renderer.page(&view.camera, |share| talk.progress("drawing", 0.3 + 0.3 * share))?;
+    let mut renderer = Renderer::new(gpu, surface.clone())?;
+    let page = renderer.page(&plan, &view.camera, |share| talk.progress("drawing", 0.3 + 0.3 * share))?;
     cache.discard_damaged(surface.dem(), &|message| talk.warn(&told(message)));
-    let drawn = Drawn { gpu: &gpu, surface: &surface, renderer: &renderer, view: &view, page };
+    let mut drawn = Drawn { renderer: &mut renderer, view: &view, page };
     let drawing = drawn.stroked();
-    let report = outputs.want_report().then(|| arguments.report(&drawn, plan.method, talk)).transpose()?;
+    let report = outputs.want_report().then(|| arguments.report(&mut drawn, talk)).transpose()?;
     if arguments.explain || talk.is_verbose() {
-        explain(talk, &renderer, &renderer.left_out(&view.camera)?, report.as_ref())?;
+        explain(talk, &drawn.page.frame, &surface, report.as_ref())?;
     }
     talk.progress("writing", 0.8);
     outputs.write(&drawing, &drawn.page, report.as_ref())?;
@@ -184,7 +183,8 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     talk.progress("writing", 1.0);
     outputs.publish()?;
     arguments.tell(&drawn, started, talk)?;
-    blank::warn(&renderer, &surface, &view, arguments.level, &drawn.page, talk);
+    let Drawn { page, .. } = drawn;
+    blank::warn(&mut renderer, &view, arguments.level, &page, talk);
     Ok(())
 }
 
@@ -269,20 +269,22 @@ impl DrawArguments {
     }
 
     /// Times more frames and says what was done.
-    fn report(&self, drawn: &Drawn, method: Method, talk: &Talk) -> Result<Report> {
+    fn report(&self, drawn: &mut Drawn, talk: &Talk) -> Result<Report> {
         talk.progress("timing more frames", 0.6);
-        let Drawn { gpu, surface, renderer, view, page } = drawn;
-        let camera = &view.camera;
-        let pieces = renderer.pieces().iter().len();
+        let flat_earth = drawn.flat_earth();
+        let Drawn { renderer, view, page } = drawn;
+        let Frame { plan, camera, pieces, .. } = &page.frame;
+        let (gpu, surface) = (renderer.gpu().clone(), renderer.surface().clone());
+        let pieces = pieces.iter().len();
         let warm_frames = if pieces == 1 { WARM_FRAMES } else { 1 };
-        let mut times = (0..warm_frames).map(|_| renderer.time_of_frame(camera)).collect::<Result<Vec<_>>>()?;
+        let mut times = (0..warm_frames).map(|_| renderer.time_of_frame(plan, camera)).collect::<Result<Vec<_>>>()?;
         times.sort_by(f64::total_cmp);
         Ok(Report {
             version: env!("CARGO_PKG_VERSION"),
             dem: DemReport::of(&self.terrain.dems, surface.dem()),
-            method: method.entry().family,
+            method: plan.method.entry().family,
             level: self.detail()?.into(),
-            facets: renderer.facets(),
+            facets: page.frame.facets(&surface),
             inked: page.marks.inked(),
             covered: page.covered,
             longest_walk: page.longest_walk,
@@ -290,12 +292,12 @@ impl DrawArguments {
             warm_frames,
             frame_ms: times[warm_frames / 2],
             timing: gpu.clock.describe(),
-            passes: renderer.timed_frame(camera)?.passes,
+            passes: renderer.timed_frame(plan, camera)?.passes,
             adapter: format!("{} ({})", gpu.info.name, gpu.info.driver_info),
             int64: gpu.int64,
             view: view.report(surface.dem().georeference(), self.exaggeration),
-            flat_earth: drawn.flat_earth(),
-            left_out: renderer.left_out(camera)?.into_iter().map(LeftOutReport::of).collect(),
+            flat_earth,
+            left_out: page.frame.left_out(&surface)?.into_iter().map(LeftOutReport::of).collect(),
         })
     }
 
@@ -306,7 +308,7 @@ impl DrawArguments {
         talk.say(&format!(
             "{}: {} facets, {} of {} pixels inked, {:.2} s",
             shown(self.outputs.drawing()),
-            renderer.facets(),
+            page.frame.facets(renderer.surface()),
             page.marks.inked(),
             u64::from(view.camera.width) * u64::from(view.camera.height),
             started.elapsed().as_secs_f64()
@@ -330,11 +332,11 @@ impl Drawn<'_> {
 }
 
 /// Says at which levels chunks are, what was left out and, where they were taken, the times.
-fn explain(talk: &Talk, renderer: &Renderer<'_>, left_out: &[LeftOut], report: Option<&Report>) -> Result<()> {
-    talk.say(&format!("chunks: {}", levels(&renderer.lattice())))?;
-    for LeftOut { what, why, saved } in left_out {
+fn explain(talk: &Talk, frame: &Frame, surface: &Surface, report: Option<&Report>) -> Result<()> {
+    talk.say(&format!("chunks: {}", frame.levels()))?;
+    for LeftOut { what, why, saved } in frame.left_out(surface)? {
         let saved = saved.as_ref().map_or(String::new(), |saved| format!(" ({saved})"));
-        talk.say(&format!("left out: {what}, {}{saved}", told(why)))?;
+        talk.say(&format!("left out: {what}, {}{saved}", told(&why)))?;
     }
     for PassTime { name, ms } in report.iter().flat_map(|report| &report.passes) {
         talk.say(&format!("pass {name}: {ms:.2} ms"))?;

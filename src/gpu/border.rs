@@ -1,5 +1,7 @@
 //! Pass `border`: the visible rim, one pixel wide.
 
+use std::sync::Arc;
+
 use super::{Gpu, Pass};
 use crate::error::Result;
 
@@ -9,9 +11,9 @@ pub const SOURCE: &str = crate::shader!("scene", "lattice", "surface", "ink", "b
 /// Compiles the pass.
 ///
 /// # Errors
-/// See [`Pass::new`].
-pub fn pass(gpu: &Gpu, constants: &[(&str, f64)]) -> Result<Pass> {
-    Pass::new(gpu, "border", SOURCE, constants)
+/// See [`Gpu::pass`].
+pub fn pass(gpu: &Gpu, constants: &[(&str, f64)]) -> Result<Arc<Pass>> {
+    gpu.pass("border", SOURCE, constants)
 }
 
 /// One invocation a patch edge of the rim, folded into rows of 65 535 workgroups.

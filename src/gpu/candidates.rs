@@ -1,7 +1,9 @@
 //! Pass `candidates`: lists the pixels between which a walk could meet an away facet, as far as chunks tell.
 
+use std::sync::Arc;
+
 use super::sizes::BLOCK;
-use super::{Extent, Gpu, Pass};
+use super::{Gpu, Pass};
 use crate::error::Result;
 
 /// The composed shader.
@@ -12,12 +14,12 @@ pub const NO_PIXELS: [u32; 4] = [0, 1, 1, 0];
 /// Compiles the pass.
 ///
 /// # Errors
-/// See [`Pass::new`].
-pub fn pass(gpu: &Gpu, constants: &[(&str, f64)]) -> Result<Pass> {
-    Pass::new(gpu, "candidates", SOURCE, constants)
+/// See [`Gpu::pass`].
+pub fn pass(gpu: &Gpu, constants: &[(&str, f64)]) -> Result<Arc<Pass>> {
+    gpu.pass("candidates", SOURCE, constants)
 }
 
 /// One invocation a block of pixels.
-pub fn extent([width, height]: [u32; 2]) -> Extent {
-    Extent::Invocations([width.div_ceil(BLOCK[0]), height.div_ceil(BLOCK[1])])
+pub fn invocations([width, height]: [u32; 2]) -> [u32; 2] {
+    [width.div_ceil(BLOCK[0]), height.div_ceil(BLOCK[1])]
 }

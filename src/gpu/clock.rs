@@ -219,8 +219,8 @@ impl Stamps {
             encoder.resolve_query_set(set, 0..passes.len() as u32 * 2, &buffer, offset);
         }
         gpu.queue.submit([encoder.finish()]);
-        let bytes = gpu.read(&buffer, self.passes.len() as u64 * 16)?;
+        let stamps = gpu.read(&buffer, self.passes.len())?;
         let ms_per_tick = f64::from(gpu.queue.get_timestamp_period()) * 1e-6;
-        FrameTime::of_stamps(&self.passes, &bytemuck::pod_collect_to_vec(&bytes), ms_per_tick)
+        FrameTime::of_stamps(&self.passes, &stamps, ms_per_tick)
     }
 }

@@ -1,5 +1,7 @@
 //! Pass `compose`: packs ink, kind and depth for readback and tracing.
 
+use std::sync::Arc;
+
 use super::{Gpu, Pass};
 use crate::error::Result;
 
@@ -9,7 +11,12 @@ pub const SOURCE: &str = crate::shader!("scene", "ink", "compose");
 /// Compiles the pass.
 ///
 /// # Errors
-/// See [`Pass::new`].
-pub fn pass(gpu: &Gpu, constants: &[(&str, f64)]) -> Result<Pass> {
-    Pass::new(gpu, "compose", SOURCE, constants)
+/// See [`Gpu::pass`].
+pub fn pass(gpu: &Gpu, constants: &[(&str, f64)]) -> Result<Arc<Pass>> {
+    gpu.pass("compose", SOURCE, constants)
+}
+
+/// One invocation a pixel.
+pub fn invocations(size: [u32; 2]) -> [u32; 2] {
+    size
 }

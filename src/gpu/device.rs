@@ -1,16 +1,25 @@
 //! Opens an adapter and turns the driver's ways of failing into errors.
 
+use std::borrow::Cow;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
+use bytemuck::Pod;
+
 use super::clock::Clock;
+use super::compiled::Compiled;
 use super::memory;
+use super::pass::Pass;
+use super::sizes::LARGEST_BINDING;
 use crate::error::{Error, Result};
 
 /// Waiting longer than this for one submission means the device hangs.
 const PATIENCE: Duration = Duration::from_secs(900);
 /// Storage buffers the largest pass binds.
 const STORAGE_BUFFERS: u32 = 16;
+
+/// What 64-bit atomics take.
+const INT64: wgpu::Features = wgpu::Features::SHADER_INT64.union(wgpu::Features::SHADER_INT64_ATOMIC_MIN_MAX);
 
 /// Which adapter to open.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -48,6 +57,7 @@ pub struct Gpu {
     pub int64: bool,
     /// What measures the time of frames: timestamps on a GPU that has them.
     pub clock: Clock,
+    compiled: Compiled,
     failure: Arc<Mutex<Option<String>>>,
     lost: Arc<Mutex<Option<String>>>,
 }
@@ -68,23 +78,36 @@ impl Gpu {
     /// As [`Self::open`].
     pub fn open_with(choice: &AdapterChoice, int64: Int64, extra: wgpu::Features) -> Result<Self> {
         let adapter = find(choice)?;
-        let wanted = wgpu::Features::SHADER_INT64 | wgpu::Features::SHADER_INT64_ATOMIC_MIN_MAX;
-        let int64 = int64 == Int64::IfPresent && adapter.features().contains(wanted);
         let mut features = extra;
-        if int64 {
-            features |= wanted;
+        if int64 == Int64::IfPresent && adapter.features().contains(INT64) {
+            features |= INT64;
         }
         if adapter.get_info().device_type != wgpu::DeviceType::Cpu {
             features |= wgpu::Features::TIMESTAMP_QUERY;
         }
-        let limits = wgpu::Limits { max_storage_buffers_per_shader_stage: STORAGE_BUFFERS, ..wgpu::Limits::default() };
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("hachure"),
             required_features: features & adapter.features(),
-            required_limits: limits,
+            required_limits: Self::limits(),
             ..Default::default()
         }))
         .map_err(|e| memory::failure(one_line(&e)))?;
+        Self::from_parts(device, queue)
+    }
+
+    /// What a device must grant, at least.
+    pub fn limits() -> wgpu::Limits {
+        wgpu::Limits { max_storage_buffers_per_shader_stage: STORAGE_BUFFERS, ..wgpu::Limits::default() }
+    }
+
+    /// Takes a device that is open already, as a viewer has one. Its features decide whether 64-bit atomics and timestamps
+    /// are used; its callbacks for errors and for its loss are ours from then on.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] when it grants less than [`Self::limits`] of what passes use.
+    pub fn from_parts(device: wgpu::Device, queue: wgpu::Queue) -> Result<Self> {
+        check_limits(&device.limits())?;
+        let int64 = device.features().contains(INT64);
         let stamps = device.features().contains(wgpu::Features::TIMESTAMP_QUERY);
         let clock = if stamps { Clock::Timestamps } else { Clock::Wall };
         let (failure, lost) = (Arc::new(Mutex::new(None)), Arc::new(Mutex::new(None)));
@@ -92,7 +115,28 @@ impl Gpu {
         device.on_uncaptured_error(Arc::new(move |e: wgpu::Error| note(&slot, one_line(&e))));
         let slot = lost.clone();
         device.set_device_lost_callback(move |_, message| note(&slot, message));
-        Ok(Self { device, queue, info: adapter.get_info(), int64, clock, failure, lost })
+        let info = device.adapter_info();
+        Ok(Self { device, queue, info, int64, clock, compiled: Compiled::default(), failure, lost })
+    }
+
+    /// The pass of a composed shader with the pipeline constants on which it depends: compiled when it is first asked for,
+    /// the same from then on.
+    ///
+    /// # Errors
+    /// [`Error::Mistake`] when the shader is no valid WGSL, lacks the entry point `name`, declares none of one of the
+    /// constants, or depends on one that has no value; [`Error::Gpu`] when the driver refuses.
+    pub fn pass(
+        &self,
+        name: &'static str,
+        source: impl Into<Cow<'static, str>>,
+        constants: &[(&str, f64)],
+    ) -> Result<Arc<Pass>> {
+        self.compiled.pass(self, name, source.into(), constants)
+    }
+
+    /// How many passes were compiled so far.
+    pub fn compiled(&self) -> usize {
+        self.compiled.count()
     }
 
     /// Waits until all submitted work is done.
@@ -119,11 +163,12 @@ impl Gpu {
         take(&self.failure).map_or(Ok(()), |what| Err(memory::failure(what)))
     }
 
-    /// Copies a buffer's first `size` bytes to the CPU.
+    /// Copies the first `count` values of a buffer to the CPU.
     ///
     /// # Errors
     /// Whatever the driver reports.
-    pub fn read(&self, buffer: &wgpu::Buffer, size: u64) -> Result<Vec<u8>> {
+    pub fn read<T: Pod>(&self, buffer: &wgpu::Buffer, count: usize) -> Result<Vec<T>> {
+        let size = (count * size_of::<T>()) as u64;
         let staging = self.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("readback"),
             size,
@@ -145,7 +190,9 @@ impl Gpu {
             return Err(memory::failure(what));
         }
         let view = staging.slice(..).get_mapped_range().map_err(|e| memory::failure(one_line(&e)))?;
-        Ok(view.to_vec())
+        let mut values = bytemuck::zeroed_vec(count);
+        bytemuck::cast_slice_mut(&mut values).copy_from_slice(&view);
+        Ok(values)
     }
 }
 
@@ -159,8 +206,31 @@ fn take(slot: &Mutex<Option<String>>) -> Option<String> {
     slot.lock().ok().and_then(|mut slot| slot.take())
 }
 
-/// The driver's words on one line.
-fn one_line(e: &dyn std::fmt::Display) -> String {
+/// Whether a device grants what passes use.
+fn check_limits(has: &wgpu::Limits) -> Result<()> {
+    let needs = Gpu::limits();
+    let number = |of: fn(&wgpu::Limits) -> u64| [of(&needs), of(has)];
+    let largest = [LARGEST_BINDING, has.max_storage_buffer_binding_size];
+    let limits = [
+        ("max_storage_buffers_per_shader_stage", number(|l| l.max_storage_buffers_per_shader_stage.into())),
+        ("max_storage_buffer_binding_size", largest),
+        ("max_buffer_size", [LARGEST_BINDING, has.max_buffer_size]),
+        ("max_compute_workgroups_per_dimension", number(|l| l.max_compute_workgroups_per_dimension.into())),
+        ("max_compute_invocations_per_workgroup", number(|l| l.max_compute_invocations_per_workgroup.into())),
+        ("max_compute_workgroup_storage_size", number(|l| l.max_compute_workgroup_storage_size.into())),
+        ("max_uniform_buffer_binding_size", number(|l| l.max_uniform_buffer_binding_size)),
+    ];
+    match limits.into_iter().find(|(_, [needed, granted])| granted < needed) {
+        None => Ok(()),
+        Some((name, [needed, granted])) => Err(Error::limit(
+            format!("the device grants {granted} as {name}, {needed} are needed"),
+            "open it with the limits of `Gpu::limits`",
+        )),
+    }
+}
+
+/// Words on one line.
+pub(super) fn one_line(e: &dyn std::fmt::Display) -> String {
     e.to_string().split_whitespace().collect::<Vec<_>>().join(" ")
 }
 

@@ -1,8 +1,9 @@
 //! Pass `facing`: one bit a facet, decided once, and which blocks of facets hold an away one.
 
+use std::sync::Arc;
+
 use super::{Gpu, Pass};
 use crate::error::Result;
-use crate::plan::Batch;
 use crate::surface::lattice::CHUNK_WORDS;
 
 /// The composed shader.
@@ -11,12 +12,12 @@ pub const SOURCE: &str = crate::shader!("scene", "lattice", "surface", "cull", "
 /// Compiles the pass.
 ///
 /// # Errors
-/// See [`Pass::new`].
-pub fn pass(gpu: &Gpu, constants: &[(&str, f64)]) -> Result<Pass> {
-    Pass::new(gpu, "facing", SOURCE, constants)
+/// See [`Gpu::pass`].
+pub fn pass(gpu: &Gpu, constants: &[(&str, f64)]) -> Result<Arc<Pass>> {
+    gpu.pass("facing", SOURCE, constants)
 }
 
 /// One invocation a word of 32 facets, one row a chunk.
-pub fn invocations(batch: &Batch) -> [u32; 2] {
-    [CHUNK_WORDS, batch.chunks]
+pub fn invocations(chunks: u32) -> [u32; 2] {
+    [CHUNK_WORDS, chunks]
 }

@@ -3,11 +3,9 @@
 //! Nothing a shader says is typed again here: binding numbers and workgroup sizes are read from the shader. A global
 //! is bound to the buffer of its name; `out_` before it says that the pass writes it.
 
-use std::borrow::Cow;
-
 use wgpu::naga;
 
-use super::device::Gpu;
+use super::device::{Gpu, one_line};
 use crate::error::{Error, Result};
 
 /// The WGSL of a pass: the named files of `shaders/`, each standing on those before it.
@@ -16,21 +14,6 @@ macro_rules! shader {
     ($($name:literal),+ $(,)?) => {
         concat!($(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/", $name, ".wgsl")), "\n"),+)
     };
-}
-
-/// How far a pass reaches.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Extent {
-    /// At least so many invocations along x and y.
-    Invocations([u32; 2]),
-    /// As many workgroups as the first three words of the list of this name say.
-    List(&'static str),
-}
-
-impl From<[u32; 2]> for Extent {
-    fn from(invocations: [u32; 2]) -> Self {
-        Self::Invocations(invocations)
-    }
 }
 
 /// A compiled pass.
@@ -43,26 +26,40 @@ pub struct Pass {
     bindings: Vec<(u32, String)>,
 }
 
-/// What a composed shader says of one entry point: workgroup size, and the bindings it uses with their buffer names.
+/// What a composed shader says of one entry point: workgroup size, the bindings it uses with their buffer names, and its
+/// pipeline constants.
 pub struct Reflection {
     /// Invocations along x, y, z.
     pub workgroup: [u32; 3],
     /// Binding number and buffer name.
     pub bindings: Vec<(u32, String)>,
+    /// The constants that the shader declares.
+    pub overrides: Vec<Override>,
     /// The parsed module, for comparing structs.
     pub module: naga::Module,
+}
+
+/// A pipeline constant of a shader.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Override {
+    /// Its name.
+    pub name: String,
+    /// Whether the entry point depends on it.
+    pub is_used: bool,
+    /// Whether it has a value where none is given.
+    pub has_default: bool,
 }
 
 /// Reads a composed shader.
 ///
 /// # Errors
-/// [`Error::Gpu`] when it is no valid WGSL or lacks the entry point.
+/// [`Error::Mistake`] when it is no valid WGSL or lacks the entry point.
 pub fn reflect(name: &str, source: &str) -> Result<Reflection> {
-    let fail = |what: String| Error::Gpu { what: format!("shader {name}: {what}") };
-    let module = naga::front::wgsl::parse_str(source).map_err(|e| fail(e.emit_to_string(source)))?;
+    let fail = |what: &dyn std::fmt::Display| mistake(name, one_line(what));
+    let module = naga::front::wgsl::parse_str(source).map_err(|e| fail(&e.emit_to_string(source)))?;
     let mut validator = naga::valid::Validator::new(Default::default(), naga::valid::Capabilities::all());
-    let info = validator.validate(&module).map_err(|e| fail(e.emit_to_string(source)))?;
-    let index = module.entry_points.iter().position(|e| e.name == name).ok_or_else(|| fail("no entry point".into()))?;
+    let info = validator.validate(&module).map_err(|e| fail(&e.emit_to_string(source)))?;
+    let index = module.entry_points.iter().position(|e| e.name == name).ok_or_else(|| fail(&"no entry point"))?;
     let used = info.get_entry_point(index);
     let bindings = module
         .global_variables
@@ -73,22 +70,58 @@ pub fn reflect(name: &str, source: &str) -> Result<Reflection> {
             Some((global.binding.as_ref()?.binding, label.strip_prefix("out_").unwrap_or(label).to_owned()))
         })
         .collect();
-    Ok(Reflection { workgroup: module.entry_points[index].workgroup_size, bindings, module })
+    let workgroup = module.entry_points[index].workgroup_size;
+    Ok(Reflection { workgroup, bindings, overrides: overrides(name, &module), module })
+}
+
+/// The pipeline constants of a valid module.
+fn overrides(name: &str, module: &naga::Module) -> Vec<Override> {
+    let mut alone = module.clone();
+    alone.entry_points.retain(|entry| entry.name == name);
+    naga::compact::compact(&mut alone, naga::compact::KeepUnused::No);
+    let is_used = |name: &str| alone.overrides.iter().any(|(_, used)| used.name.as_deref() == Some(name));
+    let declared = module.overrides.iter().filter_map(|(_, declared)| Some((declared.name.as_ref()?, declared.init)));
+    let of = |(name, init): (&String, Option<_>)| Override {
+        name: name.clone(),
+        is_used: is_used(name),
+        has_default: init.is_some(),
+    };
+    declared.map(of).collect()
+}
+
+/// Of the constants given to a pass those on which it depends.
+///
+/// # Errors
+/// [`Error::Mistake`] when the shader declares none of a name, or depends on one that has no value.
+pub fn select<'a>(name: &str, overrides: &[Override], given: &[(&'a str, f64)]) -> Result<Vec<(&'a str, f64)>> {
+    let is_declared = |constant: &str| overrides.iter().any(|declared| declared.name == constant);
+    if let Some((unknown, _)) = given.iter().find(|(constant, _)| !is_declared(constant)) {
+        return Err(mistake(name, format!("no constant is named {unknown}")));
+    }
+    let is_given = |constant: &str| given.iter().any(|(given, _)| *given == constant);
+    if let Some(unset) = overrides.iter().find(|o| o.is_used && !o.has_default && !is_given(&o.name)) {
+        return Err(mistake(name, format!("the constant {} has no value", unset.name)));
+    }
+    let is_used = |constant: &str| overrides.iter().any(|o| o.is_used && o.name == constant);
+    Ok(given.iter().copied().filter(|(constant, _)| is_used(constant)).collect())
+}
+
+/// A mistake in a shader, or in what is given to it.
+fn mistake(name: &str, what: impl std::fmt::Display) -> Error {
+    Error::mistake(format!("pass {name}: {what}"))
 }
 
 impl Pass {
-    /// Compiles the entry point `name` of a composed shader with these pipeline constants.
+    /// Compiles the entry point `name` of a composed shader with these pipeline constants, see [`select`]. Passes of frames
+    /// come from [`Gpu::pass`], which compiles each once.
     ///
     /// # Errors
-    /// [`Error::Gpu`] when the shader or the driver refuses.
-    pub fn new(gpu: &Gpu, name: &'static str, source: &str, constants: &[(&str, f64)]) -> Result<Self> {
+    /// [`Error::Mistake`] when the shader is wrong, [`Error::Gpu`] when the driver refuses.
+    pub(super) fn compile(gpu: &Gpu, name: &'static str, source: &str, constants: &[(&str, f64)]) -> Result<Self> {
         let reflection = reflect(name, source)?;
-        let known =
-            |constant: &str| reflection.module.overrides.iter().any(|(_, o)| o.name.as_deref() == Some(constant));
-        let constants: Vec<_> = constants.iter().copied().filter(|(constant, _)| known(constant)).collect();
         let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(name),
-            source: wgpu::ShaderSource::Wgsl(Cow::Borrowed(source)),
+            source: wgpu::ShaderSource::Wgsl(source.into()),
         });
         let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some(name),
@@ -96,7 +129,7 @@ impl Pass {
             module: &module,
             entry_point: Some(name),
             compilation_options: wgpu::PipelineCompilationOptions {
-                constants: &constants,
+                constants,
                 // Passes read of it only what they wrote.
                 zero_initialize_workgroup_memory: false,
             },
@@ -109,15 +142,14 @@ impl Pass {
     /// Binds every global of the pass to the resource of its name.
     ///
     /// # Errors
-    /// [`Error::Gpu`] when a name is unknown or the driver refuses.
+    /// [`Error::Mistake`] when a name is unknown, [`Error::Gpu`] when the driver refuses.
     pub fn bind<'a>(
         &self,
         gpu: &Gpu,
         resource: impl Fn(&str) -> Option<wgpu::BindingResource<'a>>,
     ) -> Result<wgpu::BindGroup> {
         let entries = self.bindings.iter().map(|(binding, label)| {
-            let resource = resource(label)
-                .ok_or_else(|| Error::Gpu { what: format!("pass {}: no buffer is named {label}", self.name) })?;
+            let resource = resource(label).ok_or_else(|| mistake(self.name, format!("no buffer is named {label}")))?;
             Ok(wgpu::BindGroupEntry { binding: *binding, resource })
         });
         let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {

@@ -1,7 +1,7 @@
 //! What frames leave on the device for later ones, tiles of samples and blocks of vertices: which place each has, and which
 //! may be overwritten.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::hash::Hash;
 
 /// Places for so many items. What a frame does not ask for stays until its place is needed.
@@ -29,22 +29,24 @@ impl<T: Copy + Eq + Hash> Pool<T> {
         Self { places: HashMap::new(), held: Vec::new(), capacity, frame: 0 }
     }
 
-    /// Where each item is to be. `None` when there are more different ones than places.
+    /// Where each item is to be. `None` when there are more different ones than places: then nothing has changed.
     pub fn place(&mut self, wanted: &[T]) -> Option<Placed<T>> {
         self.frame += 1;
         let mut missing = Vec::new();
+        let mut asked = HashSet::new();
         for item in wanted {
             match self.places.get(item) {
                 Some(place) => self.held[*place as usize].1 = self.frame,
-                None => missing.push(*item),
+                None if asked.insert(*item) => missing.push(*item),
+                None => (),
             }
         }
-        let mut oldest = self.replaceable();
+        let mut oldest = if missing.is_empty() { Vec::new() } else { self.replaceable() };
+        if missing.len() > self.capacity - self.held.len() + oldest.len() {
+            return None;
+        }
         let mut written = Vec::new();
         for item in missing {
-            if self.places.contains_key(&item) {
-                continue;
-            }
             let place = if self.held.len() < self.capacity {
                 self.held.push((item, self.frame));
                 self.held.len() as u32 - 1
@@ -58,6 +60,11 @@ impl<T: Copy + Eq + Hash> Pool<T> {
             written.push((place, item));
         }
         Some(Placed { places: wanted.iter().map(|item| self.places[item]).collect(), missing: written })
+    }
+
+    /// Makes room for more; what is there stays in its place.
+    pub fn grow(&mut self, capacity: usize) {
+        self.capacity = self.capacity.max(capacity);
     }
 
     /// Places that this frame has not asked for, the one asked for longest ago last.

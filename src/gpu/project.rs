@@ -1,5 +1,7 @@
 //! Pass `project`: where the vertices of the chunks that may appear lie on the page.
 
+use std::sync::Arc;
+
 use super::{Gpu, Pass};
 use crate::error::Result;
 
@@ -9,9 +11,9 @@ pub const SOURCE: &str = crate::shader!("scene", "lattice", "surface", "cull", "
 /// Compiles the pass.
 ///
 /// # Errors
-/// See [`Pass::new`].
-pub fn pass(gpu: &Gpu, constants: &[(&str, f64)]) -> Result<Pass> {
-    Pass::new(gpu, "project", SOURCE, constants)
+/// See [`Gpu::pass`].
+pub fn pass(gpu: &Gpu, constants: &[(&str, f64)]) -> Result<Arc<Pass>> {
+    gpu.pass("project", SOURCE, constants)
 }
 
 /// 32 invocations a chunk, one row a chunk.

@@ -1,5 +1,7 @@
 //! Pass `rasterize`: every facet of a batch into the raster; large and clipped ones into the queue.
 
+use std::sync::Arc;
+
 use super::{Gpu, Pass};
 use crate::error::Result;
 use crate::plan::Visibility;
@@ -17,9 +19,9 @@ pub fn source(visibility: Visibility) -> &'static str {
 /// Compiles the pass.
 ///
 /// # Errors
-/// See [`Pass::new`].
-pub fn pass(gpu: &Gpu, visibility: Visibility, constants: &[(&str, f64)]) -> Result<Pass> {
-    Pass::new(gpu, "rasterize", source(visibility), constants)
+/// See [`Gpu::pass`].
+pub fn pass(gpu: &Gpu, visibility: Visibility, constants: &[(&str, f64)]) -> Result<Arc<Pass>> {
+    gpu.pass("rasterize", source(visibility), constants)
 }
 
 /// Facets of a column of eight quads.

@@ -1,5 +1,7 @@
 //! Pass `rasterize_large`: the queued facets of a batch, clipped, shared out by tiles.
 
+use std::sync::Arc;
+
 use super::{Gpu, Pass};
 use crate::error::Result;
 use crate::plan::Visibility;
@@ -25,7 +27,7 @@ pub fn source(visibility: Visibility) -> &'static str {
 /// Compiles the pass.
 ///
 /// # Errors
-/// See [`Pass::new`].
-pub fn pass(gpu: &Gpu, visibility: Visibility, constants: &[(&str, f64)]) -> Result<Pass> {
-    Pass::new(gpu, "rasterize_large", source(visibility), constants)
+/// See [`Gpu::pass`].
+pub fn pass(gpu: &Gpu, visibility: Visibility, constants: &[(&str, f64)]) -> Result<Arc<Pass>> {
+    gpu.pass("rasterize_large", source(visibility), constants)
 }

@@ -1,5 +1,7 @@
 //! Pass `seam`: vertices on sides shared with coarser chunks become theirs.
 
+use std::sync::Arc;
+
 use super::{Gpu, Pass};
 use crate::error::Result;
 use crate::surface::lattice::CHUNK_QUADS;
@@ -10,9 +12,9 @@ pub const SOURCE: &str = crate::shader!("scene", "seam");
 /// Compiles the pass.
 ///
 /// # Errors
-/// See [`Pass::new`].
-pub fn pass(gpu: &Gpu, constants: &[(&str, f64)]) -> Result<Pass> {
-    Pass::new(gpu, "seam", SOURCE, constants)
+/// See [`Gpu::pass`].
+pub fn pass(gpu: &Gpu, constants: &[(&str, f64)]) -> Result<Arc<Pass>> {
+    gpu.pass("seam", SOURCE, constants)
 }
 
 /// One invocation a vertex that may move, half of those on four sides; one row a chunk.

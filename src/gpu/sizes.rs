@@ -1,6 +1,6 @@
 //! How large each buffer is: numbers alone, so that limits are known before anything is allocated.
 
-use super::buffers::Room;
+use super::capacity::Capacity;
 use super::uniforms::{ChunkUniform, Counts};
 use crate::error::{Error, Message, Result, Setting};
 use crate::message;
@@ -26,8 +26,10 @@ pub const RIM_EDGE_BYTES: u64 = size_of::<RimEdge>() as u64;
 pub const BLOCK: [u32; 2] = [4, 8];
 /// Bytes of a list before its items: workgroups along x, y and z, and the count.
 pub const LIST_HEADER: u64 = 16;
+/// Bytes of a tile's samples, of one kind.
+pub const TILE_BYTES: u64 = TILE_SAMPLES as u64 * WORD_BYTES;
 /// The parts of the facing bits.
-const FACING: [&str; 2] = ["facing_0", "facing_1"];
+pub const FACING: [&str; 2] = ["facing_0", "facing_1"];
 
 /// Whether a page can be drawn in one piece.
 ///
@@ -47,22 +49,17 @@ pub fn page_fits([width, height]: [u32; 2]) -> Result<()> {
     Ok(())
 }
 
-/// Name and bytes of every buffer that frames write, with room for so much and a piece of `width` x `height` pixels.
-///
-/// # Errors
-/// As [`page_fits`].
-pub fn written(room: Room, [width, height]: [u32; 2]) -> Result<Vec<(&'static str, u64)>> {
-    page_fits([width, height])?;
-    let pixels = u64::from(width) * u64::from(height);
-    let chunks = u64::from(room.chunks);
+/// Name and bytes of every buffer of a scene that frames write or fill, with room for so much.
+pub fn of_scene(capacity: Capacity) -> Vec<(&'static str, u64)> {
+    let chunks = u64::from(capacity.chunks);
     let batch = chunks.min(u64::from(BATCH_CHUNKS));
-    let [tiles, patched] = [room.tiles, room.patched].map(|tiles| tiles as u64 * u64::from(TILE_SAMPLES) * 4);
+    let [tiles, patched] = [capacity.tiles, capacity.patched].map(|tiles| tiles as u64 * TILE_BYTES);
     let part = u64::from(PART_CHUNKS);
     let facing = (0..).map(|i| chunks.saturating_sub(i * part).min(part) * u64::from(CHUNK_WORDS) * 4);
     let mut sizes: Vec<_> = FACING.into_iter().zip(facing).collect();
     sizes.extend([
         ("chunks", chunks * CHUNK_BYTES),
-        ("nodes", room.nodes as u64 * 4),
+        ("nodes", capacity.nodes as u64 * 4),
         ("heights", tiles),
         ("gradients_east", patched),
         ("gradients_north", patched),
@@ -71,6 +68,18 @@ pub fn written(room: Room, [width, height]: [u32; 2]) -> Result<Vec<(&'static st
         ("places", batch * u64::from(CHUNK_VERTICES) * VERTEX_BYTES),
         ("screens", batch * u64::from(CHUNK_VERTICES) * VERTEX_BYTES),
         ("queue", LIST_HEADER + batch * u64::from(CHUNK_FACETS) * 4),
+    ]);
+    sizes
+}
+
+/// Name and bytes of every buffer that frames write for a piece of a page.
+///
+/// # Errors
+/// As [`page_fits`].
+pub fn of_page([width, height]: [u32; 2]) -> Result<Vec<(&'static str, u64)>> {
+    page_fits([width, height])?;
+    let pixels = u64::from(width) * u64::from(height);
+    Ok(vec![
         ("pixels", pixels * PIXEL_BYTES),
         ("touched", pixels * WORD_BYTES),
         ("ink", pixels * WORD_BYTES),
@@ -79,8 +88,7 @@ pub fn written(room: Room, [width, height]: [u32; 2]) -> Result<Vec<(&'static st
         ("rest", LIST_HEADER + pixels * 4),
         ("page", pixels * 8),
         ("counts", size_of::<Counts>() as u64),
-    ]);
-    Ok(sizes)
+    ])
 }
 
 /// Whether a rim of so many edges can be bound whole.

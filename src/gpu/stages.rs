@@ -1,86 +1,209 @@
-//! The passes of a frame, compiled once, with what they bind.
+//! The passes of a plan, compiled, with what they bind.
 
-use super::buffers::{Buffers, Room};
-use super::work::Stage;
-use super::{Extent, Gpu, Pass};
-use super::{border, compose, facing, project, rasterize, rasterize_large, seam, silhouette, tessellate};
+use std::sync::Arc;
+
+use super::buffers::{Buffers, upload};
+use super::device::Gpu;
+use super::page::PageBuffers;
+use super::pass::Pass;
+use super::scene::Scene;
+use super::uniforms::BatchUniform;
+use super::{adjacency, border, candidates, compose, facing, pairs, project, rasterize, rasterize_large};
+use super::{seam, tessellate, toward_away, walk, walk_rest};
 use crate::dem::Dem;
-use crate::error::Result;
-use crate::plan::{Batch, Plan, Thrift, Visibility, batches};
+use crate::error::{Error, Result};
+use crate::plan::batches::PART_CHUNKS;
+use crate::plan::passes::{Often, PlannedPass, passes};
+use crate::plan::{Batch, Frame, Method, PassName, Plan, Thrift, Visibility};
 
-/// The passes of a plan.
+/// Bytes between entries of a uniform buffer that are bound one at a time.
+const UNIFORM_STRIDE: u64 = 256;
+
+/// A compiled pass with what it binds: once for a piece, or for each round of each batch.
+pub struct Stage {
+    /// Which.
+    pub name: PassName,
+    /// The pass.
+    pub pass: Arc<Pass>,
+    groups: Vec<wgpu::BindGroup>,
+}
+
+/// The stages of frames of one plan over so many batches, bound to the buffers that were there.
+#[derive(Default)]
 pub struct Stages {
-    /// `tessellate`, `seam`, `facing`, `project`, `rasterize`, `rasterize_large`: for each round of each batch.
-    pub per_batch: [Stage; 6],
-    /// Those of the method, and how far each reaches.
-    pub silhouettes: Vec<(Stage, Extent)>,
-    /// Where there is a rim to draw.
-    pub border: Option<Stage>,
-    /// For reading.
-    pub compose: Stage,
+    stages: Vec<Stage>,
+    rounds: u32,
+    batches: Option<wgpu::Buffer>,
+    made_for: Option<MadeFor>,
+}
+
+/// On what stages depend.
+#[derive(PartialEq)]
+struct MadeFor {
+    passes: Vec<PlannedPass>,
+    method: Method,
+    thrift: Thrift,
+    batches: usize,
+    /// Of scene and page.
+    generations: [u64; 2],
 }
 
 impl Stages {
-    /// Compiles what a plan needs, for buffers with so much room.
+    /// Compiles what a frame may run, and binds it to these buffers, unless that is done.
     ///
     /// # Errors
-    /// See [`Pass::new`].
-    pub fn new(gpu: &Gpu, dem: &Dem, plan: &Plan, has_rim: bool, room: Room, size: [u32; 2]) -> Result<Self> {
-        let flag = |on: bool| f64::from(u8::from(on));
-        let visibility = plan.method.visibility(gpu.int64);
-        let of_frame = [
-            ("has_voids", flag(dem.voids() > 0)),
-            ("facing_parts", f64::from(facing_parts(room))),
-            ("two_depths", flag(visibility == Visibility::TwoDepths)),
-            ("thrifty", flag(plan.thrift == Thrift::LeaveOut)),
-        ];
-        let constants = [&of_frame, plan.method.entry().constants].concat();
-        let stage = |pass: Pass| Stage { pass, groups: Vec::new() };
-        let of_batch = || {
-            Ok([
-                stage(tessellate::pass(gpu, &constants)?),
-                stage(seam::pass(gpu, &constants)?),
-                stage(facing::pass(gpu, &constants)?),
-                stage(project::pass(gpu, &constants)?),
-                stage(rasterize::pass(gpu, visibility, &constants)?),
-                stage(rasterize_large::pass(gpu, visibility, &constants)?),
-            ])
+    /// See [`Gpu::pass`] and [`Pass::bind`].
+    pub fn fit(&mut self, gpu: &Gpu, dem: &Dem, frame: &Frame, scene: &Scene, page: &PageBuffers) -> Result<()> {
+        let Plan { method, thrift, .. } = frame.plan;
+        let made_for = MadeFor {
+            passes: passes(&frame.plan),
+            method,
+            thrift,
+            batches: frame.batches.len().max(1),
+            generations: [scene.generation(), page.generation()],
         };
-        let of_page = || {
-            let silhouettes = silhouette::passes(gpu, plan.method, room, size, &constants)?.into_iter();
-            let silhouettes = silhouettes.map(|(pass, extent)| (stage(pass), extent)).collect();
-            let border = has_rim.then(|| border::pass(gpu, &constants)).transpose()?.map(stage);
-            Ok((silhouettes, border, stage(compose::pass(gpu, &constants)?)))
-        };
-        let (of_batch, of_page): (Result<_>, Result<_>) = rayon::join(of_batch, of_page);
-        let (per_batch, (silhouettes, border, compose)) = (of_batch?, of_page?);
-        Ok(Self { per_batch, silhouettes, border, compose })
-    }
-
-    /// Whether passes compiled for so much room serve another.
-    pub fn serve(room: Room, other: Room) -> bool {
-        facing_parts(room) == facing_parts(other) && room.keeps_vertices() == other.keeps_vertices()
-    }
-
-    /// Binds all passes to these buffers, for frames of up to so many batches.
-    ///
-    /// # Errors
-    /// See [`Pass::bind`].
-    pub fn bind(&mut self, gpu: &Gpu, buffers: &Buffers, batches: &[Batch], rounds: u32) -> Result<()> {
-        let group = |pass: &Pass, i, round, batch| pass.bind(gpu, |name| buffers.resource(name, i, round, batch));
-        for Stage { pass, groups } in &mut self.per_batch {
-            let each = batches.iter().enumerate().flat_map(|(i, b)| (0..rounds).map(move |round| (i, round, *b)));
-            *groups = each.map(|(i, round, b)| group(pass, i, round, b)).collect::<Result<_>>()?;
+        if self.made_for.as_ref() == Some(&made_for) {
+            return Ok(());
         }
-        let of_page = self.silhouettes.iter_mut().map(|(stage, _)| stage);
-        for Stage { pass, groups } in of_page.chain(&mut self.border).chain([&mut self.compose]) {
-            *groups = vec![group(pass, 0, 0, Batch { first_slot: 0, chunks: 0 })?];
+        *self = Self::default();
+        let passes = compile(gpu, dem, frame, &made_for.passes)?;
+        let rounds = frame.visibility.rounds();
+        // A frame without chunks has no batch, but passes that bind one.
+        let none = [Batch { first_slot: 0, chunks: 0 }];
+        let batches = if frame.batches.is_empty() { &none[..] } else { &frame.batches };
+        let uniforms = upload_uniforms(gpu, &batch_uniforms(batches, rounds));
+        let bound = Bound { scene: scene.buffers(), page: page.buffers(), batches: &uniforms, rounds };
+        let mut stages = Vec::new();
+        for (planned, pass) in made_for.passes.iter().zip(passes) {
+            let groups = match planned.often {
+                Often::EachRound | Often::ForVertices | Often::EachBatch => bound.of_batches(gpu, &pass, batches)?,
+                Often::Once | Often::OnReading => vec![bound.group(gpu, &pass, 0, 0, none[0])?],
+            };
+            stages.push(Stage { name: planned.name, pass, groups });
         }
+        *self = Self { stages, rounds, batches: Some(uniforms), made_for: Some(made_for) };
         Ok(())
+    }
+
+    /// The stage of a pass.
+    ///
+    /// # Errors
+    /// [`Error::Mistake`] when the plan has none.
+    pub fn get(&self, name: PassName) -> Result<&Stage> {
+        let none = || Error::mistake(format!("pass {} is not of the plan", name.name()));
+        self.stages.iter().find(|stage| stage.name == name).ok_or_else(none)
+    }
+
+    /// Bytes on the device of what tells batches apart.
+    pub fn bytes(&self) -> u64 {
+        self.batches.as_ref().map_or(0, wgpu::Buffer::size)
+    }
+
+    /// What a stage binds in a round over a batch.
+    ///
+    /// # Errors
+    /// [`Error::Mistake`] when there is no such batch or round.
+    pub fn group<'a>(&self, stage: &'a Stage, batch: usize, round: u32) -> Result<&'a wgpu::BindGroup> {
+        let none =
+            || Error::mistake(format!("pass {} binds nothing for batch {batch} in round {round}", stage.pass.name));
+        let group = stage.groups.get(batch * self.rounds as usize + round as usize);
+        group.filter(|_| round < self.rounds).ok_or_else(none)
     }
 }
 
-/// In how many parts facing bits lie.
-fn facing_parts(room: Room) -> u32 {
-    batches(room.chunks).last().map_or(1, |batch| batch.part() + 1)
+/// What passes bind.
+struct Bound<'a> {
+    scene: &'a Buffers,
+    page: &'a Buffers,
+    batches: &'a wgpu::Buffer,
+    rounds: u32,
+}
+
+impl Bound<'_> {
+    /// Of each round of each batch what a pass binds.
+    fn of_batches(&self, gpu: &Gpu, pass: &Pass, batches: &[Batch]) -> Result<Vec<wgpu::BindGroup>> {
+        let each = batches.iter().enumerate().flat_map(|(i, batch)| (0..self.rounds).map(move |r| (i, r, *batch)));
+        each.map(|(i, round, batch)| self.group(gpu, pass, i, round, batch)).collect()
+    }
+
+    /// What a pass over batch `index` in round `round` binds.
+    fn group(&self, gpu: &Gpu, pass: &Pass, index: usize, round: u32, batch: Batch) -> Result<wgpu::BindGroup> {
+        pass.bind(gpu, |name| match name {
+            "batch" => Some(wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+                buffer: self.batches,
+                offset: (index as u64 * u64::from(self.rounds) + u64::from(round)) * UNIFORM_STRIDE,
+                size: wgpu::BufferSize::new(size_of::<BatchUniform>() as u64),
+            })),
+            "facing" => self.whole(super::sizes::FACING[batch.part() as usize]),
+            _ => self.whole(name),
+        })
+    }
+
+    fn whole(&self, name: &str) -> Option<wgpu::BindingResource<'_>> {
+        Some(self.scene.find(name).or_else(|| self.page.find(name))?.as_entire_binding())
+    }
+}
+
+/// Compiles passes of a frame: those of batches beside those of a piece.
+fn compile(gpu: &Gpu, dem: &Dem, frame: &Frame, passes: &[PlannedPass]) -> Result<Vec<Arc<Pass>>> {
+    let constants = constants(dem, frame);
+    let of_piece = passes.iter().position(|pass| matches!(pass.often, Often::Once | Often::OnReading));
+    let (of_batches, of_piece) = passes.split_at(of_piece.unwrap_or(passes.len()));
+    let all = |passes: &[PlannedPass]| passes.iter().map(|p| pass(gpu, frame, p.name, &constants)).collect();
+    let (of_batches, of_piece): (Result<Vec<_>>, Result<Vec<_>>) = rayon::join(|| all(of_batches), || all(of_piece));
+    Ok([of_batches?, of_piece?].concat())
+}
+
+/// What all shaders may depend on.
+fn constants(dem: &Dem, frame: &Frame) -> [(&'static str, f64); 5] {
+    let flag = |on: bool| f64::from(u8::from(on));
+    let Plan { method, thrift, .. } = frame.plan;
+    [
+        ("has_voids", flag(dem.voids() > 0)),
+        // In how many parts facing bits lie.
+        ("facing_parts", f64::from(frame.batches.last().map_or(0, Batch::part) + 1)),
+        ("two_depths", flag(frame.visibility == Visibility::TwoDepths)),
+        ("thrifty", flag(thrift == Thrift::LeaveOut)),
+        ("conservative", flag(method.entry().conservative)),
+    ]
+}
+
+/// Compiles a pass of a frame.
+fn pass(gpu: &Gpu, frame: &Frame, name: PassName, constants: &[(&str, f64)]) -> Result<Arc<Pass>> {
+    // Of a method's own passes.
+    let own = || [constants, frame.plan.method.entry().constants].concat();
+    match name {
+        PassName::Tessellate => tessellate::pass(gpu, constants),
+        PassName::Seam => seam::pass(gpu, constants),
+        PassName::Facing => facing::pass(gpu, constants),
+        PassName::Project => project::pass(gpu, constants),
+        PassName::Rasterize => rasterize::pass(gpu, frame.visibility, constants),
+        PassName::RasterizeLarge => rasterize_large::pass(gpu, frame.visibility, constants),
+        PassName::Candidates => candidates::pass(gpu, &own()),
+        PassName::Pairs => pairs::pass(gpu, &own()),
+        PassName::Walk => walk::pass(gpu, frame.keeps_vertices(), &own()),
+        PassName::WalkRest => walk_rest::pass(gpu, frame.keeps_vertices(), &own()),
+        PassName::TowardAway => toward_away::pass(gpu, &own()),
+        PassName::Adjacency => adjacency::pass(gpu, &own()),
+        PassName::Border => border::pass(gpu, constants),
+        PassName::Compose => compose::pass(gpu, constants),
+    }
+}
+
+fn batch_uniforms(batches: &[Batch], rounds: u32) -> Vec<BatchUniform> {
+    let of = |b: &Batch, round| BatchUniform {
+        first_slot: b.first_slot,
+        part_slot: b.first_slot % PART_CHUNKS,
+        round,
+        passing: u32::from(batches.len() > 1),
+    };
+    batches.iter().flat_map(|b| (0..rounds).map(move |round| of(b, round))).collect()
+}
+
+fn upload_uniforms(gpu: &Gpu, entries: &[BatchUniform]) -> wgpu::Buffer {
+    let mut bytes = vec![0; entries.len() * UNIFORM_STRIDE as usize];
+    for (slot, entry) in bytes.chunks_exact_mut(UNIFORM_STRIDE as usize).zip(entries) {
+        slot[..size_of::<BatchUniform>()].copy_from_slice(bytemuck::bytes_of(entry));
+    }
+    upload(gpu, "batches", &bytes, wgpu::BufferUsages::UNIFORM)
 }

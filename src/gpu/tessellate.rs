@@ -1,5 +1,7 @@
 //! Pass `tessellate`: the vertices on the surface of chunks that have none yet; no camera counts.
 
+use std::sync::Arc;
+
 use super::{Gpu, Pass};
 use crate::error::Result;
 
@@ -9,9 +11,9 @@ pub const SOURCE: &str = crate::shader!("scene", "lattice", "surface", "cull", "
 /// Compiles the pass.
 ///
 /// # Errors
-/// See [`Pass::new`].
-pub fn pass(gpu: &Gpu, constants: &[(&str, f64)]) -> Result<Pass> {
-    Pass::new(gpu, "tessellate", SOURCE, constants)
+/// See [`Gpu::pass`].
+pub fn pass(gpu: &Gpu, constants: &[(&str, f64)]) -> Result<Arc<Pass>> {
+    gpu.pass("tessellate", SOURCE, constants)
 }
 
 /// At most 16 blocks of vertices, one row a chunk.

@@ -1,6 +1,9 @@
 //! Pass `walk`: silhouettes where the way between the surface points of two pixels crosses an away facet.
+//! One invocation a pixel with open pairs.
 
-use super::{Extent, Gpu, Pass};
+use std::sync::Arc;
+
+use super::{Gpu, Pass};
 use crate::error::Result;
 
 /// The composed shader, for frames whose vertices are all at hand, or those of one batch at a time.
@@ -10,13 +13,10 @@ pub fn source(keeps_vertices: bool) -> String {
         .concat()
 }
 
-/// One invocation a pixel with open pairs.
-pub const EXTENT: Extent = Extent::List("pairs");
-
 /// Compiles the pass.
 ///
 /// # Errors
-/// See [`Pass::new`].
-pub fn pass(gpu: &Gpu, keeps_vertices: bool, constants: &[(&str, f64)]) -> Result<Pass> {
-    Pass::new(gpu, "walk", &source(keeps_vertices), constants)
+/// See [`Gpu::pass`].
+pub fn pass(gpu: &Gpu, keeps_vertices: bool, constants: &[(&str, f64)]) -> Result<Arc<Pass>> {
+    gpu.pass("walk", source(keeps_vertices), constants)
 }

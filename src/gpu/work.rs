@@ -1,32 +1,26 @@
 //! The commands of a frame on their way to the queue, timed where that is asked.
 
-use super::buffers::Buffers;
 use super::clock::{CLEAR, Timer};
 use super::device::Gpu;
-use super::pass::{Extent, Pass};
+use super::on_device::OnDevice;
 use super::sizes::LIST_HEADER;
 use crate::error::Result;
+use crate::plan::{Frame, PassName, Piece};
 
-/// A compiled pass with what it binds: once for the page, or for each round of each batch.
-pub struct Stage {
-    /// The pass.
-    pub pass: Pass,
-    /// Its bind groups.
-    pub groups: Vec<wgpu::BindGroup>,
-}
-
-/// Commands recorded and not yet submitted.
+/// Commands for a piece of a frame, recorded and not yet submitted.
 pub struct Work<'a> {
-    gpu: &'a Gpu,
-    buffers: &'a Buffers,
+    on_device: OnDevice<'a>,
+    frame: &'a Frame,
+    piece: Piece,
     timer: Option<&'a mut Timer>,
     encoder: wgpu::CommandEncoder,
 }
 
 impl<'a> Work<'a> {
     /// Nothing recorded yet.
-    pub fn new(gpu: &'a Gpu, buffers: &'a Buffers, timer: Option<&'a mut Timer>) -> Self {
-        let mut work = Self { encoder: gpu.device.create_command_encoder(&Default::default()), gpu, buffers, timer };
+    pub fn new(on_device: OnDevice<'a>, frame: &'a Frame, piece: Piece, timer: Option<&'a mut Timer>) -> Self {
+        let encoder = on_device.gpu.device.create_command_encoder(&Default::default());
+        let mut work = Self { on_device, frame, piece, timer, encoder };
         if work.timer.is_some() {
             // A pass without work marks the beginning: clears, which come first, cannot be stamped themselves.
             work.begin(CLEAR);
@@ -37,10 +31,10 @@ impl<'a> Work<'a> {
     /// Zeroes buffers.
     ///
     /// # Errors
-    /// Whatever the driver reports.
+    /// [`Error::Mistake`](crate::error::Error::Mistake) where there is none of a name; whatever the driver reports.
     pub fn clear(&mut self, names: &[&str]) -> Result<()> {
         for name in names {
-            self.encoder.clear_buffer(self.buffers.get(name)?, 0, None);
+            self.encoder.clear_buffer(self.on_device.buffer(name)?, 0, None);
         }
         self.timed(CLEAR)
     }
@@ -48,28 +42,24 @@ impl<'a> Work<'a> {
     /// Empties a list by the header of an empty one.
     ///
     /// # Errors
-    /// Whatever the driver reports.
+    /// As [`Self::clear`].
     pub fn empty(&mut self, list: &str, header: &str) -> Result<()> {
-        let (list, header) = (self.buffers.get(list)?, self.buffers.get(header)?);
+        let (list, header) = (self.on_device.buffer(list)?, self.on_device.buffer(header)?);
         self.encoder.copy_buffer_to_buffer(header, 0, list, 0, LIST_HEADER);
         self.timed(CLEAR)
     }
 
-    /// Records a pass with one of its bind groups.
+    /// Records a pass over a batch in a round, where the frame runs it then.
     ///
     /// # Errors
-    /// Whatever the driver reports.
-    pub fn record(&mut self, stage: &Stage, group: usize, extent: impl Into<Extent>) -> Result<()> {
-        let buffers = self.buffers;
-        let mut pass = self.begin(stage.pass.name);
-        if let Some(group) = stage.groups.get(group) {
-            match extent.into() {
-                Extent::Invocations(wanted) => stage.pass.record(&mut pass, group, wanted),
-                Extent::List(name) => stage.pass.record_over(&mut pass, group, buffers.get(name)?),
-            }
-        }
-        drop(pass);
-        self.timed(stage.pass.name)
+    /// As [`OnDevice::dispatch`]; whatever the driver reports.
+    pub fn run(&mut self, name: PassName, [batch, round]: [u32; 2]) -> Result<()> {
+        let Some(planned) = self.frame.pass(name, round) else { return Ok(()) };
+        let Some(dispatch) = self.on_device.dispatch(self.frame, self.piece, planned, [batch, round])? else {
+            return Ok(());
+        };
+        dispatch.record(&mut self.begin(name.name()));
+        self.timed(name.name())
     }
 
     /// Submits what is recorded, and goes on.
@@ -77,7 +67,7 @@ impl<'a> Work<'a> {
     /// # Errors
     /// Whatever the driver reports.
     pub fn submit(&mut self) -> Result<()> {
-        submit(self.gpu, &mut self.encoder)
+        submit(self.on_device.gpu, &mut self.encoder)
     }
 
     /// Submits and waits until all is done.
@@ -86,17 +76,19 @@ impl<'a> Work<'a> {
     /// Whatever the driver reports.
     pub fn finish(mut self) -> Result<()> {
         self.submit()?;
-        self.gpu.wait()
+        self.on_device.gpu.wait()
     }
 
     fn begin(&mut self, name: &'static str) -> wgpu::ComputePass<'_> {
-        let timestamp_writes = self.timer.as_mut().and_then(|timer| timer.writes(self.gpu, name));
+        let gpu = self.on_device.gpu;
+        let timestamp_writes = self.timer.as_mut().and_then(|timer| timer.writes(gpu, name));
         self.encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(name), timestamp_writes })
     }
 
     fn timed(&mut self, name: &'static str) -> Result<()> {
+        let gpu = self.on_device.gpu;
         let Some(timer) = &mut self.timer else { return Ok(()) };
-        timer.wait(self.gpu, name, || submit(self.gpu, &mut self.encoder))
+        timer.wait(gpu, name, || submit(gpu, &mut self.encoder))
     }
 }
 

@@ -5,6 +5,7 @@
 //! Each warm frame moves the eye 1 m along the view axis, so that nothing of an earlier frame can be used again.
 
 use std::cell::Cell;
+use std::sync::Arc;
 
 use glam::DVec2;
 
@@ -17,7 +18,7 @@ use crate::error::{Error, Message, Result, Setting};
 use crate::gpu::Gpu;
 use crate::message;
 use crate::plan::{Border, Detail, Method, Plan};
-use crate::surface::Level;
+use crate::surface::{Level, Surface};
 use crate::truth::metrics::{FRAGMENT, Judge, Measured, Offsets};
 use crate::truth::{Line, Mask, Terrain, Truth};
 use crate::view::Camera;
@@ -109,13 +110,14 @@ impl Comparison {
         of_runs.chain([truth_name(scene)]).collect()
     }
 
-    /// Compares in one scene, whose `name` begins the names of its files.
+    /// Compares in one scene, whose `name` begins the names of its files; `terrain` is of the same surface.
     ///
     /// # Errors
     /// [`Error::Scene`] where there is nothing to compare; those of [`Renderer`](crate::render::Renderer).
     pub fn scene(
         &self,
-        gpu: &Gpu,
+        gpu: &Arc<Gpu>,
+        surface: &Arc<Surface>,
         name: &str,
         terrain: &Terrain<'_>,
         camera: &Camera,
@@ -144,7 +146,7 @@ impl Comparison {
                     found: to.found,
                 };
                 let plan = Plan::new(level, method, self.border);
-                let run = try_plan(&trial, gpu, terrain.surface, plan, self.floor)?;
+                let run = try_plan(&trial, gpu, surface, plan, self.floor)?;
                 (to.found)(Found::Run(&run))?;
                 runs.push(run);
             }

@@ -15,7 +15,7 @@ use std::collections::HashMap;
 use crate::error::Result;
 use crate::gpu::sizes::{CHUNK_BYTES, PIXEL_BYTES, RIM_EDGE_BYTES, VERTEX_BYTES, WORD_BYTES};
 use crate::plan::detail::across;
-use crate::plan::{Method, Plan, Thrift, Visibility};
+use crate::plan::{Method, PassName, Plan, Thrift, Visibility};
 use crate::surface::lattice::{CELL_STEPS, CHUNK_FACETS, CHUNK_QUADS, CHUNK_VERTICES, CHUNK_WORDS};
 use crate::surface::tile::TILE_SAMPLES;
 use crate::surface::{Lattice, Surface, Tile};
@@ -200,7 +200,7 @@ impl Quantities {
         }
         costs.extend([self.facing(), self.project().times(vertex_rounds)]);
         costs.extend([self.rasterize(method, visibility), self.rasterize_large().times(rounds)]);
-        costs.extend(method.entry().passes.iter().filter_map(|name| self.silhouette(name, method)));
+        costs.extend(method.entry().passes.iter().filter_map(|pass| self.silhouette(*pass, method)));
         if self.rim > 0 {
             costs.push(self.border());
         }
@@ -284,20 +284,20 @@ impl Quantities {
         cost("rasterize_large", self.queued * CLIP, traffic)
     }
 
-    /// What a pass of a method costs; `None` for a name that is none.
-    fn silhouette(&self, name: &str, method: Method) -> Option<PassCost> {
+    /// What a pass of a method costs; `None` for the others.
+    fn silhouette(&self, pass: PassName, method: Method) -> Option<PassCost> {
         let [_, pairs, rest] = self.listed;
-        Some(match name {
-            "candidates" => self.candidates(),
-            "pairs" => self.pairs(),
-            "walk" => {
+        Some(match pass {
+            PassName::Candidates => self.candidates(),
+            PassName::Pairs => self.pairs(),
+            PassName::Walk => {
                 let mut walk = self.walk("walk", "pairs", pairs);
                 walk.traffic.push(written("rest", rest * WORD_BYTES));
                 walk
             }
-            "walk_rest" => self.walk("walk_rest", "rest", rest),
-            "toward_away" => self.toward_away(method),
-            "adjacency" => self.adjacency(),
+            PassName::WalkRest => self.walk("walk_rest", "rest", rest),
+            PassName::TowardAway => self.toward_away(method),
+            PassName::Adjacency => self.adjacency(),
             _ => return None,
         })
     }

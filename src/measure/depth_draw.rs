@@ -10,7 +10,7 @@
 
 use crate::error::{Error, Result};
 use crate::gpu::pass::reflect;
-use crate::gpu::{Buffers, Gpu};
+use crate::gpu::{Gpu, OnDevice};
 use crate::surface::Lattice;
 use crate::surface::lattice::{CHUNK_FACETS, CHUNK_SIDE, CHUNK_VERTICES, Chunk};
 
@@ -96,14 +96,15 @@ impl DepthDraw {
         gpu.wait()
     }
 
-    /// Records the draw of the vertices that lie in `buffers`.
+    /// Records the draw of the vertices that lie on the device.
     ///
     /// # Errors
     /// [`Error::Gpu`] when no facets were loaded or the driver refuses.
-    pub fn record(&self, gpu: &Gpu, buffers: &Buffers, encoder: &mut wgpu::CommandEncoder) -> Result<()> {
+    pub fn record(&self, on_device: OnDevice<'_>, encoder: &mut wgpu::CommandEncoder) -> Result<()> {
+        let gpu = on_device.gpu;
         let facets = self.facets.as_ref().ok_or_else(|| Error::Gpu { what: "no facets to draw".into() })?;
         let entry = |(binding, name): &(u32, String)| {
-            Ok(wgpu::BindGroupEntry { binding: *binding, resource: buffers.get(name)?.as_entire_binding() })
+            Ok(wgpu::BindGroupEntry { binding: *binding, resource: on_device.buffer(name)?.as_entire_binding() })
         };
         let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some(NAME),
@@ -153,7 +154,7 @@ impl DepthDraw {
         let target = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
         encoder.copy_texture_to_buffer(texture.as_image_copy(), target, texture.size());
         gpu.queue.submit([encoder.finish()]);
-        let bytes = gpu.read(&buffer, size)?;
+        let bytes: Vec<u8> = gpu.read(&buffer, size as usize)?;
         let rows = bytes.chunks_exact(row as usize).map(|row| &row[..texture.width() as usize * 4]);
         Ok(rows.flat_map(bytemuck::pod_collect_to_vec::<u8, u32>).map(|primitive| self.id(primitive)).collect())
     }

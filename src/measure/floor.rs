@@ -1,59 +1,67 @@
 //! What a frame costs, and the two limits beside which its time stands: a bare copy of as many bytes, and a hardware
 //! depth draw of its facets.
 
+use std::sync::Arc;
+
 use super::cost::{PassCost, Quantities};
 use super::{BareCopy, DepthDraw};
-use crate::error::Result;
+use crate::error::{Error, Result};
+use crate::gpu::Gpu;
 use crate::gpu::clock::time_of;
-use crate::gpu::sizes::LIST_HEADER;
 use crate::line::Kind;
-use crate::plan::Thrift;
 use crate::plan::detail::across;
-use crate::render::{Frame, Renderer};
-use crate::view::Camera;
+use crate::plan::{Border, Frame, Thrift};
+use crate::render::{Drawn, Renderer};
 
-/// What each pass of the last frame, that of `camera`, had to move and compute; `frame` is what it left. Of a page in
-/// pieces, the last one.
+/// What each pass of the last frame had to move and compute; `drawn` is what it left. Of a page in pieces, the last one.
 ///
 /// # Errors
-/// Whatever the driver reports.
-pub fn costs(renderer: &Renderer<'_>, camera: &Camera, frame: &Frame) -> Result<Vec<PassCost>> {
-    let (gpu, plan, buffers) = (renderer.gpu(), renderer.plan(), renderer.buffers());
-    let (lattice, seen) = (renderer.lattice(), renderer.seen());
-    let of_lattice = Quantities::of(plan, renderer.surface(), &lattice, seen, buffers.made(), camera)?;
-    // The last word of a header counts the items.
+/// Whatever the driver reports; [`Error::Mistake`] when there was no frame.
+pub fn costs(renderer: &Renderer, drawn: &Drawn) -> Result<Vec<PassCost>> {
+    let frame = last(renderer)?;
+    let Frame { plan, camera, lattice, seen, .. } = frame;
+    let on_device = renderer.on_device();
+    let made = on_device.scene.made();
+    let of_lattice = Quantities::of(plan, renderer.surface(), lattice, *seen, made, camera)?;
     let count = |list| {
-        let header = gpu.read(buffers.get(list)?, LIST_HEADER)?;
-        let words: Vec<u32> = bytemuck::pod_collect_to_vec(&header);
-        Ok(words.last().copied().unwrap_or_default().into())
+        // The last word of a header counts the items.
+        let header: Vec<u32> = renderer.gpu().read(on_device.buffer(list)?, 4)?;
+        Ok(header.last().copied().unwrap_or_default().into())
     };
+    let pixels = &drawn.raster.pixels;
     let quantities = Quantities {
-        pixels: frame.raster.pixels.len() as u64,
-        land: frame.raster.pixels.iter().filter(|pixel| pixel.kind() != Kind::Sky).count() as u64,
-        batches: renderer.batches() as u64,
+        pixels: pixels.len() as u64,
+        land: pixels.iter().filter(|pixel| pixel.kind() != Kind::Sky).count() as u64,
+        batches: frame.batches.len() as u64,
         queued: count("queue")?,
         listed: [count("candidates")?, count("pairs")?, count("rest")?],
-        rim: renderer.rim_edges() as u64,
+        rim: if plan.border == Border::On { on_device.scene.rim_edges() as u64 } else { 0 },
         ..of_lattice
     };
-    Ok(quantities.passes(plan.method, plan.method.visibility(gpu.int64)))
+    Ok(quantities.passes(plan.method, frame.visibility))
+}
+
+/// The frame that lies on the device.
+fn last(renderer: &Renderer) -> Result<&Frame> {
+    renderer.last().ok_or_else(|| Error::mistake("there is no frame to measure"))
 }
 
 /// The limits, measured in turn with the frames of a renderer.
-pub struct Floor<'a> {
-    renderer: &'a Renderer<'a>,
+pub struct Floor {
+    gpu: Arc<Gpu>,
     copy: BareCopy,
     draw: DepthDraw,
 }
 
-impl<'a> Floor<'a> {
-    /// Makes ready to copy so many bytes, read and written ones together, and to draw what the renderer draws.
+impl Floor {
+    /// Makes ready to copy so many bytes, read and written ones together, and to draw facets on pages of so many pixels
+    /// across and down.
     ///
     /// # Errors
     /// As [`BareCopy::new`] and [`DepthDraw::new`].
-    pub fn new(renderer: &'a Renderer<'a>, bytes: u64) -> Result<Self> {
-        let draw = DepthDraw::new(renderer.gpu(), renderer.pieces().largest())?;
-        let floor = Self { renderer, copy: BareCopy::new(renderer.gpu(), bytes)?, draw };
+    pub fn new(gpu: Arc<Gpu>, page: [u32; 2], bytes: u64) -> Result<Self> {
+        let (copy, draw) = (BareCopy::new(&gpu, bytes)?, DepthDraw::new(&gpu, page)?);
+        let floor = Self { gpu, copy, draw };
         // Memory that was never touched is slow the first time.
         floor.copy_ms()?;
         Ok(floor)
@@ -64,33 +72,28 @@ impl<'a> Floor<'a> {
     /// # Errors
     /// Whatever the driver reports.
     pub fn copy_ms(&self) -> Result<Option<f64>> {
-        time_of(self.renderer.gpu(), |encoder| {
+        time_of(&self.gpu, |encoder| {
             self.copy.record(encoder);
             Ok(())
         })
     }
 
-    /// How long one draw takes of the facets that the last frame, that of `camera`, rasterized, from the vertices it left,
-    /// ms; `None` where the driver stamps none, or where [`Self::lacks_vertices`].
+    /// How long one draw takes of the facets that the last frame of a renderer rasterized, from the vertices it left, ms;
+    /// `None` where the driver stamps none, or where several batches shared the vertex buffer, which holds the last alone.
     ///
     /// # Errors
-    /// Whatever the driver reports.
-    pub fn draw_ms(&mut self, camera: &Camera) -> Result<Option<f64>> {
-        if self.lacks_vertices() {
+    /// Whatever the driver reports; [`Error::Mistake`] when there was no frame.
+    pub fn draw_ms(&mut self, renderer: &Renderer) -> Result<Option<f64>> {
+        let frame = last(renderer)?;
+        if !frame.keeps_vertices() {
             return Ok(None);
         }
-        let (gpu, lattice, thrift) = (self.renderer.gpu(), self.renderer.lattice(), self.renderer.plan().thrift);
         // Chunks beside the page have the vertices of an earlier frame.
-        let across = across(self.renderer.surface(), &lattice, camera)?;
-        let slots = (0..self.renderer.seen()).zip(across);
-        let drawn = slots.filter(|(_, across)| *across || thrift == Thrift::Nothing).map(|(slot, _)| slot);
-        self.draw.load(gpu, &lattice, drawn)?;
-        time_of(gpu, |encoder| self.draw.record(gpu, &self.renderer.buffers(), encoder))
-    }
-
-    /// Whether the last frame had several vertex batches, of which the device holds the last alone.
-    pub fn lacks_vertices(&self) -> bool {
-        self.renderer.batches() > 1
+        let across = across(renderer.surface(), &frame.lattice, &frame.camera)?;
+        let slots = (0..frame.seen).zip(across);
+        let drawn = slots.filter(|(_, across)| *across || frame.plan.thrift == Thrift::Nothing).map(|(slot, _)| slot);
+        self.draw.load(&self.gpu, &frame.lattice, drawn)?;
+        time_of(&self.gpu, |encoder| self.draw.record(renderer.on_device(), encoder))
     }
 
     /// ID + 1 of the facet that each pixel of the last draw shows; see [`DepthDraw::ids`].
@@ -98,6 +101,6 @@ impl<'a> Floor<'a> {
     /// # Errors
     /// Whatever the driver reports.
     pub fn ids(&self) -> Result<Vec<u32>> {
-        self.draw.ids(self.renderer.gpu())
+        self.draw.ids(&self.gpu)
     }
 }

@@ -4,7 +4,7 @@ use super::Floor;
 use super::figures::FloorFigures;
 use super::trial::median;
 use crate::error::Result;
-use crate::view::Camera;
+use crate::render::Renderer;
 
 /// Times taken in turn with the warm frames.
 pub(super) struct Floors {
@@ -20,11 +20,11 @@ impl Floors {
         Self { bytes, copies: Vec::new(), draws: Vec::new(), lacks_vertices: false }
     }
 
-    /// Takes both times once, after the frame of a camera.
-    pub fn add(&mut self, floor: &mut Floor<'_>, camera: &Camera) -> Result<()> {
+    /// Takes both times once, after a frame of a renderer.
+    pub fn add(&mut self, floor: &mut Floor, renderer: &Renderer) -> Result<()> {
         self.copies.push(floor.copy_ms()?);
-        self.draws.push(floor.draw_ms(camera)?);
-        self.lacks_vertices |= floor.lacks_vertices();
+        self.draws.push(floor.draw_ms(renderer)?);
+        self.lacks_vertices |= renderer.last().is_some_and(|frame| !frame.keeps_vertices());
         Ok(())
     }
 

@@ -1,5 +1,6 @@
 //! The mask methods on trial: a renderer draws, its ink is judged.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use glam::DVec2;
@@ -19,14 +20,14 @@ use crate::truth::{Inked, Mask};
 use crate::view::{Camera, Perspective};
 
 /// A renderer that draws by a method.
-struct Rendered<'a> {
-    renderer: &'a Renderer<'a>,
-    method: Method,
+struct Rendered {
+    renderer: Renderer,
+    plan: Plan,
     /// Of the last frame.
     perspective: Perspective,
     /// Whether a bare copy and a depth draw are timed in turn with the warm frames.
     wants_floor: bool,
-    floor: Option<(Floor<'a>, Floors)>,
+    floor: Option<(Floor, Floors)>,
 }
 
 /// The ink of a frame.
@@ -38,46 +39,54 @@ struct Ink {
 
 /// Tries a plan on a device: its renderer is made, timed and judged; with `floor`, a bare copy and a depth draw are timed
 /// in turn with the warm frames.
-pub(super) fn try_plan(trial: &Trial<'_>, gpu: &Gpu, surface: &Surface, plan: Plan, floor: bool) -> Result<Run> {
+pub(super) fn try_plan(
+    trial: &Trial<'_>,
+    gpu: &Arc<Gpu>,
+    surface: &Arc<Surface>,
+    plan: Plan,
+    floor: bool,
+) -> Result<Run> {
     memory::reset_peak();
     let start = Instant::now();
-    let renderer = Renderer::new(gpu, surface, plan, [trial.camera.width, trial.camera.height])?;
+    let mut renderer = Renderer::new(gpu.clone(), surface.clone())?;
+    renderer.prepare(&plan, trial.camera)?;
     let setup_ms = start.elapsed().as_secs_f64() * 1e3;
     let mut rendered = Rendered {
-        renderer: &renderer,
-        method: plan.method,
         perspective: Perspective::new(trial.camera, renderer.near()),
+        renderer,
+        plan,
         wants_floor: floor,
         floor: None,
     };
     trial.run(&mut rendered, setup_ms)
 }
 
-impl Draws for Rendered<'_> {
+impl Draws for Rendered {
     type Yield = Ink;
 
     fn time_of_frame(&mut self, camera: &Camera) -> Result<f64> {
         self.perspective = Perspective::new(camera, self.renderer.near());
-        self.renderer.time_of_frame(camera)
+        self.renderer.time_of_frame(&self.plan, camera)
     }
 
     fn yielded(&mut self) -> Result<Ink> {
         let raster = self.renderer.read()?.raster;
-        Ok(Ink { raster, perspective: self.perspective, method: self.method })
+        Ok(Ink { raster, perspective: self.perspective, method: self.plan.method })
     }
 
     fn passes(&mut self, camera: &Camera) -> Result<Vec<PassFigures>> {
-        let passes = self.renderer.timed_frame(camera)?.passes;
-        let costs = costs(self.renderer, camera, &self.renderer.read()?)?;
+        let passes = self.renderer.timed_frame(&self.plan, camera)?.passes;
+        let costs = costs(&self.renderer, &self.renderer.read()?)?;
         if self.wants_floor {
+            let page = [camera.width, camera.height];
             let bytes = costs.iter().map(PassCost::bytes).sum();
-            self.floor = Some((Floor::new(self.renderer, bytes)?, Floors::new(bytes)));
+            self.floor = Some((Floor::new(self.renderer.gpu().clone(), page, bytes)?, Floors::new(bytes)));
         }
         Ok(passes.into_iter().map(|pass| figures(pass, &costs)).collect())
     }
 
-    fn time_floor(&mut self, camera: &Camera) -> Result<()> {
-        self.floor.as_mut().map_or(Ok(()), |(floor, floors)| floors.add(floor, camera))
+    fn time_floor(&mut self, _: &Camera) -> Result<()> {
+        self.floor.as_mut().map_or(Ok(()), |(floor, floors)| floors.add(floor, &self.renderer))
     }
 
     fn floor(&mut self, frame_ms: f64) -> Option<FloorFigures> {
@@ -85,11 +94,11 @@ impl Draws for Rendered<'_> {
     }
 
     fn facets(&self) -> u64 {
-        self.renderer.facets()
+        self.renderer.last().map_or(0, |frame| frame.facets(self.renderer.surface()))
     }
 
     fn buffers_bytes(&self) -> u64 {
-        self.renderer.buffers().bytes()
+        self.renderer.on_device().bytes()
     }
 }
 

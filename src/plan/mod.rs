@@ -1,16 +1,20 @@
-//! What a frame needs: which method over which facets, in which batches, in how many pieces of the page.
+//! What a frame needs: which method over which facets, in which batches and passes, in how many pieces of the page.
 
 pub mod batches;
 pub mod detail;
+pub mod frame;
 mod horizon;
 pub mod left_out;
 pub mod method;
+pub mod passes;
 pub mod pieces;
 pub mod registry;
 
 pub use batches::{Batch, batches};
 pub use detail::Detail;
+pub use frame::Frame;
 pub use method::{Border, Method, Share, Thrift, Visibility};
+pub use passes::PassName;
 pub use pieces::{Piece, Pieces};
 
 /// What is drawn, whatever the eye.

@@ -1,8 +1,10 @@
 //! The registry of methods: all that the rest of the crate knows of one.
 //!
 //! A new method is a variant of [`Method`](super::Method), an entry here, its passes
-//! ([`silhouette`](crate::gpu::silhouette)) and what they cost ([`cost`](crate::measure::cost)). Names, help, lists,
+//! ([`PassName`]) and what they cost ([`cost`](crate::measure::cost)). Names, help, lists,
 //! reports and tests follow from the entry.
+
+use super::PassName;
 
 /// What is known of a method.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,10 +23,12 @@ pub struct Entry {
     pub raster: Raster,
     /// Whether it knows where in a pixel the line runs.
     pub sub_pixel: bool,
-    /// Its passes in their order: names of files in `shaders/`.
-    pub passes: &'static [&'static str],
-    /// Constants of its passes, and of rasterizing for it.
+    /// Its passes in their order.
+    pub passes: &'static [PassName],
+    /// Constants of its passes alone.
     pub constants: &'static [(&'static str, f64)],
+    /// Whether away surface is rasterized wherever it touches a pixel.
+    pub conservative: bool,
     /// Buffers of its own of a word a pixel, zero before each frame.
     pub words: &'static [&'static str],
     /// How its curve looks in plots.
@@ -75,8 +79,9 @@ pub(super) const WALK: Entry = Entry {
            crosses a facet that faces away.",
     raster: Raster::Facets,
     sub_pixel: true,
-    passes: &["candidates", "pairs", "walk", "walk_rest"],
+    passes: &[PassName::Candidates, PassName::Pairs, PassName::Walk, PassName::WalkRest],
     constants: &[],
+    conservative: false,
     words: &[],
     look: Look { colour: [26, 26, 26], dash: None, marker: Marker::Disc },
 };
@@ -90,8 +95,9 @@ pub(super) const TOWARD_AWAY: Entry = Entry {
            than a neighbour's toward surface (Mower 2015).",
     raster: Raster::TwoDepths,
     sub_pixel: false,
-    passes: &["toward_away"],
-    constants: &[("wide", 0.0), ("conservative", 0.0)],
+    passes: &[PassName::TowardAway],
+    constants: &[("wide", 0.0)],
+    conservative: false,
     words: &[],
     look: Look { colour: [0, 90, 200], dash: Some([12, 4]), marker: Marker::Square },
 };
@@ -100,7 +106,8 @@ pub(super) const TOWARD_AWAY_WIDE: Entry = Entry {
     name: "toward-away-wide",
     brief: "Compare toward and away depths, away surface wherever it touches the pixel: fewer gaps",
     rule: "The same as toward-away, with away surface counted wherever it touches the pixel or that neighbour.",
-    constants: &[("wide", 1.0), ("conservative", 1.0)],
+    constants: &[("wide", 1.0)],
+    conservative: true,
     words: &["touched"],
     look: Look { colour: [0, 110, 95], dash: Some([6, 4]), marker: Marker::Triangle },
     ..TOWARD_AWAY
@@ -115,8 +122,9 @@ pub(super) const ADJACENCY: Entry = Entry {
            (Mower 2015).",
     raster: Raster::Facets,
     sub_pixel: false,
-    passes: &["adjacency"],
+    passes: &[PassName::Adjacency],
     constants: &[("shared_vertices", 2.0)],
+    conservative: false,
     words: &[],
     look: Look { colour: [184, 58, 0], dash: Some([3, 4]), marker: Marker::Diamond },
 };

@@ -2,16 +2,16 @@
 //! making; how large an item is, the layout in WGSL.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
-use hachure::gpu::Gpu;
-use hachure::gpu::buffers::Room;
-use hachure::gpu::sizes::{LIST_HEADER, RIM_EDGE_BYTES, written};
+use hachure::gpu::sizes::{LIST_HEADER, RIM_EDGE_BYTES, of_page, of_scene};
+use hachure::gpu::{Capacity, Gpu};
 use hachure::measure::cost::{PassCost, Quantities, Traffic};
 use hachure::measure::costs;
 use hachure::plan::{Border, Detail, Method, Plan, Visibility};
-use hachure::render::{Frame, Renderer};
+use hachure::render::Drawn;
 use hachure::surface::lattice::{CHUNK_FACETS, CHUNK_VERTICES, CHUNK_WORDS};
 use hachure::surface::rim::rim_length;
 use hachure::surface::tile::TILE_SAMPLES;
@@ -19,8 +19,9 @@ use hachure::surface::{Lattice, Surface};
 use hachure::view::Camera;
 
 use super::{bytes, flat, from_south, quantities};
+use crate::frames::{METHODS, Planned};
 use crate::reflection::{Bound, bound, shaders};
-use crate::scenes::{METHODS, gpu, gpu_without_int64, level, rough};
+use crate::scenes::{gpu, gpu_without_int64, level, rough};
 
 /// What passes bind and costs leave out: the pass, the buffers, why.
 const UNCOUNTED: [(&str, &[&str], &str); 8] = [
@@ -42,7 +43,8 @@ type Sizes = BTreeMap<String, u64>;
 
 fn sizes(lattice: &Lattice, rim_edges: u64, page: [u32; 2]) -> Sizes {
     let mut sizes = Sizes::from([("rim".to_owned(), rim_edges * RIM_EDGE_BYTES)]);
-    for (name, size) in written(Room::of(lattice), page).expect("a page of this size") {
+    let of_page = of_page(page).expect("a page of this size");
+    for (name, size) in of_scene(Capacity::of(lattice)).into_iter().chain(of_page) {
         *sizes.entry(if name.starts_with("facing") { "facing" } else { name }.to_owned()).or_default() += size;
     }
     sizes
@@ -98,8 +100,8 @@ fn wrong(of: &Traffic, bound: Option<&Bound>, size: Option<&u64>, most: Option<u
 }
 
 /// A frame with all that its costs stand beside.
-struct Drawn {
-    frame: Frame,
+struct Measured {
+    frame: Drawn,
     costs: Vec<PassCost>,
     sizes: Sizes,
     visibility: Visibility,
@@ -107,15 +109,15 @@ struct Drawn {
     names: Vec<&'static str>,
 }
 
-fn drawn(gpu: &Gpu, surface: &Surface, camera: &Camera, plan: Plan) -> Drawn {
+fn drawn(gpu: &Arc<Gpu>, surface: &Arc<Surface>, camera: &Camera, plan: Plan) -> Measured {
     let page = [camera.width, camera.height];
-    let renderer = Renderer::new(gpu, surface, plan, page).expect("a renderer");
+    let mut renderer = Planned::new(gpu, surface, plan);
     let timed = renderer.timed_frame(camera).expect("a timed frame");
-    let frame = renderer.read().expect("its ink");
-    let costs = costs(&renderer, camera, &frame).expect("costs");
+    let left = renderer.read().expect("its ink");
+    let costs = costs(&renderer, &left).expect("costs");
     let rim_edges = if plan.border == Border::On { rim_length(surface.dem()).expect("a rim") } else { 0 };
-    Drawn {
-        frame,
+    Measured {
+        frame: left,
         costs,
         sizes: sizes(&renderer.lattice(), rim_edges, page),
         visibility: plan.method.visibility(gpu.int64),
@@ -125,7 +127,7 @@ fn drawn(gpu: &Gpu, surface: &Surface, camera: &Camera, plan: Plan) -> Drawn {
 
 #[test]
 fn costs_are_of_what_passes_bind() {
-    let surface = Surface::new(rough(70, 60, 1.0, 6.0, true));
+    let surface = Arc::new(Surface::new(rough(70, 60, 1.0, 6.0, true)));
     let camera = from_south(&surface);
     let details: [Detail; 2] = [level(4).into(), Detail::default()];
     let mut seen = Vec::new();
@@ -212,9 +214,9 @@ fn costs_that_are_wrong_are_noticed() {
 
 /// Where chunks of 512 facets cover the page and all of them appear: straight down on 33 x 33 samples, a little more land than
 /// page.
-fn covered() -> (Surface, Camera) {
+fn covered() -> (Arc<Surface>, Camera) {
     let heights = (0..33 * 33).map(|i| ((i * 7919) % 13) as f32 * 0.1).collect();
-    let surface = Surface::new(Dem::from_heights(33, DVec2::splat(10.0), DVec2::ZERO, heights));
+    let surface = Arc::new(Surface::new(Dem::from_heights(33, DVec2::splat(10.0), DVec2::ZERO, heights)));
     let [west, south, east, north] = surface.dem().extent();
     let eye = DVec3::new((west + east) / 2.0, (south + north) / 2.0, 250.0);
     (surface, Camera { eye, azimuth: 0.0, altitude: -90.0, fov: 60.0, width: 64, height: 64 })
@@ -241,7 +243,7 @@ fn whole(pass: &str, buffer: &str, visibility: Visibility) -> Option<[u64; 2]> {
 }
 
 /// Where the costs of a frame are not those of one that touches everything.
-fn parts(drawn: &Drawn, method: Method) -> Vec<String> {
+fn parts(drawn: &Measured, method: Method) -> Vec<String> {
     let mut parts = Vec::new();
     for PassCost { name, traffic, .. } in &drawn.costs {
         for of in traffic.iter().filter(|of| of.buffer != "touched" || method == Method::TowardAway { wide: true }) {

@@ -3,8 +3,8 @@
 
 use glam::DVec2;
 use hachure::dem::Dem;
+use hachure::gpu::Gpu;
 use hachure::gpu::uniforms::SceneUniform;
-use hachure::gpu::{Gpu, Pass};
 use hachure::surface::lattice::CHUNK_FACETS;
 use hachure::surface::quadtree::NO_SLOT;
 use hachure::surface::{Lattice, LatticePoint};
@@ -91,13 +91,13 @@ fn run(gpu: &Gpu, name: &'static str, source: &str, pairs: &[[u32; 2]], count: u
         ("pairs", upload(bytemuck::cast_slice(pairs), storage)),
         ("values", values),
     ];
-    let pass = Pass::new(gpu, name, source, &[]).expect("the wrapper compiles");
+    let pass = gpu.pass(name, source.to_owned(), &[]).expect("the wrapper compiles");
     let named = |wanted: &str| buffers.iter().find(|b| b.0 == wanted).map(|b| b.1.as_entire_binding());
     let group = pass.bind(gpu, named).expect("the wrapper binds");
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     pass.record(&mut encoder.begin_compute_pass(&Default::default()), &group, [count, 1]);
     gpu.queue.submit([encoder.finish()]);
-    bytemuck::pod_collect_to_vec(&gpu.read(&buffers[4].1, size).expect("a copy of the values"))
+    gpu.read(&buffers[4].1, (count * words) as usize).expect("a copy of the values")
 }
 
 /// How many facets the device places elsewhere than the CPU does, and how many it does not find again.

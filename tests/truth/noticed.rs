@@ -1,5 +1,7 @@
 //! What is wrong shows in the figures: a mask moved or with a hole, another eye, one method in place of another.
 
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3};
 use hachure::plan::{Border, Method};
 use hachure::surface::Surface;
@@ -7,8 +9,9 @@ use hachure::truth::metrics::{Judge, Scores};
 use hachure::truth::{Mask, Terrain, Truth};
 use hachure::view::Camera;
 
+use crate::frames::draw_mask;
 use crate::judged::moved;
-use crate::scenes::{draw_mask, level, look, rough};
+use crate::scenes::{level, look, rough};
 use crate::tolerances::{RECALL, STUDY};
 
 const PAGE: [u32; 2] = [384, 288];
@@ -19,7 +22,7 @@ fn scores(truth: &Truth, mask: &Mask) -> Scores {
 
 #[test]
 fn what_is_wrong_shows_in_the_figures() {
-    let surface = Surface::new(rough(60, 50, 2.0, 3.0, false));
+    let surface = Arc::new(Surface::new(rough(60, 50, 2.0, 3.0, false)));
     let terrain = Terrain::new(&surface);
     let [west, south, east, north] = surface.dem().extent();
     let middle = DVec3::new((west + east) / 2.0, (south + north) / 2.0, 0.0);

@@ -2,6 +2,7 @@
 //! and what truth costs.
 
 use std::process::Command;
+use std::sync::Arc;
 use std::time::Instant;
 
 use glam::DVec3;
@@ -14,7 +15,8 @@ use hachure::truth::{Mask, Terrain};
 use hachure::view::Camera;
 
 use crate::common::shared_dems;
-use crate::scenes::{draw_mask, level};
+use crate::frames::draw_mask;
+use crate::scenes::level;
 use crate::tolerances::{SELF_F, STUDY, STUDY_ADJACENCY, STUDY_LENGTH, TRUTH_BYTES, TRUTH_SECONDS};
 
 const VIEW: Camera = Camera {
@@ -54,7 +56,8 @@ const STUDIED: [(Method, u32, f64, f64, f64); 14] = [
 #[test]
 fn west_temple_has_the_figures_of_the_study() {
     let Some(folder) = shared_dems() else { return };
-    let surface = Surface::new(read(folder.join("west_temple_50m.tif"), &ReadOptions::default()).expect("west-temple"));
+    let surface =
+        Arc::new(Surface::new(read(folder.join("west_temple_50m.tif"), &ReadOptions::default()).expect("west-temple")));
     let terrain = Terrain::new(&surface);
     let truth_at = |n| {
         let start = Instant::now();
@@ -128,7 +131,7 @@ fn three_million_cells_take_little_time_and_memory() {
 #[cfg(target_os = "linux")]
 fn child_finds_the_truth_of_st_helens() {
     let dem = read(shared_dems().unwrap().join("sthelens_utm10n_10m.tif"), &ReadOptions::default()).unwrap();
-    let surface = Surface::new(dem);
+    let surface = Arc::new(Surface::new(dem));
     let eye = DVec3::new(560_374.0, 5_124_979.0, 1_223.0);
     let camera = Camera { eye, azimuth: 170.0, altitude: -3.0, fov: 60.0, width: 1024, height: 768 };
     let start = Instant::now();

@@ -1,0 +1,68 @@
+//! The passes compiled on a device: each once, whoever asks, however often.
+
+use std::borrow::Cow;
+use std::collections::HashMap;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use super::device::Gpu;
+use super::pass::{Override, Pass, reflect, select};
+use crate::error::Result;
+
+/// What a pass is compiled of: its name, its source, and the bits of the constants on which it depends.
+type Key = (Shader, Vec<(String, u64)>);
+/// The entry point and its composed source.
+type Shader = (&'static str, Cow<'static, str>);
+/// A pass, once it is there. Who compiles it holds the lock, so that others wait for it.
+type Slot = Arc<Mutex<Option<Arc<Pass>>>>;
+
+/// Compiled passes.
+#[derive(Default)]
+pub(super) struct Compiled {
+    overrides: Mutex<HashMap<Shader, Arc<[Override]>>>,
+    passes: Mutex<HashMap<Key, Slot>>,
+    count: AtomicUsize,
+}
+
+impl Compiled {
+    /// The pass of this shader and these constants, compiled if nobody has asked for it yet.
+    pub fn pass(
+        &self,
+        gpu: &Gpu,
+        name: &'static str,
+        source: Cow<'static, str>,
+        constants: &[(&str, f64)],
+    ) -> Result<Arc<Pass>> {
+        let shader = (name, source);
+        let constants = select(name, &self.overrides(&shader)?, constants)?;
+        let bits = constants.iter().map(|(name, value)| ((*name).to_owned(), value.to_bits())).collect();
+        let slot = lock(&self.passes).entry((shader.clone(), bits)).or_default().clone();
+        let mut slot = lock(&slot);
+        if let Some(pass) = &*slot {
+            return Ok(pass.clone());
+        }
+        self.count.fetch_add(1, Ordering::Relaxed);
+        let pass = Arc::new(Pass::compile(gpu, name, &shader.1, &constants)?);
+        *slot = Some(pass.clone());
+        Ok(pass)
+    }
+
+    /// How many passes were compiled so far.
+    pub fn count(&self) -> usize {
+        self.count.load(Ordering::Relaxed)
+    }
+
+    fn overrides(&self, shader: &Shader) -> Result<Arc<[Override]>> {
+        if let Some(overrides) = lock(&self.overrides).get(shader) {
+            return Ok(overrides.clone());
+        }
+        let overrides: Arc<[Override]> = reflect(shader.0, &shader.1)?.overrides.into();
+        lock(&self.overrides).insert(shader.clone(), overrides.clone());
+        Ok(overrides)
+    }
+}
+
+/// What a mutex guards. No holder leaves it half done.
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}

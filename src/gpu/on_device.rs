@@ -1,0 +1,114 @@
+//! All that a frame works with on a device, and what a pass of it dispatches there.
+
+use super::device::Gpu;
+use super::page::PageBuffers;
+use super::pass::Pass;
+use super::scene::Scene;
+use super::stages::Stages;
+use super::{adjacency, border, candidates, compose, facing, project, rasterize, seam, tessellate, toward_away};
+use crate::error::{Error, Result};
+use crate::plan::passes::{Over, PlannedPass};
+use crate::plan::{Batch, Frame, PassName, Piece};
+
+/// Scene, page and passes on a device.
+#[derive(Clone, Copy)]
+pub struct OnDevice<'a> {
+    /// The device.
+    pub gpu: &'a Gpu,
+    /// Buffers of the scene.
+    pub scene: &'a Scene,
+    /// Buffers of the page.
+    pub page: &'a PageBuffers,
+    /// The passes, bound to both.
+    pub stages: &'a Stages,
+}
+
+/// A pass with what it binds, and how far it reaches.
+pub struct Dispatch<'a> {
+    pass: &'a Pass,
+    group: &'a wgpu::BindGroup,
+    extent: Extent<'a>,
+}
+
+/// How far a pass reaches.
+enum Extent<'a> {
+    /// At least so many invocations along x and y.
+    Invocations([u32; 2]),
+    /// As many workgroups as the first three words of a list say.
+    List(&'a wgpu::Buffer),
+}
+
+impl Dispatch<'_> {
+    /// Records it.
+    pub fn record(&self, pass: &mut wgpu::ComputePass<'_>) {
+        match self.extent {
+            Extent::Invocations(wanted) => self.pass.record(pass, self.group, wanted),
+            Extent::List(list) => self.pass.record_over(pass, self.group, list),
+        }
+    }
+}
+
+impl<'a> OnDevice<'a> {
+    /// A buffer by the name the shaders give it.
+    ///
+    /// # Errors
+    /// [`Error::Mistake`] when there is none.
+    pub fn buffer(self, name: &str) -> Result<&'a wgpu::Buffer> {
+        self.scene.buffers().find(name).map_or_else(|| self.page.buffers().get(name), Ok)
+    }
+
+    /// Bytes of all buffers.
+    pub fn bytes(self) -> u64 {
+        self.scene.buffers().bytes() + self.page.buffers().bytes() + self.stages.bytes()
+    }
+
+    /// What a pass dispatches for a piece of a frame, in a round over a batch; `None` where all vertices that it would make
+    /// are there.
+    ///
+    /// # Errors
+    /// [`Error::Mistake`] when the frame has no such pass, batch or round.
+    pub fn dispatch(
+        self,
+        frame: &Frame,
+        piece: Piece,
+        planned: &PlannedPass,
+        [batch, round]: [u32; 2],
+    ) -> Result<Option<Dispatch<'a>>> {
+        let stage = self.stages.get(planned.name)?;
+        let group = self.stages.group(stage, batch as usize, round)?;
+        let none = Batch { first_slot: 0, chunks: 0 };
+        let batch = frame.batches.get(batch as usize).copied().unwrap_or(none);
+        let chunks = match planned.over {
+            Over::FreshChunks => self.scene.fresh().min(batch.chunks),
+            Over::SeenChunks => batch.seen(frame.seen),
+            Over::Chunks | Over::List(_) | Over::Pixels | Over::RimEdges => batch.chunks,
+        };
+        if planned.over == Over::FreshChunks && chunks == 0 {
+            return Ok(None);
+        }
+        let extent = match planned.over {
+            Over::List(list) => Extent::List(self.buffer(list)?),
+            _ => Extent::Invocations(self.invocations(planned.name, &stage.pass, chunks, piece.drawn.size)?),
+        };
+        Ok(Some(Dispatch { pass: &stage.pass, group, extent }))
+    }
+
+    /// Invocations of a pass over so many chunks, or over a piece.
+    fn invocations(self, name: PassName, pass: &Pass, chunks: u32, size: [u32; 2]) -> Result<[u32; 2]> {
+        Ok(match name {
+            PassName::Tessellate => tessellate::invocations(chunks),
+            PassName::Seam => seam::invocations(chunks),
+            PassName::Facing => facing::invocations(chunks),
+            PassName::Project => project::invocations(chunks),
+            PassName::Rasterize => rasterize::invocations(chunks),
+            PassName::Candidates => candidates::invocations(size),
+            PassName::TowardAway => toward_away::invocations(size),
+            PassName::Adjacency => adjacency::invocations(size),
+            PassName::Border => border::invocations(pass, self.scene.rim_edges()),
+            PassName::Compose => compose::invocations(size),
+            PassName::RasterizeLarge | PassName::Pairs | PassName::Walk | PassName::WalkRest => {
+                return Err(Error::mistake(format!("pass {} goes over a list", name.name())));
+            }
+        })
+    }
+}

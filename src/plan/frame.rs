@@ -1,0 +1,163 @@
+//! A frame as data: everything that is decided of it before the GPU hears of it.
+
+use std::sync::Arc;
+
+use super::left_out::Omission;
+use super::passes::{Often, PassName, PlannedPass, passes};
+use super::{Batch, Border, Detail, Pieces, Plan, Thrift, Visibility, batches, detail};
+use crate::error::Result;
+use crate::surface::{Lattice, Level, Surface};
+use crate::view::Camera;
+
+/// What a camera sees of a surface, and how it is drawn.
+#[derive(Debug, Clone)]
+pub struct Frame {
+    /// What is drawn.
+    pub plan: Plan,
+    /// From where.
+    pub camera: Camera,
+    /// How its page is cut.
+    pub pieces: Pieces,
+    /// The chunks whose facets are drawn.
+    pub lattice: Arc<Lattice>,
+    /// How many of them, in the first slots, may appear. Hidden away facets count where depths of both sides are compared.
+    pub seen: u32,
+    /// The chunks in batches that share one vertex buffer.
+    pub batches: Vec<Batch>,
+    /// What the raster keeps of a pixel.
+    pub visibility: Visibility,
+    /// The passes that run, in their order.
+    pub passes: Vec<PlannedPass>,
+    /// What it does without, in the order of telling.
+    pub(super) omissions: Vec<Omission>,
+}
+
+/// What planning keeps from frame to frame: the lattice of the last uniform level.
+#[derive(Debug, Default)]
+pub struct Kept(Option<(Level, Arc<Lattice>)>);
+
+impl Kept {
+    /// The lattice of a level, as it was or made.
+    ///
+    /// # Errors
+    /// As [`Lattice::uniform`].
+    fn uniform(&mut self, surface: &Surface, level: Level) -> Result<Arc<Lattice>> {
+        match &self.0 {
+            Some((of, lattice)) if *of == level => Ok(lattice.clone()),
+            _ => {
+                let lattice = Arc::new(Lattice::uniform(surface.dem(), level)?);
+                self.0 = Some((level, lattice.clone()));
+                Ok(lattice)
+            }
+        }
+    }
+}
+
+impl Frame {
+    /// Plans what `camera` sees, for a device with or without 64-bit atomics.
+    ///
+    /// # Errors
+    /// [`Error::Limit`](crate::error::Error::Limit) when the scene or the page is too large; as [`Surface::pyramid`].
+    pub fn new(plan: &Plan, surface: &Surface, camera: &Camera, int64: bool, kept: &mut Kept) -> Result<Self> {
+        check(surface, camera)?;
+        let lattice = match plan.detail {
+            Detail::Uniform(level) => kept.uniform(surface, level)?,
+            Detail::Adaptive { error_px } => Arc::new(detail::adaptive(surface, camera, error_px, plan.thrift)?),
+        };
+        Ok(Self::over(lattice, plan, surface, camera, int64))
+    }
+
+    /// What is known of the frames of a plan before there is an eye, on pages as large as the camera's: where each frame
+    /// has its own lattice, one of no chunks.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn before_any(plan: &Plan, surface: &Surface, camera: &Camera, int64: bool, kept: &mut Kept) -> Result<Self> {
+        check(surface, camera)?;
+        let lattice = match plan.detail {
+            Detail::Uniform(level) => kept.uniform(surface, level)?,
+            Detail::Adaptive { .. } => Arc::new(Lattice::empty(surface.dem(), surface.pyramid()?.coarsest_step())?),
+        };
+        Ok(Self::over(lattice, plan, surface, camera, int64))
+    }
+
+    fn over(lattice: Arc<Lattice>, plan: &Plan, surface: &Surface, camera: &Camera, int64: bool) -> Self {
+        let visibility = plan.method.visibility(int64);
+        let chunks = lattice.chunks().len() as u32;
+        let all_seen = plan.thrift == Thrift::Nothing || visibility == Visibility::TwoDepths;
+        let mut frame = Self {
+            plan: *plan,
+            camera: *camera,
+            pieces: Pieces::from([camera.width, camera.height]),
+            seen: if all_seen { chunks } else { lattice.seen() },
+            batches: batches(chunks),
+            visibility,
+            passes: passes(plan),
+            omissions: match (plan.detail, plan.thrift) {
+                (Detail::Adaptive { .. }, _) => vec![Omission::FineFacets, Omission::Rasterizing, Omission::Samples],
+                (Detail::Uniform(_), Thrift::LeaveOut) => vec![Omission::Chunks],
+                (Detail::Uniform(_), Thrift::Nothing) => Vec::new(),
+            },
+            lattice,
+        };
+        frame.leave_out(surface);
+        frame
+    }
+
+    /// Leaves out the passes and tests that would find nothing to do.
+    fn leave_out(&mut self, surface: &Surface) {
+        if !self.lattice.has_seams() {
+            self.passes.retain(|pass| pass.name != PassName::Seam);
+            self.omissions.push(Omission::SeamPass);
+        }
+        if self.plan.border == Border::Off {
+            self.omissions.push(Omission::BorderPass);
+        }
+        if surface.dem().voids() == 0 {
+            self.omissions.push(Omission::VoidTests);
+        }
+    }
+
+    /// The same frame on a page that is cut in another way.
+    ///
+    /// # Errors
+    /// As [`Pieces::check`].
+    pub fn cut(self, pieces: Pieces) -> Result<Self> {
+        pieces.check()?;
+        Ok(Self { pieces, ..self })
+    }
+
+    /// A pass, if it runs in a round over the batches.
+    pub fn pass(&self, name: PassName, round: u32) -> Option<&PlannedPass> {
+        let runs = |often| match often {
+            Often::EachRound => true,
+            Often::ForVertices => round == 0 || !self.keeps_vertices(),
+            Often::EachBatch | Often::Once | Often::OnReading => round == 0,
+        };
+        self.passes.iter().find(|pass| pass.name == name && runs(pass.often))
+    }
+
+    /// The passes that run once for a piece: those of the method, and the border.
+    pub fn of_piece(&self) -> impl Iterator<Item = PassName> {
+        self.passes.iter().filter(|pass| pass.often == Often::Once).map(|pass| pass.name)
+    }
+
+    /// Whether the vertices of all chunks fit in one batch, and so stay from round to round and from frame to frame.
+    pub fn keeps_vertices(&self) -> bool {
+        self.batches.len() <= 1
+    }
+
+    /// How many facets exist. Cost: see [`Lattice::facets`]; nothing for a uniform lattice.
+    pub fn facets(&self, surface: &Surface) -> u64 {
+        match self.plan.detail {
+            Detail::Uniform(level) => surface.patches() * u64::from(level.subdivisions()).pow(2),
+            Detail::Adaptive { .. } => self.lattice.facets(surface.dem()),
+        }
+    }
+}
+
+/// Whether there is something to draw, on a page that can be.
+fn check(surface: &Surface, camera: &Camera) -> Result<()> {
+    Pieces::from([camera.width, camera.height]).check()?;
+    surface.dem().check_patches()
+}

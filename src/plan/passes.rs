@@ -1,0 +1,129 @@
+//! The passes of a frame by their names: which run, in which order, how often and how far.
+
+use super::{Border, Detail, Plan};
+
+/// A pass: the name of its shader, of its adapter, of its label and of its timer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum PassName {
+    /// Vertices on the surface.
+    Tessellate,
+    /// Vertices on sides shared with coarser chunks.
+    Seam,
+    /// One bit a facet.
+    Facing,
+    /// Vertices on the page.
+    Project,
+    /// Facets into the raster.
+    Rasterize,
+    /// Large and clipped facets into the raster.
+    RasterizeLarge,
+    /// Pixels between which a walk could meet an away facet, as far as chunks tell.
+    Candidates,
+    /// Those of them that the facets leave open.
+    Pairs,
+    /// Silhouettes by walking the lattice.
+    Walk,
+    /// The pairs that the walk leaves.
+    WalkRest,
+    /// Silhouettes by two depths.
+    TowardAway,
+    /// Silhouettes by facets that are no neighbours.
+    Adjacency,
+    /// The visible rim.
+    Border,
+    /// What is read back.
+    Compose,
+}
+
+/// How often a pass runs for a piece of a page.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Often {
+    /// In each round of each batch.
+    EachRound,
+    /// In the first round of each batch, and in later ones where other batches have overwritten its vertices.
+    ForVertices,
+    /// Once for each batch.
+    EachBatch,
+    /// Once.
+    Once,
+    /// Once, where the piece is read back.
+    OnReading,
+}
+
+/// How far a pass reaches.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Over {
+    /// The chunks whose vertices are not on the device yet.
+    FreshChunks,
+    /// The chunks of the batch.
+    Chunks,
+    /// Those of them that may appear.
+    SeenChunks,
+    /// The items of the list of this name.
+    List(&'static str),
+    /// The pixels of the piece.
+    Pixels,
+    /// The edges of the rim.
+    RimEdges,
+}
+
+/// A pass of a frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PlannedPass {
+    /// Which.
+    pub name: PassName,
+    /// How often it runs.
+    pub often: Often,
+    /// Over what.
+    pub over: Over,
+}
+
+impl PassName {
+    /// The name in `shaders/`, of label and timer.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Tessellate => "tessellate",
+            Self::Seam => "seam",
+            Self::Facing => "facing",
+            Self::Project => "project",
+            Self::Rasterize => "rasterize",
+            Self::RasterizeLarge => "rasterize_large",
+            Self::Candidates => "candidates",
+            Self::Pairs => "pairs",
+            Self::Walk => "walk",
+            Self::WalkRest => "walk_rest",
+            Self::TowardAway => "toward_away",
+            Self::Adjacency => "adjacency",
+            Self::Border => "border",
+            Self::Compose => "compose",
+        }
+    }
+
+    /// How often it runs, and how far.
+    fn planned(self) -> PlannedPass {
+        let (often, over) = match self {
+            Self::Tessellate | Self::Seam => (Often::ForVertices, Over::FreshChunks),
+            Self::Facing => (Often::EachBatch, Over::Chunks),
+            Self::Project => (Often::ForVertices, Over::SeenChunks),
+            Self::Rasterize => (Often::EachRound, Over::SeenChunks),
+            Self::RasterizeLarge => (Often::EachRound, Over::List("queue")),
+            Self::Pairs => (Often::Once, Over::List("candidates")),
+            Self::Walk => (Often::Once, Over::List("pairs")),
+            Self::WalkRest => (Often::Once, Over::List("rest")),
+            Self::Candidates | Self::TowardAway | Self::Adjacency => (Often::Once, Over::Pixels),
+            Self::Border => (Often::Once, Over::RimEdges),
+            Self::Compose => (Often::OnReading, Over::Pixels),
+        };
+        PlannedPass { name: self, often, over }
+    }
+}
+
+/// The passes that frames of a plan may run, in their order.
+pub fn passes(plan: &Plan) -> Vec<PlannedPass> {
+    use PassName::{Compose, Facing, Project, Rasterize, RasterizeLarge, Seam, Tessellate};
+    let seam: &[_] = if let Detail::Adaptive { .. } = plan.detail { &[Seam] } else { &[] };
+    let method = plan.method.entry().passes;
+    let border: &[_] = if plan.border == Border::On { &[PassName::Border] } else { &[] };
+    let names = [&[Tessellate], seam, &[Facing, Project, Rasterize, RasterizeLarge], method, border, &[Compose]];
+    names.concat().into_iter().map(PassName::planned).collect()
+}

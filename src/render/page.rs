@@ -1,0 +1,60 @@
+//! Pages of any size: drawn and read back piece by piece.
+
+use super::{Drawn, Renderer};
+use crate::error::Result;
+use crate::line::{Marks, marks};
+use crate::plan::{Frame, Piece, Plan};
+use crate::view::Camera;
+
+/// The ink of a frame on a page of any size.
+#[derive(Debug, Clone)]
+pub struct Page {
+    /// Ink, kind, sub-pixel place and depth.
+    pub marks: Marks,
+    /// How many pixels show land, inked or not.
+    pub covered: u64,
+    /// Nodes the longest walk visited; 0 for other methods.
+    pub longest_walk: u32,
+    /// What was drawn.
+    pub frame: Frame,
+}
+
+impl Renderer {
+    /// Draws a frame and brings back its ink, piece by piece; tells `progress` what share is done.
+    ///
+    /// # Errors
+    /// As [`Self::frame`] and [`Self::read`].
+    pub fn page(&mut self, plan: &Plan, camera: &Camera, progress: impl Fn(f64)) -> Result<Page> {
+        let frame = self.plan(plan, camera)?;
+        self.page_of(frame, progress)
+    }
+
+    /// The same of a frame that is planned, on a page that may be [cut](Frame::cut) in a way of its own.
+    ///
+    /// # Errors
+    /// As [`Self::page`].
+    pub fn page_of(&mut self, frame: Frame, progress: impl Fn(f64)) -> Result<Page> {
+        let (mut list, mut covered, mut longest_walk) = (Vec::new(), 0, 0);
+        let count = frame.pieces.iter().len() as f64;
+        self.upload(&frame)?;
+        for (done, piece) in (1..).zip(frame.pieces.iter()) {
+            self.passes(&frame, piece, None)?;
+            let drawn = self.read_piece(&frame, piece)?;
+            list.append(&mut marks::of_piece(&drawn.raster, piece));
+            covered += marks::covered(&drawn.raster, piece);
+            longest_walk = longest_walk.max(drawn.longest_walk);
+            progress(f64::from(done) / count);
+        }
+        Ok(Page { marks: Marks::new(frame.pieces.page(), list), covered, longest_walk, frame })
+    }
+
+    /// Draws a piece of a frame and brings it back, halo and all: `piece.drawn` of the page.
+    ///
+    /// # Errors
+    /// As [`Self::page`].
+    pub fn draw_piece(&mut self, frame: &Frame, piece: Piece) -> Result<Drawn> {
+        self.upload(frame)?;
+        self.passes(frame, piece, None)?;
+        self.read_piece(frame, piece)
+    }
+}

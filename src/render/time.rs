@@ -1,0 +1,53 @@
+//! Frames by the clock.
+
+use std::time::Instant;
+
+use super::Renderer;
+use crate::error::Result;
+use crate::gpu::Clock;
+use crate::gpu::clock::{FrameTime, Timer};
+use crate::plan::{Frame, Plan};
+use crate::view::Camera;
+
+impl Renderer {
+    /// Makes ready for frames of a plan on pages of the camera's size, so that the first one takes no longer than others:
+    /// compiles its passes, makes room, uploads the lattice of a uniform level.
+    ///
+    /// # Errors
+    /// As [`Self::frame`].
+    pub fn prepare(&mut self, plan: &Plan, camera: &Camera) -> Result<()> {
+        let frame = Frame::before_any(plan, &self.surface, camera, self.gpu.int64, &mut self.kept)?;
+        self.upload(&frame)?;
+        self.surface.dem().check()
+    }
+
+    /// Draws a frame and says how long each pass took, over all pieces, by the [`Clock`] of the device. By the wall clock
+    /// the whole is more than an undisturbed frame takes: see [`Self::time_of_frame`].
+    ///
+    /// # Errors
+    /// As [`Self::frame`]; [`Error::Gpu`](crate::error::Error::Gpu) when the driver's timestamps make no sense.
+    pub fn timed_frame(&mut self, plan: &Plan, camera: &Camera) -> Result<FrameTime> {
+        let frame = self.plan(plan, camera)?;
+        self.upload(&frame)?;
+        let time = frame.pieces.iter().try_fold(FrameTime::default(), |time, piece| {
+            let mut timer = Timer::new(&self.gpu);
+            self.passes(&frame, piece, Some(&mut timer))?;
+            Ok(time.and(&timer.read(&self.gpu)?))
+        })?;
+        self.surface.dem().check().map(|()| time)
+    }
+
+    /// Draws a frame and says how long it took, ms: by the wall clock around [`Self::frame`], or by the device's
+    /// timestamps from its first command to its last pass.
+    ///
+    /// # Errors
+    /// As [`Self::timed_frame`].
+    pub fn time_of_frame(&mut self, plan: &Plan, camera: &Camera) -> Result<f64> {
+        if self.gpu.clock == Clock::Timestamps {
+            return Ok(self.timed_frame(plan, camera)?.ms);
+        }
+        let start = Instant::now();
+        self.frame(plan, camera)?;
+        Ok(start.elapsed().as_secs_f64() * 1e3)
+    }
+}

@@ -1,0 +1,128 @@
+//! One renderer, kept warm: whatever it has drawn before, a frame has the bytes that a new renderer draws; what frames have in
+//! common is compiled and uploaded once; and memory does not grow.
+
+use std::collections::HashSet;
+use std::sync::Arc;
+
+use glam::DVec3;
+use hachure::gpu::{AdapterChoice, Gpu, Int64};
+use hachure::plan::{Border, Detail, Plan};
+use hachure::render::Renderer;
+use hachure::surface::{Surface, Tile};
+use hachure::view::Camera;
+
+use crate::frames::{METHODS, Planned};
+use crate::scenes::{Random, gpu, level, look, rough};
+use crate::tolerances::RESIDENT_BYTES;
+
+/// Frames that are drawn one after the other.
+const FRAMES: usize = 200;
+/// Sizes of their pages.
+const PAGES: [[u32; 2]; 4] = [[96, 64], [64, 96], [160, 90], [33, 47]];
+
+/// Each plan with each size once, then any.
+fn plan_of(i: usize, random: &mut Random) -> (Plan, [u32; 2]) {
+    let details: [Detail; 4] = [level(1).into(), Detail::Adaptive { error_px: 0.5 }, level(4).into(), level(2).into()];
+    let all = METHODS.len() * details.len() * 2;
+    let k = if i < all { i } else { random.below(all as u32) as usize };
+    let border = [Border::On, Border::Off][k / details.len() % 2];
+    let plan = Plan::new(details[k % details.len()], METHODS[k / details.len() / 2].1, border);
+    (plan, PAGES[random.below(PAGES.len() as u32) as usize])
+}
+
+/// From anywhere outside, towards somewhere inside.
+fn camera(surface: &Surface, random: &mut Random, size: [u32; 2]) -> Camera {
+    let [west, south, east, north] = surface.dem().extent();
+    let mut inside =
+        |low, high| DVec3::new(random.between(west, east), random.between(south, north), random.between(low, high));
+    let (target, eye) = (inside(0.0, 1.0), inside(150.0, 600.0));
+    look(eye, target, 60.0, size)
+}
+
+#[test]
+fn two_hundred_frames_of_changing_size_method_and_level_are_those_of_new_renderers() {
+    let gpu = Arc::new(Gpu::open(&AdapterChoice::Best, Int64::IfPresent).expect("an adapter"));
+    let surface = Arc::new(Surface::new(rough(70, 60, 1.0, 6.0, true)));
+    let mut warm = Renderer::new(gpu.clone(), surface.clone()).expect("a renderer");
+    let mut random = Random::new(29);
+    let (mut kinds, mut tiles, mut pages) = (HashSet::new(), HashSet::new(), HashSet::new());
+    let (mut bytes, mut resident) = (0, None);
+    for i in 0..FRAMES {
+        let (plan, size) = plan_of(i, &mut random);
+        let camera = camera(&surface, &mut random, size);
+        let compiled = gpu.compiled();
+        let drawn = warm.draw(&plan, &camera).expect("a frame").raster;
+        let frame = warm.last().expect("a frame").clone();
+        let is_new = kinds.insert(format!("{plan:?}"));
+        assert!(is_new || gpu.compiled() == compiled, "frame {i}: {plan:?} was compiled before");
+        tiles.extend(frame.lattice.chunks().iter().map(Tile::of));
+        assert_eq!(warm.on_device().scene.uploaded(), tiles.len() as u64, "frame {i}: a tile was uploaded twice");
+        let fresh = Planned::new(&gpu, &surface, plan).draw(&camera).expect("a frame").raster;
+        assert!(drawn == fresh, "frame {i}: {plan:?}, {camera:?} differs from that of a new renderer");
+        pages.insert(bytemuck::cast_slice::<_, u8>(&drawn.pixels).to_vec());
+        // All sizes were drawn by then, and all plans.
+        if i >= FRAMES / 2 {
+            bytes = bytes.max(warm.on_device().bytes());
+            resident = resident.or_else(resident_bytes);
+        }
+    }
+    assert_eq!(kinds.len(), METHODS.len() * 8, "not every plan was drawn");
+    assert!(pages.len() > FRAMES * 9 / 10, "{} pages, most are alike", pages.len());
+    let largest = PAGES.iter().map(|[width, height]| u64::from(width * height) * 36).max().expect("pages");
+    let scene = warm.on_device().scene.buffers().bytes();
+    assert!(bytes <= scene + largest + 4096, "{bytes} bytes on the device, {scene} of the scene");
+    let grown = resident_bytes().zip(resident).map(|(now, then)| now.saturating_sub(then));
+    println!("{FRAMES} frames, {} compiled, {} tiles, {bytes} bytes, grown by {grown:?}", gpu.compiled(), tiles.len());
+    assert!(grown.is_none_or(|grown| grown <= RESIDENT_BYTES), "{grown:?} bytes more than half-way");
+}
+
+/// What the process holds in memory; `None` where the system does not tell.
+fn resident_bytes() -> Option<u64> {
+    let text = std::fs::read_to_string("/proc/self/statm").ok()?;
+    text.split_whitespace().nth(1)?.parse::<u64>().ok().map(|pages| pages * 4096)
+}
+
+#[test]
+fn tiles_move_where_room_grows_and_are_not_uploaded_again() {
+    // 25 x 20 tiles of each kind, more than there is room for at first.
+    let surface = Arc::new(Surface::new(rough(400, 320, 1.0, 2.0, true)));
+    let mut warm = Renderer::new(gpu().clone(), surface.clone()).expect("a renderer");
+    let [west, south, east, north] = surface.dem().extent();
+    let middle = DVec3::new(west + east, south + north, 0.0) / 2.0;
+    let camera = look(middle + DVec3::new(-4000.0, -5000.0, 1500.0), middle, 60.0, [160, 120]);
+    let mut tiles = HashSet::new();
+    let plans: [Detail; 5] =
+        [Detail::Adaptive { error_px: 1.0 }, level(1).into(), level(2).into(), level(1).into(), Detail::default()];
+    let mut bytes = Vec::new();
+    for detail in plans {
+        let plan = Plan::new(detail, METHODS[0].1, Border::On);
+        let drawn = warm.draw(&plan, &camera).expect("a frame").raster;
+        tiles.extend(warm.last().expect("a frame").lattice.chunks().iter().map(Tile::of));
+        assert_eq!(warm.on_device().scene.uploaded(), tiles.len() as u64, "{detail:?}: a tile was uploaded twice");
+        assert!(drawn == Planned::new(gpu(), &surface, plan).draw(&camera).expect("a frame").raster, "{detail:?}");
+        bytes.push(warm.on_device().scene.buffers().bytes());
+    }
+    assert!(bytes[0] < bytes[1] && bytes[1] < bytes[2] && bytes[2] == bytes[3], "room did not grow: {bytes:?}");
+}
+
+#[test]
+fn a_renderer_goes_to_another_thread_and_frames_outlive_it() {
+    fn assert_send<T: Send>(of: T) -> T {
+        of
+    }
+    let surface = Arc::new(Surface::new(rough(30, 30, 1.0, 2.0, false)));
+    let mut renderer = assert_send(Renderer::new(gpu().clone(), surface.clone()).expect("a renderer"));
+    let plan = Plan::default();
+    let camera = camera(&surface, &mut Random::new(3), PAGES[0]);
+    // Its lattice is held while the next frame has another.
+    let first = renderer.frame(&plan, &camera).expect("a frame");
+    let turned = Camera { azimuth: camera.azimuth + 40.0, ..camera };
+    let (second, again) = std::thread::spawn(move || {
+        let second = renderer.frame(&plan, &turned).expect("a frame");
+        (second, renderer.frame(&plan, &camera).expect("a frame"))
+    })
+    .join()
+    .expect("no panic");
+    assert!(first.lattice.chunks() != second.lattice.chunks(), "frames are alike");
+    assert_eq!(first.lattice.chunks(), again.lattice.chunks());
+}
