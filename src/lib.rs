@@ -47,7 +47,7 @@
 //!
 //! | module | does |
 //! |---|---|
-//! | [`files`] | outputs that are whole or not there; which names mean one file |
+//! | [`files`] | outputs that are whole or not there, signals or not; which names mean one file |
 //! | [`cache`] | a folder of what took long to make: found again, capped, made by one process at a time |
 //! | [`dem`] | reads and holds the grid; alone knows GDAL |
 //! | [`surface`] | vertex normals, PN patches, the lattice and its IDs, bounds of chunks; what is kept of a DEM for them |

@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
-use hachure::gpu::Gpu;
 use hachure::gpu::buffers::Room;
 use hachure::gpu::sizes::{LIST_HEADER, RIM_EDGE_BYTES, written};
+use hachure::gpu::{Gpu, project};
 use hachure::measure::cost::{PassCost, Quantities, Traffic};
 use hachure::measure::costs;
 use hachure::plan::{Border, Detail, Method, Plan, Visibility};
@@ -319,4 +319,7 @@ fn buffers_hold_whole_items_as_shaders_lay_them_out() {
     }
     let missed: Vec<_> = items.keys().filter(|name| !seen.iter().any(|seen| seen == *name)).collect();
     assert!(missed.is_empty(), "no pass binds {missed:?}");
+    // A chunk that grows in the shader alone.
+    let grown = project::SOURCE.replacen("pad: u32,", "pad: u32, more: vec2<u32>,", 1);
+    assert_ne!(sizes["chunks"], chunks * bound("project", &grown)["chunks"].item);
 }
