@@ -52,7 +52,7 @@
 //!
 //! | module | does |
 //! |---|---|
-//! | [`files`] | outputs that are whole or not there; which names mean one file |
+//! | [`files`] | outputs that are whole or not there, signals or not; which names mean one file |
 //! | [`cache`] | a folder of what took long to make: found again, capped, made by one process at a time |
 //! | [`dem`] | the grid: held in memory, or read as it is asked for |
 //! | [`geo`] | rasters and systems of coordinates; alone knows GDAL, without which (`--no-default-features`) it reads nothing |

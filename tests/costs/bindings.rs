@@ -7,7 +7,7 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
 use hachure::gpu::sizes::{LIST_HEADER, RIM_EDGE_BYTES, of_page, of_scene};
-use hachure::gpu::{Capacity, Gpu};
+use hachure::gpu::{Capacity, Gpu, project};
 use hachure::measure::cost::{PassCost, Quantities, Traffic};
 use hachure::measure::costs;
 use hachure::plan::{Border, Detail, Method, Plan, Visibility};
@@ -321,4 +321,7 @@ fn buffers_hold_whole_items_as_shaders_lay_them_out() {
     }
     let missed: Vec<_> = items.keys().filter(|name| !seen.iter().any(|seen| seen == *name)).collect();
     assert!(missed.is_empty(), "no pass binds {missed:?}");
+    // A chunk that grows in the shader alone.
+    let grown = project::SOURCE.replacen("pad: u32,", "pad: u32, more: vec2<u32>,", 1);
+    assert_ne!(sizes["chunks"], chunks * bound("project", &grown)["chunks"].item);
 }

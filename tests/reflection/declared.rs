@@ -80,10 +80,11 @@ fn sources(folders: &[&str]) -> Vec<(String, String)> {
     found
 }
 
-/// Whether a source declares a constant of this name.
+/// Whether a source declares a number of this name: constants that are `Self` are none.
 fn declares(source: &str, name: &str) -> bool {
     let wanted = format!("const {name}:");
-    source.lines().any(|line| !line.trim_start().starts_with("//") && line.contains(&wanted))
+    let code = source.lines().filter(|line| !line.trim_start().starts_with("//"));
+    code.filter_map(|line| line.split_once(&wanted)).any(|(_, declared)| !declared.starts_with(" Self"))
 }
 
 /// Pipeline constants of a pass that nobody sets: neither its own source nor one of all passes says their names.
@@ -170,6 +171,7 @@ fn what_is_new_in_a_shader_is_noticed() {
         "of walk_rest alone"
     );
     assert!(declares("    pub const LEFT: i32 = 1;", "LEFT") && !declares("const LEFT_OUT: i32 = 1;", "LEFT"));
+    assert!(!declares("    pub const LEFT: Self = Self(1);", "LEFT") && !declares("// const LEFT: i32", "LEFT"));
     let reads = seam::SOURCE.replacen("out_places", "places_of_all", 99);
     assert!(std::panic::catch_unwind(|| bound("seam", &reads)).is_err(), "a buffer is written that is not called out_");
 }
