@@ -4,7 +4,11 @@ set -eu
 cd "$(dirname "$0")/.."
 cargo clippy --release --no-default-features --all-targets -- -D warnings
 RUSTDOCFLAGS="-D warnings" cargo doc --release --no-default-features --no-deps
-cargo test --release --no-default-features --test without_gdal | tee /dev/stderr | grep '^test result: ok. [1-9]' >/dev/null
+if ! said=$(cargo test --release --no-default-features --test without_gdal) ||
+    ! echo "$said" | grep '^test result: ok. [1-9]'; then
+    echo "$said"
+    exit 1
+fi
 loads_gdal() { readelf -d target/release/hachure | grep 'NEEDED.*libgdal'; }
 if loads_gdal; then
     echo "a hachure without GDAL loads it"
