@@ -101,7 +101,7 @@ impl Renderer {
         self.last = None;
         scene.load(gpu, surface, frame)?;
         page.fit(gpu, frame.pieces.largest())?;
-        stages.fit(gpu, surface.dem(), frame, scene, page)
+        stages.fit(gpu, frame, scene, page)
     }
 
     /// All passes over a piece of a frame, from clean buffers to its ink.

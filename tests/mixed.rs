@@ -7,7 +7,7 @@ use hachure::surface::lattice::{CELL_STEPS, CHUNK_QUADS, NORTH, Role, SOUTH, WES
 use hachure::surface::quadtree::{Growth, NO_SLOT};
 use hachure::surface::{Chunk, LatticePoint};
 
-use crate::scenes::Random;
+use crate::scenes::{Random, hashed};
 
 /// What a random lattice is to be.
 #[derive(Debug, Clone, Copy)]
@@ -82,7 +82,7 @@ pub fn lattice(dem: &Dem, kind: Kind, dropped: u32, random: &mut Random) -> Latt
     let salt = random.bits();
     let keep = |origin: [u32; 2], step| {
         let seed = (u64::from(origin[0]) << 32 | u64::from(origin[1])) ^ u64::from(salt) << 16;
-        let drops = dropped > 0 && Random::of_any(seed).between(0.0, f64::from(dropped)) < 1.0;
+        let drops = dropped > 0 && hashed(seed) * f64::from(dropped) < 1.0;
         (!drops && holds_facet(dem, origin, step)).then_some(Role::Seen)
     };
     let tree = Lattice::grow(dem, kind.steps[0], from, &mut Chance { dem, random, kind }).expect("few chunks");

@@ -10,7 +10,6 @@ use super::scene::Scene;
 use super::uniforms::BatchUniform;
 use super::{adjacency, border, candidates, compose, facing, pairs, project, rasterize, rasterize_large};
 use super::{seam, tessellate, toward_away, walk, walk_rest};
-use crate::dem::Dem;
 use crate::error::{Error, Result};
 use crate::plan::batches::PART_CHUNKS;
 use crate::plan::passes::{Often, PlannedPass, passes};
@@ -53,7 +52,7 @@ impl Stages {
     ///
     /// # Errors
     /// See [`Gpu::pass`] and [`Pass::bind`].
-    pub fn fit(&mut self, gpu: &Gpu, dem: &Dem, frame: &Frame, scene: &Scene, page: &PageBuffers) -> Result<()> {
+    pub fn fit(&mut self, gpu: &Gpu, frame: &Frame, scene: &Scene, page: &PageBuffers) -> Result<()> {
         let Plan { method, thrift, .. } = frame.plan;
         let made_for = MadeFor {
             passes: passes(&frame.plan),
@@ -66,7 +65,7 @@ impl Stages {
             return Ok(());
         }
         *self = Self::default();
-        let passes = compile(gpu, dem, frame, &made_for.passes)?;
+        let passes = compile(gpu, frame, &made_for.passes)?;
         let rounds = frame.visibility.rounds();
         // A frame without chunks has no batch, but passes that bind one.
         let none = [Batch { first_slot: 0, chunks: 0 }];
@@ -145,8 +144,8 @@ impl Bound<'_> {
 }
 
 /// Compiles passes of a frame: those of batches beside those of a piece.
-fn compile(gpu: &Gpu, dem: &Dem, frame: &Frame, passes: &[PlannedPass]) -> Result<Vec<Arc<Pass>>> {
-    let constants = constants(dem, frame);
+fn compile(gpu: &Gpu, frame: &Frame, passes: &[PlannedPass]) -> Result<Vec<Arc<Pass>>> {
+    let constants = constants(frame);
     let of_piece = passes.iter().position(|pass| matches!(pass.often, Often::Once | Often::OnReading));
     let (of_batches, of_piece) = passes.split_at(of_piece.unwrap_or(passes.len()));
     let all = |passes: &[PlannedPass]| passes.iter().map(|p| pass(gpu, frame, p.name, &constants)).collect();
@@ -155,11 +154,11 @@ fn compile(gpu: &Gpu, dem: &Dem, frame: &Frame, passes: &[PlannedPass]) -> Resul
 }
 
 /// What all shaders may depend on.
-fn constants(dem: &Dem, frame: &Frame) -> [(&'static str, f64); 5] {
+fn constants(frame: &Frame) -> [(&'static str, f64); 5] {
     let flag = |on: bool| f64::from(u8::from(on));
     let Plan { method, thrift, .. } = frame.plan;
     [
-        ("has_voids", flag(dem.voids() > 0)),
+        ("has_voids", flag(frame.tests_voids)),
         // In how many parts facing bits lie.
         ("facing_parts", f64::from(frame.batches.last().map_or(0, Batch::part) + 1)),
         ("two_depths", flag(frame.visibility == Visibility::TwoDepths)),

@@ -28,6 +28,8 @@ pub struct Frame {
     pub visibility: Visibility,
     /// The passes that run, in their order.
     pub passes: Vec<PlannedPass>,
+    /// Whether passes look whether samples are void.
+    pub tests_voids: bool,
     /// What it does without, in the order of telling.
     pub(super) omissions: Vec<Omission>,
 }
@@ -93,6 +95,7 @@ impl Frame {
             batches: batches(chunks),
             visibility,
             passes: passes(plan),
+            tests_voids: surface.dem().voids() > 0,
             omissions: match (plan.detail, plan.thrift) {
                 (Detail::Adaptive { .. }, _) => vec![Omission::FineFacets, Omission::Rasterizing, Omission::Samples],
                 (Detail::Uniform(_), Thrift::LeaveOut) => vec![Omission::Chunks],
@@ -100,20 +103,21 @@ impl Frame {
             },
             lattice,
         };
-        frame.leave_out(surface);
+        frame.leave_out();
         frame
     }
 
     /// Leaves out the passes and tests that would find nothing to do.
-    fn leave_out(&mut self, surface: &Surface) {
-        if !self.lattice.has_seams() {
+    fn leave_out(&mut self) {
+        let has_seams = matches!(self.plan.detail, Detail::Adaptive { .. }) && self.lattice.has_seams();
+        if !has_seams {
             self.passes.retain(|pass| pass.name != PassName::Seam);
             self.omissions.push(Omission::SeamPass);
         }
         if self.plan.border == Border::Off {
             self.omissions.push(Omission::BorderPass);
         }
-        if surface.dem().voids() == 0 {
+        if !self.tests_voids {
             self.omissions.push(Omission::VoidTests);
         }
     }
