@@ -6,20 +6,20 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::device::Gpu;
-use super::pass::{Override, Pass, reflect, select};
+use super::pass::{Pass, Reflection, reflect, select};
 use crate::error::Result;
 
 /// What a pass is compiled of: its name, its source, and the bits of the constants on which it depends.
 type Key = (Shader, Vec<(String, u64)>);
 /// The entry point and its composed source.
-type Shader = (&'static str, Cow<'static, str>);
+pub(super) type Shader = (&'static str, Cow<'static, str>);
 /// A pass, once it is there. Who compiles it holds the lock, so that others wait for it.
 type Slot = Arc<Mutex<Option<Arc<Pass>>>>;
 
 /// Compiled passes.
 #[derive(Default)]
 pub(super) struct Compiled {
-    overrides: Mutex<HashMap<Shader, Arc<[Override]>>>,
+    shaders: Mutex<HashMap<Shader, Arc<Reflection>>>,
     passes: Mutex<HashMap<Key, Slot>>,
     count: AtomicUsize,
 }
@@ -34,7 +34,8 @@ impl Compiled {
         constants: &[(&str, f64)],
     ) -> Result<Arc<Pass>> {
         let shader = (name, source);
-        let constants = select(name, &self.overrides(&shader)?, constants)?;
+        let reflection = self.reflection(&shader)?;
+        let constants = select(name, &reflection.overrides, constants)?;
         let bits = constants.iter().map(|(name, value)| ((*name).to_owned(), value.to_bits())).collect();
         let slot = lock(&self.passes).entry((shader.clone(), bits)).or_default().clone();
         let mut slot = lock(&slot);
@@ -42,7 +43,7 @@ impl Compiled {
             return Ok(pass.clone());
         }
         self.count.fetch_add(1, Ordering::Relaxed);
-        let pass = Arc::new(Pass::compile(gpu, name, &shader.1, &constants)?);
+        let pass = Arc::new(Pass::compile(gpu, shader, &reflection, &constants)?);
         *slot = Some(pass.clone());
         Ok(pass)
     }
@@ -52,13 +53,14 @@ impl Compiled {
         self.count.load(Ordering::Relaxed)
     }
 
-    fn overrides(&self, shader: &Shader) -> Result<Arc<[Override]>> {
-        if let Some(overrides) = lock(&self.overrides).get(shader) {
-            return Ok(overrides.clone());
+    /// What a shader says, read once.
+    fn reflection(&self, shader: &Shader) -> Result<Arc<Reflection>> {
+        if let Some(reflection) = lock(&self.shaders).get(shader) {
+            return Ok(reflection.clone());
         }
-        let overrides: Arc<[Override]> = reflect(shader.0, &shader.1)?.overrides.into();
-        lock(&self.overrides).insert(shader.clone(), overrides.clone());
-        Ok(overrides)
+        let reflection = Arc::new(reflect(shader.0, &shader.1)?);
+        lock(&self.shaders).insert(shader.clone(), reflection.clone());
+        Ok(reflection)
     }
 }
 

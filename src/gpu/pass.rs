@@ -5,6 +5,7 @@
 
 use wgpu::naga;
 
+use super::compiled::Shader;
 use super::device::{Gpu, one_line};
 use crate::error::{Error, Result};
 
@@ -112,16 +113,20 @@ fn mistake(name: &str, what: impl std::fmt::Display) -> Error {
 }
 
 impl Pass {
-    /// Compiles the entry point `name` of a composed shader with these pipeline constants, see [`select`]. Passes of frames
-    /// come from [`Gpu::pass`], which compiles each once.
+    /// Compiles the entry point of a composed shader, of which [`reflect`] says this, with these pipeline constants, see
+    /// [`select`]. Passes of frames come from [`Gpu::pass`], which compiles each once.
     ///
     /// # Errors
-    /// [`Error::Mistake`] when the shader is wrong, [`Error::Gpu`] when the driver refuses.
-    pub(super) fn compile(gpu: &Gpu, name: &'static str, source: &str, constants: &[(&str, f64)]) -> Result<Self> {
-        let reflection = reflect(name, source)?;
+    /// [`Error::Gpu`] when the driver refuses.
+    pub(super) fn compile(
+        gpu: &Gpu,
+        (name, source): Shader,
+        reflection: &Reflection,
+        constants: &[(&str, f64)],
+    ) -> Result<Self> {
         let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(name),
-            source: wgpu::ShaderSource::Wgsl(source.into()),
+            source: wgpu::ShaderSource::Wgsl(source),
         });
         let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some(name),
@@ -136,7 +141,7 @@ impl Pass {
             cache: None,
         });
         gpu.check()?;
-        Ok(Self { name, workgroup: reflection.workgroup, pipeline, bindings: reflection.bindings })
+        Ok(Self { name, workgroup: reflection.workgroup, pipeline, bindings: reflection.bindings.clone() })
     }
 
     /// Binds every global of the pass to the resource of its name.
