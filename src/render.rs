@@ -110,7 +110,7 @@ impl Renderer {
         let mut work = Work::new(self.on_device(), frame, piece, timer);
         work.clear(&["pixels", "ink", "summaries", "counts"])?;
         work.clear(frame.plan.method.entry().words)?;
-        for list in ["candidates", "pairs", "rest"] {
+        for list in frame.lists() {
             work.empty(list, "no_pixels")?;
         }
         for round in 0..frame.visibility.rounds() {

@@ -28,13 +28,15 @@ pub fn costs(renderer: &Renderer, drawn: &Drawn) -> Result<Vec<PassCost>> {
         let header: Vec<u32> = renderer.gpu().read(on_device.buffer(list)?, 4)?;
         Ok(header.last().copied().unwrap_or_default().into())
     };
+    // Lists of other methods hold what their frames left.
+    let listed = |list| if frame.lists().any(|of_frame| of_frame == list) { count(list) } else { Ok(0) };
     let pixels = &drawn.raster.pixels;
     let quantities = Quantities {
         pixels: pixels.len() as u64,
         land: pixels.iter().filter(|pixel| pixel.kind() != Kind::Sky).count() as u64,
         batches: frame.batches.len() as u64,
         queued: count("queue")?,
-        listed: [count("candidates")?, count("pairs")?, count("rest")?],
+        listed: [listed("candidates")?, listed("pairs")?, listed("rest")?],
         rim: if plan.border == Border::On { on_device.scene.rim_edges() as u64 } else { 0 },
         ..of_lattice
     };

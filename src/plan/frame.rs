@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::left_out::Omission;
-use super::passes::{Often, PassName, PlannedPass, passes};
+use super::passes::{Often, Over, PassName, PlannedPass, passes};
 use super::{Batch, Border, Detail, Pieces, Plan, Thrift, Visibility, batches, detail};
 use crate::error::Result;
 use crate::surface::{Lattice, Level, Surface};
@@ -97,6 +97,7 @@ impl Frame {
             passes: passes(plan),
             tests_voids: surface.dem().voids() > 0,
             omissions: match (plan.detail, plan.thrift) {
+                (Detail::Adaptive { .. }, _) if all_seen => vec![Omission::FineFacets, Omission::Samples],
                 (Detail::Adaptive { .. }, _) => vec![Omission::FineFacets, Omission::Rasterizing, Omission::Samples],
                 (Detail::Uniform(_), Thrift::LeaveOut) => vec![Omission::Chunks],
                 (Detail::Uniform(_), Thrift::Nothing) => Vec::new(),
@@ -144,6 +145,12 @@ impl Frame {
     /// The passes that run once for a piece: those of the method, and the border.
     pub fn of_piece(&self) -> impl Iterator<Item = PassName> {
         self.passes.iter().filter(|pass| pass.often == Often::Once).map(|pass| pass.name)
+    }
+
+    /// The lists of pixels that these fill and go over.
+    pub fn lists(&self) -> impl Iterator<Item = &'static str> {
+        let of_piece = self.passes.iter().filter(|pass| pass.often == Often::Once);
+        of_piece.filter_map(|pass| if let Over::List(name) = pass.over { Some(name) } else { None })
     }
 
     /// Whether the vertices of all chunks fit in one batch, and so stay from round to round and from frame to frame.
