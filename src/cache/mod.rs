@@ -202,11 +202,11 @@ pub fn not_kept(key: &Key, why: &Error) -> Message {
         other => other.to_string(),
     };
     let what = format!("{} is not cached: {why}; give another folder with ", key.kind.words[0]);
-    message![what, Setting::Cache.at("DIR")]
+    message![what, Setting::Cache.with_value()]
 }
 
 fn strange(path: &Path, what: &str) -> Message {
     let what =
         format!("{}: {what} stands in the place of a cached file and is not used; remove it, or give ", shown(path));
-    message![what, Setting::Cache.at("DIR")]
+    message![what, Setting::Cache.with_value()]
 }

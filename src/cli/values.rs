@@ -119,18 +119,10 @@ pub fn metres(text: &str) -> Result<f64, String> {
     number(text).and_then(|m| if m > 0.0 { Ok(m) } else { Err("want metres above 0".into()) })
 }
 
-/// `m`, `dm`, `cm`, `mm`, `km`, `ft` or `us-ft`.
+/// The symbol of a unit.
 pub fn elevation_unit(text: &str) -> Result<ElevationUnit, String> {
-    match text {
-        "m" => Ok(ElevationUnit::METRE),
-        "dm" => Ok(ElevationUnit::DECIMETRE),
-        "cm" => Ok(ElevationUnit::CENTIMETRE),
-        "mm" => Ok(ElevationUnit::MILLIMETRE),
-        "km" => Ok(ElevationUnit::KILOMETRE),
-        "ft" => Ok(ElevationUnit::FOOT),
-        "us-ft" => Ok(ElevationUnit::US_FOOT),
-        _ => Err("want m, dm, cm, mm, km, ft or us-ft".into()),
-    }
+    let named = ElevationUnit::ALL.into_iter().find(|unit| unit.name() == text);
+    named.ok_or_else(|| format!("want {}", ElevationUnit::any()))
 }
 
 /// `V`, `A..B`, or several of them with commas between.

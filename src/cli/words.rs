@@ -1,6 +1,9 @@
 //! What the core says, in the words of the command line: flags in the place of settings, remedies, exit codes.
 
-use crate::error::{Error, Message, Setting, shown};
+use clap::CommandFactory;
+
+use super::Arguments;
+use crate::error::{Error, Form, Message, Setting, shown};
 
 /// Exit code for "try again".
 pub const TRY_AGAIN: u8 = 75;
@@ -8,7 +11,6 @@ pub const TRY_AGAIN: u8 = 75;
 /// How a setting is typed.
 pub fn flag(setting: Setting) -> &'static str {
     match setting {
-        Setting::Adapter => "--adapter",
         Setting::AllowRemote => "--allow-remote",
         Setting::Altitude => "--altitude",
         Setting::Azimuth => "--azimuth",
@@ -32,7 +34,6 @@ pub fn flag(setting: Setting) -> &'static str {
         Setting::LookAt => "--look-at",
         Setting::Mask => "--mask",
         Setting::Memory => "--memory",
-        Setting::Method => "--method",
         Setting::Methods => "--methods",
         Setting::Nodata => "--nodata",
         Setting::Output => "--output",
@@ -45,11 +46,23 @@ pub fn flag(setting: Setting) -> &'static str {
     }
 }
 
+/// A value of the user's own for a setting, as the help has it.
+fn placeholder(setting: Setting) -> String {
+    let command = Arguments::command();
+    let typed = flag(setting);
+    let mut flags = command.get_subcommands().flat_map(clap::Command::get_arguments);
+    let known = flags.find(|known| known.get_long().is_some_and(|long| typed.strip_prefix("--") == Some(long)));
+    let values = known.and_then(clap::Arg::get_value_names);
+    values.and_then(<[_]>::first).map_or_else(|| typed.to_owned(), ToString::to_string)
+}
+
 /// A message with flags.
 pub fn told(message: &Message) -> String {
-    message.told(|setting, value| match value {
-        Some(value) => format!("{} {value}", flag(setting)),
-        None => flag(setting).to_owned(),
+    message.told(|setting, form| match form {
+        Form::Name => flag(setting).to_owned(),
+        Form::At(value) => format!("{} {value}", flag(setting)),
+        Form::WithValue => format!("{} {}", flag(setting), placeholder(setting)),
+        Form::Value => placeholder(setting),
     })
 }
 
@@ -89,10 +102,20 @@ fn way_out(what: &str) -> &'static str {
 mod tests {
     use std::collections::HashSet;
 
-    use clap::CommandFactory;
-
-    use super::super::Arguments;
     use super::*;
+    use crate::message;
+
+    #[test]
+    fn values_of_the_users_own_stand_as_in_the_help() {
+        let settings = [Setting::Band, Setting::Cell, Setting::Resample, Setting::Cache, Setting::Crop];
+        assert_eq!(
+            settings.map(|setting| told(&setting.with_value().into())),
+            ["--band N", "--cell M", "--resample M", "--cache DIR", "--crop E0,N0,E1,N1"]
+        );
+        let within = message!["give ", Setting::Crop.value(), " within 1,2,3,4 m"];
+        assert_eq!(told(&within), "give E0,N0,E1,N1 within 1,2,3,4 m");
+        assert_eq!(placeholder(Setting::Dem), "DEM");
+    }
 
     #[test]
     fn every_setting_is_a_flag_that_can_be_typed() {

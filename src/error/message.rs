@@ -7,164 +7,127 @@ use std::fmt::{self, Display, Formatter};
 
 use super::plain;
 
-/// What a user of this library may set.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
-pub enum Setting {
-    /// Which adapter is opened.
-    Adapter,
+/// The settings, from one list: what each is, and its name in words.
+macro_rules! settings {
+    ($($(#[$doc:meta])+ $setting:ident = $name:literal,)+) => {
+        /// What a user of this library may set. Some belong to no function of the library but to programs over it, which
+        /// name several outputs, say: [`files::Taken`](crate::files::Taken) speaks of those.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+        pub enum Setting {
+            $($(#[$doc])+ $setting,)+
+        }
+
+        impl Setting {
+            /// All of them.
+            pub const ALL: [Self; [$($name),+].len()] = [$(Self::$setting),+];
+        }
+
+        /// The name, in words.
+        impl Display for Setting {
+            fn fmt(&self, to: &mut Formatter<'_>) -> fmt::Result {
+                to.write_str(match self {
+                    $(Self::$setting => $name,)+
+                })
+            }
+        }
+    };
+}
+
+settings! {
     /// Whether files on a network are opened.
-    AllowRemote,
+    AllowRemote = "allow remote",
     /// Degrees above the horizon.
-    Altitude,
+    Altitude = "altitude",
     /// Degrees clockwise from north.
-    Azimuth,
+    Azimuth = "azimuth",
     /// The band with the elevations.
-    Band,
+    Band = "band",
     /// Whether the rim is drawn.
-    Border,
+    Border = "border",
     /// The folder in which things are kept.
-    Cache,
+    Cache = "cache",
     /// Metres between samples of files that do not say.
-    Cell,
+    Cell = "cell",
     /// The part that is taken.
-    Crop,
+    Crop = "crop",
     /// The coordinate system of places that are given.
-    Crs,
+    Crs = "CRS",
     /// The file or files of the DEM.
-    Dem,
+    Dem = "DEM",
     /// Where the eye stands, on the map.
-    Eye,
+    Eye = "eye",
     /// What the numbers of a file stand for.
-    Encoding,
+    Encoding = "encoding",
     /// The unit of elevations.
-    ElevationUnit,
+    ElevationUnit = "elevation unit",
     /// How far facets may deviate on the page.
-    ErrorPx,
+    ErrorPx = "error in px",
     /// Factor on elevations.
-    Exaggeration,
+    Exaggeration = "exaggeration",
     /// Whether voids are filled.
-    FillVoids,
+    FillVoids = "fill voids",
     /// The file of what was done.
-    Json,
+    Json = "JSON file",
     /// How fine facets are.
-    Level,
+    Level = "level",
     /// Several of them.
-    Levels,
+    Levels = "levels",
     /// Where the eye stands, on the globe.
-    LonLat,
+    LonLat = "longitude and latitude",
     /// What the middle of the page shows.
-    LookAt,
+    LookAt = "look-at",
     /// The file of the mask.
-    Mask,
+    Mask = "mask file",
     /// Bytes for samples and normals.
-    Memory,
-    /// How silhouettes are found.
-    Method,
+    Memory = "memory",
     /// Several methods.
-    Methods,
+    Methods = "methods",
     /// Numbers that are no data.
-    Nodata,
+    Nodata = "nodata",
     /// The file or folder that is written.
-    Output,
+    Output = "output",
     /// Metres of the cells that are resampled to.
-    Resample,
+    Resample = "resample",
     /// What neighbouring facets share.
-    Share,
+    Share = "share",
     /// Pixels of the page.
-    Size,
+    Size = "size",
     /// Several pages.
-    Sizes,
+    Sizes = "sizes",
     /// The file of views.
-    Views,
+    Views = "file of views",
     /// Whether away surface counts wherever it touches.
-    Wide,
+    Wide = "wide",
 }
 
 impl Setting {
-    /// All of them.
-    pub const ALL: [Self; 34] = [
-        Self::Adapter,
-        Self::AllowRemote,
-        Self::Altitude,
-        Self::Azimuth,
-        Self::Band,
-        Self::Border,
-        Self::Cache,
-        Self::Cell,
-        Self::Crop,
-        Self::Crs,
-        Self::Dem,
-        Self::Eye,
-        Self::Encoding,
-        Self::ElevationUnit,
-        Self::ErrorPx,
-        Self::Exaggeration,
-        Self::FillVoids,
-        Self::Json,
-        Self::Level,
-        Self::Levels,
-        Self::LonLat,
-        Self::LookAt,
-        Self::Mask,
-        Self::Memory,
-        Self::Method,
-        Self::Methods,
-        Self::Nodata,
-        Self::Output,
-        Self::Resample,
-        Self::Share,
-        Self::Size,
-        Self::Sizes,
-        Self::Views,
-        Self::Wide,
-    ];
-
     /// The setting at this value.
     pub fn at(self, value: impl Display) -> Part {
-        Part::Setting(self, Some(value.to_string()))
+        Part::Setting(self, Form::At(value.to_string()))
+    }
+
+    /// The setting at a value of the user's own.
+    pub fn with_value(self) -> Part {
+        Part::Setting(self, Form::WithValue)
+    }
+
+    /// A value of the user's own for the setting, which is not named.
+    pub fn value(self) -> Part {
+        Part::Setting(self, Form::Value)
     }
 }
 
-/// The name, in words.
-impl Display for Setting {
-    fn fmt(&self, to: &mut Formatter<'_>) -> fmt::Result {
-        to.write_str(match self {
-            Self::Adapter => "adapter",
-            Self::AllowRemote => "allow remote",
-            Self::Altitude => "altitude",
-            Self::Azimuth => "azimuth",
-            Self::Band => "band",
-            Self::Border => "border",
-            Self::Cache => "cache",
-            Self::Cell => "cell",
-            Self::Crop => "crop",
-            Self::Crs => "CRS",
-            Self::Dem => "DEM",
-            Self::Eye => "eye",
-            Self::Encoding => "encoding",
-            Self::ElevationUnit => "elevation unit",
-            Self::ErrorPx => "error in px",
-            Self::Exaggeration => "exaggeration",
-            Self::FillVoids => "fill voids",
-            Self::Json => "JSON file",
-            Self::Level => "level",
-            Self::Levels => "levels",
-            Self::LonLat => "longitude and latitude",
-            Self::LookAt => "look-at",
-            Self::Mask => "mask file",
-            Self::Memory => "memory",
-            Self::Method => "method",
-            Self::Methods => "methods",
-            Self::Nodata => "nodata",
-            Self::Output => "output",
-            Self::Resample => "resample",
-            Self::Share => "share",
-            Self::Size => "size",
-            Self::Sizes => "sizes",
-            Self::Views => "file of views",
-            Self::Wide => "wide",
-        })
-    }
+/// How much of a setting stands in a message.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum Form {
+    /// Itself.
+    Name,
+    /// Itself, at this value.
+    At(String),
+    /// Itself, at a value of the user's own.
+    WithValue,
+    /// Such a value alone.
+    Value,
 }
 
 /// A piece of a message.
@@ -172,8 +135,8 @@ impl Display for Setting {
 pub enum Part {
     /// As they are.
     Words(String),
-    /// A setting and, where one is meant, its value.
-    Setting(Setting, Option<String>),
+    /// A setting, and how much of it is said.
+    Setting(Setting, Form),
 }
 
 /// Words and settings in the order of a sentence; see [`message!`](crate::message).
@@ -181,11 +144,6 @@ pub enum Part {
 pub struct Message(Vec<Part>);
 
 impl Message {
-    /// Its pieces, one after the other.
-    pub fn parts(&self) -> &[Part] {
-        &self.0
-    }
-
     /// Adds another at the end.
     pub fn push(&mut self, more: impl Into<Self>) {
         self.0.append(&mut more.into().0);
@@ -195,16 +153,17 @@ impl Message {
     pub(crate) fn plain(self) -> Self {
         let piece = |part| match part {
             Part::Words(words) => Part::Words(plain(words)),
-            Part::Setting(setting, value) => Part::Setting(setting, value.map(plain)),
+            Part::Setting(setting, Form::At(value)) => Part::Setting(setting, Form::At(plain(value))),
+            other @ Part::Setting(..) => other,
         };
         Self(self.0.into_iter().map(piece).collect())
     }
 
     /// The sentence, with `spelled` in the place of settings.
-    pub fn told(&self, spelled: impl Fn(Setting, Option<&str>) -> String) -> String {
+    pub fn told(&self, spelled: impl Fn(Setting, &Form) -> String) -> String {
         let piece = |part: &Part| match part {
             Part::Words(words) => words.clone(),
-            Part::Setting(setting, value) => spelled(*setting, value.as_deref()),
+            Part::Setting(setting, form) => spelled(*setting, form),
         };
         self.0.iter().map(piece).collect()
     }
@@ -213,9 +172,9 @@ impl Message {
 /// Settings by their names.
 impl Display for Message {
     fn fmt(&self, to: &mut Formatter<'_>) -> fmt::Result {
-        to.write_str(&self.told(|setting, value| match value {
-            Some(value) => format!("{setting} {value}"),
-            None => setting.to_string(),
+        to.write_str(&self.told(|setting, form| match form {
+            Form::At(value) => format!("{setting} {value}"),
+            Form::Name | Form::WithValue | Form::Value => setting.to_string(),
         }))
     }
 }
@@ -240,7 +199,7 @@ impl From<&str> for Message {
 
 impl From<Setting> for Message {
     fn from(setting: Setting) -> Self {
-        Part::Setting(setting, None).into()
+        Part::Setting(setting, Form::Name).into()
     }
 }
 
@@ -263,8 +222,11 @@ mod tests {
         let more = format!(" (it is {} MiB)", 3);
         let message = message!["give ", Setting::Memory.at("4MiB"), more, ", or use ", Setting::Crop];
         assert_eq!(message.to_string(), "give memory 4MiB (it is 3 MiB), or use crop");
-        let told = message.told(|setting, value| format!("<{setting:?}{}>", value.unwrap_or_default()));
-        assert_eq!(told, "give <Memory4MiB> (it is 3 MiB), or use <Crop>");
+        let told = message.told(|setting, form| format!("<{setting:?} {form:?}>"));
+        assert_eq!(told, "give <Memory At(\"4MiB\")> (it is 3 MiB), or use <Crop Name>");
+        let own = message!["say ", Setting::Cell.with_value(), " or ", Setting::Crop.value()];
+        assert_eq!(own.to_string(), "say cell or crop");
+        assert_eq!(own.told(|setting, form| format!("<{setting:?} {form:?}>")), "say <Cell WithValue> or <Crop Value>");
     }
 
     #[test]

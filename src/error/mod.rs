@@ -5,7 +5,7 @@ mod message;
 
 use std::path::{Path, PathBuf};
 
-pub use message::{Message, Part, Setting};
+pub use message::{Form, Message, Part, Setting};
 
 /// `Result` with this crate's [`Error`].
 pub type Result<T> = std::result::Result<T, Error>;

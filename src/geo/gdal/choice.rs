@@ -112,7 +112,7 @@ impl Source {
             let called = if rank(name) < NEUTRAL { format!(", called {name}") } else { String::new() };
             history.assume(message![
                 format!("elevations are in band {band} of {count}{called} ({all}choose another with "),
-                Setting::Band.at("N"),
+                Setting::Band.with_value(),
                 ")"
             ]);
         }

@@ -207,9 +207,9 @@ fn factor(source: &Source, crs: &Crs, unit: Option<ElevationUnit>, history: &mut
             (known, format!("\"{name}\"").into())
         }
         (None, None) => {
-            let feet = Setting::ElevationUnit.at("ft");
-            let clause =
-                message!["elevations are metres (no unit is named; if they are feet, say ", feet, " or us-ft)"];
+            let feet = Setting::ElevationUnit.at(ElevationUnit::FOOT.name());
+            let or = format!(" or {})", ElevationUnit::US_FOOT.name());
+            let clause = message!["elevations are metres (no unit is named; if they are feet, say ", feet, or];
             // Beside feet on the map metres are a surprise.
             match crs.metres_per_unit() {
                 None | Some(1.0) => history.assume_as_usual(clause),
@@ -256,7 +256,7 @@ fn metres_per(unit: &str) -> Option<f64> {
 
 fn unknown_unit(source: &Source, unit: &str) -> Error {
     let what = format!("its elevations are in \"{unit}\", which is no known unit of length");
-    source.error(what, message!["say which it is with ", Setting::ElevationUnit, " m, dm, cm, mm, km, ft or us-ft"])
+    source.error(what, message!["say which it is with ", Setting::ElevationUnit.at(ElevationUnit::any())])
 }
 
 #[cfg(test)]

@@ -278,7 +278,7 @@ fn has_no_place(source: &Source) -> Error {
     }
     source.error(
         "does not say where it lies (no geotransform)",
-        message!["give the size of its cells in metres with ", Setting::Cell.at("M")],
+        message!["give the size of its cells in metres with ", Setting::Cell.with_value()],
     )
 }
 
@@ -287,7 +287,7 @@ fn has_no_place_beside(source: &Source) -> Error {
         "does not say where it lies (no geotransform), so it cannot be laid beside others",
         message![
             "draw it alone with ",
-            Setting::Cell.at("M"),
+            Setting::Cell.with_value(),
             ", or place it: `gdal_translate -a_srs EPSG:CODE -a_ullr WEST NORTH EAST SOUTH IN OUT.tif`"
         ],
     )

@@ -131,7 +131,13 @@ fn check_memory(path: &Path, needed: u64, available: Option<u64>) -> Result<()> 
     match available {
         Some(available) if available < needed => Err(Error::limit(
             format!("{}: needs {} MiB of memory, {} MiB are free", shown(path), needed >> 20, available >> 20),
-            message!["use ", Setting::Crop, " to take a part, or ", Setting::Resample.at("M"), " for larger cells"],
+            message![
+                "use ",
+                Setting::Crop,
+                " to take a part, or ",
+                Setting::Resample.with_value(),
+                " for larger cells"
+            ],
         )),
         _ => Ok(()),
     }

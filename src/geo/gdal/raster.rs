@@ -84,7 +84,7 @@ fn out_of_memory(grid: &Grid, words: &str) -> Error {
     let words = words.lines().next().unwrap_or_default();
     Error::limit(
         format!("{} x {} samples cannot be held and warped in memory ({words})", grid.columns, grid.rows),
-        message!["use ", Setting::Crop, " to take a part, or ", Setting::Resample.at("M"), " for larger cells"],
+        message!["use ", Setting::Crop, " to take a part, or ", Setting::Resample.with_value(), " for larger cells"],
     )
 }
 
@@ -100,6 +100,6 @@ mod tests {
         let grid = Grid { crs: Crs::unknown(), to_crs: DAffine2::IDENTITY, columns: 1 << 30, rows: 1 << 30 };
         let said = Raster::void(grid).err().map(|e| e.to_string()).unwrap_or_default();
         assert!(said.starts_with("1073741824 x 1073741824 samples cannot be held"), "{said}");
-        assert!(said.ends_with("use crop to take a part, or resample M for larger cells"), "{said}");
+        assert!(said.ends_with("use crop to take a part, or resample for larger cells"), "{said}");
     }
 }

@@ -77,7 +77,7 @@ impl Source {
         self.dataset.rasterband(self.band).map_err(|_| {
             let count = self.dataset.raster_count();
             let bands = if count == 1 { "1 band".to_owned() } else { format!("{count} bands") };
-            let remedy = message!["give `", Setting::Band.at("N"), format!("` with N from 1 to {count}")];
+            let remedy = message!["give `", Setting::Band.with_value(), format!("` with N from 1 to {count}")];
             self.error(format!("has {bands}, none of them is band {}", self.band), remedy)
         })
     }

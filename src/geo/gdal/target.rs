@@ -278,7 +278,7 @@ fn too_small(files: &Grid, path: &Path, metres: f64, crs: &Crs) -> Error {
         format!("no 2 x 2 cells of {metres} m lie inside the data"),
         message![
             "give smaller cells with ",
-            Setting::Resample.at("M"),
+            Setting::Resample.with_value(),
             format!(
                 ", more of the DEM, or warp it yourself with voids beside it: \
                  `gdalwarp -t_srs EPSG:{} -r cubic -dstnodata -32768 IN OUT.tif`",
@@ -293,7 +293,7 @@ fn outside(files: &Grid, path: &Path) -> Error {
     Error::input(
         path,
         message!["no sample lies inside ", Setting::Crop],
-        format!("give E0,N0,E1,N1 within {west},{south},{east},{north} {units}"),
+        message!["give ", Setting::Crop.value(), format!(" within {west},{south},{east},{north} {units}")],
     )
 }
 

@@ -21,7 +21,7 @@ use crate::error::{Message, Result};
 
 /// Raise it when the survey or the overviews of the same samples come out otherwise, or when the bytes below mean something
 /// else: settings stand in them by the names that they have in the code.
-const FORMAT: u32 = 2;
+const FORMAT: u32 = 3;
 const KIND: Kind = Kind { name: "heights", format: FORMAT, words: WORDS };
 
 /// What stands before the thinned samples.
