@@ -1,5 +1,5 @@
 #!/bin/sh
-# Every test. Those of the shared terrain need HACHURE_DEMS, its folder, those of the report's page a browser; where CI
+# Every test, then those of the crate without GDAL. Those of the shared terrain need HACHURE_DEMS, its folder, those of the report's page a browser; where CI
 # is set, a skipped test is a failure.
 set -eu
 cd "$(dirname "$0")/.."
@@ -16,3 +16,4 @@ if [ "$skipped" -gt 0 ]; then
 fi
 awk '/^test result:/ { passed += $4; failed += $6 } END { print passed + 0 " passed, " failed + 0 " failed" }' "$said"
 [ ! -s "$status" ] || exit 1
+sh tests/without_gdal.sh
