@@ -187,7 +187,7 @@ fn outputs_appear_whole_or_not_at_all() {
         file.write_all(b"half")?;
         Err(std::io::Error::other("the disk is full"))
     });
-    assert!(matches!(broken, Err(Error::Output { path: p, what }) if p == path && what == "the disk is full"));
+    assert!(matches!(broken, Err(Error::Output { path: p, what, .. }) if p == path && what == "the disk is full"));
     drop(Output::create(&path).unwrap());
     assert_eq!((std::fs::read(&path).unwrap(), files()), (b"whole".to_vec(), 1));
     for wrong in [folder.path().to_owned(), folder.path().join("missing/out.png"), "".into(), path.join("out.png")] {

@@ -138,11 +138,16 @@ fn flags(command: &clap::Command) -> Vec<String> {
     own.chain(command.get_subcommands().flat_map(flags)).collect()
 }
 
-/// Which of `flags` a text speaks of, in code, words or comments; flags of other programs are words like any others.
+/// Which of `flags` a text speaks of, in code, words or comments, long, as the short `-o`, or by way of the subcommand that
+/// takes them; flags of other programs are words like any others.
 fn spoken<'a>(text: &'a str, flags: &[String]) -> Vec<&'a str> {
     let end = |rest: &str| rest.find(|c: char| !c.is_ascii_alphanumeric() && c != '-').unwrap_or(rest.len());
     let dashed = text.match_indices("--").map(|(at, _)| &text[at..at + end(&text[at..])]);
-    dashed.filter(|word| flags.iter().any(|flag| flag == word)).collect()
+    let typed = [" -o", "hachure draw"].into_iter().filter(|typed| {
+        let mut ends = text.match_indices(typed).map(|(at, _)| &text[at + typed.len()..]);
+        ends.any(|rest| !rest.starts_with(|c: char| c.is_ascii_alphanumeric() || c == '-'))
+    });
+    dashed.filter(|word| flags.iter().any(|flag| flag == word)).chain(typed).collect()
 }
 
 #[test]
@@ -168,6 +173,8 @@ fn a_flag_in_the_core_is_noticed() {
     assert_eq!(of("remedy: \"use --crop, or a smaller --size\".into()"), ["--crop", "--size"]);
     assert_eq!(of("format!(\"`--crop {west}`, --resample={metres}\")"), ["--crop", "--resample"]);
     assert_eq!(of("/// For `--fill-voids`.\n// -q and --quiet"), ["--fill-voids", "--quiet"]);
+    assert_eq!(of("`hachure draw a.tif -o b.png`"), [" -o", "hachure draw"]);
+    assert_eq!(of("a hachure drawn by hand, -of and -outsize of GDAL"), [""; 0]);
     assert_eq!(of("`gdal_translate --config GDAL_VRT_ENABLE_PYTHON YES IN OUT.tif`, `ulimit -v`"), [""; 0]);
     assert_eq!(of("color: var(--ink); --paper: #fff; NW----NE  o--o--o  --cropped, --no-crop"), [""; 0]);
     let cli = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("src/cli/words.rs")).expect("a source");

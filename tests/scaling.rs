@@ -188,7 +188,7 @@ fn measure(gpu: &Arc<Gpu>, surface: &Arc<Surface>, camera: &Camera, repetitions:
 fn judge(name: &str, growth: &Growth) -> Result<bool> {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).with_file_name("scaling");
     let path = folder.join(format!("{name}.svg"));
-    let failed = |e: std::io::Error| Error::Output { path: path.clone(), what: e.to_string() };
+    let failed = |why: std::io::Error| Error::output(&path, &why);
     if !folder.is_dir() {
         output::make_folder(&folder).map_err(failed)?;
     }

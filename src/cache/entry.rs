@@ -172,8 +172,7 @@ impl Sheet {
     /// Begins the file of a key.
     pub(super) fn create(path: &Path, key: &Key) -> Result<Self> {
         let output = Output::create_as(path, TEMPORARY)?;
-        let failed = |error: io::Error| Error::Output { path: path.to_owned(), what: error.to_string() };
-        let file = output.duplicate().map_err(failed)?;
+        let file = output.duplicate().map_err(|why| Error::output(path, &why))?;
         // From here on nobody takes it for a leftover, nor away when it has its name.
         let _ = file.try_lock_shared();
         Ok(Self { output, file, path: path.to_owned(), key: key.clone(), bytes: 0, failed: None })
@@ -208,10 +207,10 @@ impl Sheet {
         let Self { output, mut file, path, failed, .. } = self;
         failed.map_or(Ok(()), Err)?;
         if let Err(Fault::Strange(what)) = open_plain(&path) {
-            return Err(Error::Output { path, what: format!("{what} is in its place") });
+            return Err(Error::output(&path, &io::Error::other(format!("{what} is in its place"))));
         }
         output.publish()?;
-        file.rewind().map_err(|error| Error::Output { path: path.clone(), what: error.to_string() })?;
+        file.rewind().map_err(|why| Error::output(&path, &why))?;
         Ok(Kept { file, bytes, path })
     }
 }

@@ -6,7 +6,7 @@
 //! on: two make the same then, and each publishes it whole.
 
 use std::fs::{self, File};
-use std::io::{Seek, Write};
+use std::io::{self, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -42,7 +42,7 @@ pub(super) enum Refused {
     /// Another has it.
     Held(Held),
     /// The folder cannot be written, or something else stands there.
-    Impossible(String),
+    Impossible(io::Error),
 }
 
 /// A lock that another has.
@@ -58,19 +58,18 @@ impl Lock {
         let mut name = artefact.as_os_str().to_owned();
         name.push(ENDING);
         let path = PathBuf::from(name);
-        let impossible = |error: std::io::Error| Refused::Impossible(error.to_string());
         // A folder that cannot be made shows when the lock is.
         let _ = path.parent().map(fs::create_dir_all);
         match output::make_file(&path) {
             Ok(file) => Ok(Self::beating(path, file)),
-            Err(error) if error.kind() != std::io::ErrorKind::AlreadyExists => Err(impossible(error)),
+            Err(error) if error.kind() != io::ErrorKind::AlreadyExists => Err(Refused::Impossible(error)),
             Err(_) => match fs::symlink_metadata(&path) {
                 Ok(found) if found.is_file() && is_old(found.modified().ok()) => {
-                    fs::remove_file(&path).map_err(impossible)?;
+                    fs::remove_file(&path).map_err(Refused::Impossible)?;
                     output::make_file(&path).map(|file| Self::beating(path.clone(), file)).map_err(|_| held(path))
                 }
                 Ok(found) if found.is_file() => Err(Refused::Held(Held { modified: found.modified().ok(), path })),
-                Ok(_) => Err(Refused::Impossible(format!("{} is no file; remove it", shown(&path)))),
+                Ok(_) => Err(Refused::Impossible(io::Error::other(format!("{} is no file; remove it", shown(&path))))),
                 // Gone since.
                 Err(_) => Err(held(path)),
             },
@@ -113,7 +112,7 @@ impl Drop for Lock {
 impl Held {
     /// Waits until the lock is gone or old; `progress` hears how far its holder has come. Fails where nobody writes to it
     /// and it cannot be removed.
-    pub fn wait(mut self, progress: &dyn Fn(f64)) -> std::io::Result<()> {
+    pub fn wait(mut self, progress: &dyn Fn(f64)) -> io::Result<()> {
         let mut since = Instant::now();
         while let Ok(found) = fs::symlink_metadata(&self.path) {
             let modified = found.modified().ok();
@@ -126,7 +125,7 @@ impl Held {
             if since.elapsed() > AGE {
                 // By the clock of the file it is young, and yet nobody writes to it: clocks differ.
                 return match fs::remove_file(&self.path) {
-                    Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(error),
+                    Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
                     _ => Ok(()),
                 };
             }

@@ -126,20 +126,23 @@ impl Cache {
             }
             let lock = match lock::Lock::take(&path) {
                 Ok(lock) => Ok(lock),
-                Err(lock::Refused::Impossible(what)) => Err(what),
+                Err(lock::Refused::Impossible(why)) => Err(why),
                 Err(lock::Refused::Held(held)) => match held.wait(hearing.progress) {
                     Ok(()) => continue,
-                    Err(error) => Err(error.to_string()),
+                    Err(why) => Err(why),
                 },
             };
             return match lock {
-                Ok(lock) => match found(&path, key, &recall) {
+                Ok(lock) => {
                     // Another may have made it between the look and the lock.
-                    Found::Whole(artefact) if !damaged => Ok(artefact),
-                    _ => self.make(&path, key, &lock, hearing, make),
-                },
-                Err(what) => {
-                    (hearing.warn)(&not_kept(key, &Error::Output { path, what }));
+                    let again = if damaged { Found::Nothing } else { found(&path, key, &recall) };
+                    match again {
+                        Found::Whole(artefact) => Ok(artefact),
+                        _ => self.make(&path, key, &lock, hearing, make),
+                    }
+                }
+                Err(why) => {
+                    (hearing.warn)(&not_kept(key, &Error::output(&path, &why)));
                     make(None, hearing.progress)
                 }
             };
@@ -198,7 +201,7 @@ fn found<T>(path: &Path, key: &Key, recall: impl Fn(Kept) -> std::io::Result<T>)
 /// That something was made and could not be kept.
 pub fn not_kept(key: &Key, why: &Error) -> Message {
     let why = match why {
-        Error::Output { path, what } => format!("{}: {what}", shown(path)),
+        Error::Output { path, what, .. } => format!("{}: {what}", shown(path)),
         other => other.to_string(),
     };
     let what = format!("{} is not cached: {why}; give another folder with ", key.kind.words[0]);

@@ -267,9 +267,11 @@ impl CompareArguments {
         found: Compared,
     ) -> (Scene, Vec<Run>) {
         let (dem, camera) = (surface.dem(), &view.camera);
+        let names: Vec<_> = files.iter().map(|file| file.to_string_lossy().into_owned()).collect();
         let scene = Scene {
             name,
-            dem: files.iter().map(|file| file.to_string_lossy().into_owned()).collect(),
+            command: draw_command(&names, &view.flags()),
+            dem: names,
             columns: dem.columns(),
             rows: dem.rows(),
             cell_m: dem.cell().to_array(),
@@ -305,9 +307,21 @@ fn scene_name(view: &str, size: Size, sizes: &[Size]) -> String {
     if sizes.len() > 1 { format!("{view}_{}x{}", size.width, size.height) } else { view.to_owned() }
 }
 
+/// What draws a view of these files, as a shell takes it.
+fn draw_command(files: &[String], flags: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "._-/:+=@,".contains(c);
+    let quoted = |name: &String| match !name.is_empty() && name.chars().all(plain) {
+        true => name.clone(),
+        false => format!("'{}'", name.replace('\'', r"'\''")),
+    };
+    let files: Vec<_> = files.iter().map(quoted).collect();
+    // No space before -o: the page is what it was, to the byte.
+    format!("hachure draw {}-o drawing.png {flags}", files.join(" "))
+}
+
 fn contents(results: &Results, pictures: &[Picture]) -> Result<Contents> {
     let plot = error_time_svg(results)?;
-    let failed = |e: std::io::Error| Error::mistake(e.to_string());
+    let failed = |e: std::io::Error| Error::no_report(e);
     let mut csv = Vec::new();
     write_csv(results, &mut csv).map_err(failed)?;
     let mut json = serde_json::to_vec_pretty(results).map_err(|e| failed(e.into()))?;
@@ -339,4 +353,18 @@ fn processor() -> String {
     let about = std::fs::read_to_string(Path::new("/proc/cpuinfo")).unwrap_or_default();
     let name = about.lines().find_map(|line| line.strip_prefix("model name")?.split_once(':'));
     name.map_or(String::new(), |(_, name)| format!(", {}", name.trim()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_of_a_command_are_quoted_where_a_shell_would_read_more() {
+        let command =
+            |files: &[&str]| draw_command(&files.iter().map(ToString::to_string).collect::<Vec<_>>(), "--fov 60");
+        assert_eq!(command(&["dem/a.tif", "b.tif"]), "hachure draw dem/a.tif b.tif-o drawing.png --fov 60");
+        assert_eq!(command(&["a b & \"d's\".tif"]), r#"hachure draw 'a b & "d'\''s".tif'-o drawing.png --fov 60"#);
+        assert_eq!(command(&[""]), "hachure draw ''-o drawing.png --fov 60");
+    }
 }

@@ -11,13 +11,11 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use super::words::FAILED;
 use crate::error::copes_without;
 use crate::files::signals;
 #[cfg(unix)]
 use crate::gpu::memory::limit;
-
-/// Exit code for "failed".
-const FAILED: i32 = 1;
 
 /// The system's allocator, which says so when memory ends.
 pub struct Allocator;
@@ -86,7 +84,7 @@ fn end(bytes: Option<usize>) -> ! {
         line.push(b"; use a --crop, a smaller --memory or --size, or allow more (`ulimit -v` says how much)\n");
         line.print();
     }
-    signals::end_now(FAILED)
+    signals::end_now(FAILED.into())
 }
 
 /// A line made without memory of its own.

@@ -1,9 +1,14 @@
 //! What the core says, in the words of the command line: flags in the place of settings, remedies, exit codes.
 
+use std::io::ErrorKind;
+
 use clap::CommandFactory;
 
 use super::Arguments;
 use crate::error::{Error, Form, Message, Setting, shown};
+
+/// Exit code for "failed".
+pub const FAILED: u8 = 1;
 
 /// Exit code for "try again".
 pub const TRY_AGAIN: u8 = 75;
@@ -72,7 +77,7 @@ pub fn line(error: &Error) -> String {
         Error::Input { path, what, remedy } => format!("{}: {}; {}", shown(path), told(what), told(remedy)),
         Error::Setting { setting, what, remedy } => format!("{}: {}; {}", flag(*setting), told(what), told(remedy)),
         Error::Limit { what, remedy } | Error::Scene { what, remedy } => format!("{}; {}", told(what), told(remedy)),
-        Error::Output { what, .. } => format!("{error}; {}", way_out(what)),
+        Error::Output { why, .. } => format!("{error}; {}", way_out(*why)),
         Error::Gpu { .. } => format!("{error}; try `--adapter cpu`, a smaller --size or a lower --level"),
         Error::DeviceLost { .. } => format!("{error}; try again, or use `--adapter cpu`"),
         Error::NoAdapter { .. } | Error::Mistake { .. } => error.to_string(),
@@ -84,16 +89,15 @@ pub fn exit_code(error: &Error) -> u8 {
     match error {
         Error::Setting { .. } => 2,
         Error::DeviceLost { .. } => TRY_AGAIN,
-        _ => 1,
+        _ => FAILED,
     }
 }
 
-/// What to do about the system's reason not to write.
-fn way_out(what: &str) -> &'static str {
-    match what {
-        // EFBIG and ENOSPC of Linux and macOS.
-        _ if what.contains("(os error 27)") => "allow larger files (`ulimit -f unlimited`)",
-        _ if what.contains("(os error 28)") => "make room there or choose another output path",
+/// What to do about the reason not to write.
+fn way_out(why: ErrorKind) -> &'static str {
+    match why {
+        ErrorKind::FileTooLarge => "allow larger files (`ulimit -f unlimited`)",
+        ErrorKind::StorageFull => "make room there or choose another output path",
         _ => "choose another output path",
     }
 }
@@ -115,6 +119,47 @@ mod tests {
         let within = message!["give ", Setting::Crop.value(), " within 1,2,3,4 m"];
         assert_eq!(told(&within), "give E0,N0,E1,N1 within 1,2,3,4 m");
         assert_eq!(placeholder(Setting::Dem), "DEM");
+    }
+
+    #[test]
+    fn every_error_has_its_line_and_its_code() {
+        let on_disk = |code| Error::output("a.png".as_ref(), &std::io::Error::from_raw_os_error(code));
+        let [what, remedy] = ["it is odd", "mend it"].map(str::to_owned);
+        let scene = Error::Scene { what: what.clone().into(), remedy: message!["turn ", Setting::Azimuth] };
+        let cases = [
+            (
+                Error::input("a.tif".as_ref(), "it is odd", message!["use ", Setting::Crop]),
+                "a.tif: it is odd; use --crop",
+                1,
+            ),
+            (Error::setting(Setting::Size, "it is odd", "mend it"), "--size: it is odd; mend it", 2),
+            (on_disk(2), "choose another output path", 1),
+            (on_disk(27), "; allow larger files (`ulimit -f unlimited`)", 1),
+            (on_disk(28), "; make room there or choose another output path", 1),
+            (Error::limit("it is odd", message!["use a lower ", Setting::Level]), "it is odd; use a lower --level", 1),
+            (scene, "it is odd; turn --azimuth", 1),
+            (Error::NoAdapter { what: what.clone(), remedy }, "no GPU adapter: it is odd; mend it", 1),
+            (
+                Error::Gpu { what: what.clone() },
+                "the GPU failed: it is odd; try `--adapter cpu`, a smaller --size or a lower --level",
+                1,
+            ),
+            (Error::DeviceLost { what }, "the GPU was lost: it is odd; try again, or use `--adapter cpu`", 75),
+            (Error::mistake("it is odd"), "it is odd; that is hachure's mistake, please report it with the command", 1),
+        ];
+        for (error, end, code) in cases {
+            let line = line(&error);
+            match &error {
+                Error::Output { what, .. } => {
+                    assert!(
+                        line.starts_with(&format!("a.png: cannot be written ({what}); ")) && line.ends_with(end),
+                        "{line}"
+                    )
+                }
+                _ => assert_eq!(line, end),
+            }
+            assert_eq!(exit_code(&error), code, "{line}");
+        }
     }
 
     #[test]

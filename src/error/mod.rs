@@ -3,6 +3,7 @@
 
 mod message;
 
+use std::io;
 use std::path::{Path, PathBuf};
 
 pub use message::{Form, Message, Part, Setting};
@@ -39,8 +40,10 @@ pub enum Error {
     Output {
         /// The file as the user named it.
         path: PathBuf,
-        /// The system's reason.
+        /// The reason, in words.
         what: String,
+        /// What kind of reason it is.
+        why: io::ErrorKind,
     },
     /// A scene or page beyond what the lattice, the IDs or this adapter can hold.
     #[error("{what}; {remedy}")]
@@ -97,9 +100,19 @@ impl Error {
         Self::Setting { setting, what: what.into().plain(), remedy: remedy.into().plain() }
     }
 
+    /// A file that cannot be written: which, and why.
+    pub fn output(path: &Path, why: &io::Error) -> Self {
+        Self::Output { path: path.to_owned(), what: why.to_string(), why: why.kind() }
+    }
+
     /// A limit that is passed: which, with both numbers, and what to do.
     pub fn limit(what: impl Into<Message>, remedy: impl Into<Message>) -> Self {
         Self::Limit { what: what.into(), remedy: remedy.into() }
+    }
+
+    /// A mistake of ours in the making of a report: which part, and what it lacks.
+    pub fn no_report(what: impl std::fmt::Display) -> Self {
+        Self::mistake(format!("the report cannot be made: {what}"))
     }
 
     /// A mistake of ours: which part, and what it lacks.

@@ -48,20 +48,21 @@ impl Output {
     ///
     /// [`Error::Output`] as [`Self::create`].
     pub fn create_as(path: &Path, temporary: &str) -> Result<Self> {
-        let failed = |what: String| Error::Output { path: path.to_owned(), what };
+        let failed = |why: io::Error| Error::output(path, &why);
+        let wrong = |what: &str| failed(io::Error::other(what));
         let target = match fs::metadata(path) {
-            Ok(meta) if meta.is_dir() => return Err(failed("it is a folder".into())),
+            Ok(meta) if meta.is_dir() => return Err(wrong("it is a folder")),
             // A rename would put a plain file in the place of a device or a pipe.
-            Ok(meta) if !meta.is_file() => return Err(failed("it is no regular file".into())),
-            Ok(_) => fs::canonicalize(path).map_err(|e| failed(e.to_string()))?,
-            Err(_) if names_no_file(path) => return Err(failed("it names no file".into())),
+            Ok(meta) if !meta.is_file() => return Err(wrong("it is no regular file")),
+            Ok(_) => fs::canonicalize(path).map_err(failed)?,
+            Err(_) if names_no_file(path) => return Err(wrong("it names no file")),
             Err(e) if e.kind() == ErrorKind::NotFound => path.to_owned(),
             // Too long a name, above all: the temporary file would have a short one.
-            Err(e) => return Err(failed(e.to_string())),
+            Err(e) => return Err(failed(e)),
         };
         let folder = target.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
         if !folder.is_dir() {
-            return Err(failed(format!("there is no folder {}", shown(folder))));
+            return Err(wrong(&format!("there is no folder {}", shown(folder))));
         }
         let mut builder = tempfile::Builder::new();
         builder.prefix(temporary);
@@ -70,7 +71,7 @@ impl Output {
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
         // Made and noted at once: a signal between the two would leave the file behind.
         let mut under_way = UNDER_WAY.lock().unwrap_or_else(PoisonError::into_inner);
-        let (file, temporary) = builder.tempfile_in(folder).map_err(|e| failed(e.to_string()))?.into_parts();
+        let (file, temporary) = builder.tempfile_in(folder).map_err(failed)?.into_parts();
         under_way.push(temporary.to_path_buf());
         drop(under_way);
         Ok(Self { path: path.to_owned(), place: Place::File { target, file: Some(file), temporary } })
@@ -101,7 +102,7 @@ impl Output {
             Place::File { file: None, .. } => Err(io::Error::other("it is closed")),
             Place::Stdout(bytes) => write(bytes),
         };
-        written.map_err(|e| Error::Output { path: self.path.clone(), what: e.to_string() })
+        written.map_err(|why| Error::output(&self.path, &why))
     }
 
     /// Lets `write` make the file by its temporary name, for libraries that open files themselves.
@@ -113,7 +114,7 @@ impl Output {
             Place::File { temporary, .. } => write(temporary),
             Place::Stdout(_) => Err(io::Error::other("it has no name")),
         };
-        written.map_err(|e| Error::Output { path: self.path.clone(), what: e.to_string() })
+        written.map_err(|why| Error::output(&self.path, &why))
     }
 
     /// Another handle on the file being made, for reading it when it has its name.
@@ -148,7 +149,7 @@ impl Output {
             }
             Place::Stdout(bytes) => print(&bytes),
         };
-        published.map_err(|e| Error::Output { path: self.path, what: e.to_string() })
+        published.map_err(|why| Error::output(&self.path, &why))
     }
 }
 

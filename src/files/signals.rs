@@ -6,6 +6,7 @@
 //!
 //! Does not handle: signals that no process can catch.
 
+use std::io;
 #[cfg(unix)]
 use std::sync::OnceLock;
 
@@ -15,11 +16,12 @@ use super::output::{discard_all, discard_now};
 ///
 /// # Errors
 /// The system's, where it takes no handler: a signal may leave temporary files behind then.
-pub fn end_when_asked(code: i32) -> Result<(), ctrlc::Error> {
+pub fn end_when_asked(code: i32) -> io::Result<()> {
     ctrlc::set_handler(move || {
         discard_all();
         exit(code)
     })
+    .map_err(io::Error::other)
 }
 
 /// Removes what was begun and ends the process with this code. Asks for no memory, and waits for no thread.

@@ -72,7 +72,7 @@ pub(super) fn plot<T>(
     draw: impl Fn(&Area, &Area, &T) -> Drawn,
 ) -> Result<String> {
     let mut svg = String::new();
-    draw_page(&mut svg, title, foot, panels, draw).map_err(|e| Error::mistake(format!("the plot: {e}")))?;
+    draw_page(&mut svg, title, foot, panels, draw).map_err(|e| Error::no_report(format_args!("the plot: {e}")))?;
     // The library knows neither of the two elements that tell what is drawn to those who do not see it.
     let [title, told] = [title, told].map(|text| HtmlEscape(text).to_string());
     let (tag, rest) = svg.split_once('\n').unwrap_or((&svg, ""));

@@ -3,8 +3,8 @@
 //! Files get their names when all are written, the page last: a folder with a page holds a whole report. A folder that
 //! was made for a report that failed goes again.
 
-use std::fs;
 use std::path::{Path, PathBuf};
+use std::{fs, io};
 
 use super::pictures::Picture;
 use crate::error::{Error, Result, Setting};
@@ -51,9 +51,9 @@ impl Folder {
     /// [`Error::Setting`] where one is taken;
     /// [`Error::Output`] where it is a file or something cannot be written.
     pub fn open(path: &Path, pictures: impl Iterator<Item = String>, mut taken: Taken) -> Result<Self> {
-        let failed = |what: String| Error::Output { path: path.to_owned(), what };
+        let failed = |why: io::Error| Error::output(path, &why);
         if path.exists() && !path.is_dir() {
-            return Err(failed("it is a file, and a report is a folder".into()));
+            return Err(failed(io::Error::other("it is a file, and a report is a folder")));
         }
         let pictures: Vec<String> = pictures.collect();
         let mut names = FILES.into_iter().chain(pictures.iter().map(String::as_str));
@@ -63,7 +63,7 @@ impl Folder {
         missing.reverse();
         let mut folder = Self { path: path.to_owned(), made: Vec::new(), files: None };
         for missing in missing {
-            output::make_folder(&missing).map_err(|e| failed(e.to_string()))?;
+            output::make_folder(&missing).map_err(failed)?;
             // From here on a failure takes it along.
             folder.made.push(missing);
         }

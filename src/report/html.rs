@@ -31,6 +31,8 @@ struct Page<'a> {
     pass_names: Vec<&'static str>,
     /// Data URIs by file name.
     pictures: BTreeMap<&'a str, String>,
+    /// The commands that draw scenes, by their names.
+    commands: BTreeMap<&'a str, &'a str>,
     plot: &'a str,
     style: &'static str,
     script: &'static str,
@@ -60,13 +62,14 @@ pub fn report_html(results: &Results, plot_svg: &str, pictures: &[Picture]) -> R
         runs: results.runs.iter().map(|run| row(run, results, &pass_names)).collect(),
         words: words(results),
         pictures: data_uris(results, pictures)?,
+        commands: results.scenes.iter().map(|scene| (scene.name.as_str(), scene.command.as_str())).collect(),
         plot: plot_svg,
         style: include_str!("report.css"),
         script: include_str!("report.js"),
         results,
         pass_names,
     };
-    render(&page).map_err(|e| Error::mistake(format!("the page: {e:#}")))
+    render(&page).map_err(|e| Error::no_report(format_args!("the page: {e:#}")))
 }
 
 fn render(page: &Page) -> std::result::Result<String, minijinja::Error> {
@@ -83,7 +86,6 @@ fn render(page: &Page) -> std::result::Result<String, minijinja::Error> {
     engine.add_filter("count_cell", |v: Option<f64>| cell(v, |v| count(v as u64)));
     engine.add_filter("level_cell", level_cell);
     engine.add_filter("ms_cell", |v: Option<f64>| cell(v, milliseconds));
-    engine.add_filter("quoted", quoted);
     engine.render_named_str("report.html", include_str!("report.html"), Serde(page))
 }
 
@@ -93,7 +95,7 @@ fn data_uris<'a>(results: &'a Results, pictures: &[Picture]) -> Result<BTreeMap<
     let names = results.scenes.iter().map(|scene| &scene.picture).chain(of_runs);
     let data_uri = |name: &'a String| {
         let picture = pictures.iter().find(|picture| picture.name == *name);
-        let picture = picture.ok_or_else(|| Error::mistake(format!("there is no picture {name}")))?;
+        let picture = picture.ok_or_else(|| Error::no_report(format_args!("there is no picture {name}")))?;
         Ok((name.as_str(), format!("data:image/png;base64,{}", STANDARD.encode(&picture.png))))
     };
     names.map(data_uri).collect()
@@ -137,10 +139,4 @@ fn level_cell(level: Value) -> Value {
 fn cell(value: Option<f64>, show: impl Fn(f64) -> String) -> Value {
     let (sorted, shown) = value.map_or_else(|| (String::new(), "–".into()), |v| (v.to_string(), show(v)));
     Value::from_safe_string(format!("<td data-v=\"{sorted}\">{}</td>", HtmlEscape(&shown)))
-}
-
-/// A file name as a shell takes it.
-fn quoted(name: &str) -> String {
-    let plain = |c: char| c.is_alphanumeric() || "._-/:+=@,".contains(c);
-    if !name.is_empty() && name.chars().all(plain) { name.into() } else { format!("'{}'", name.replace('\'', r"'\''")) }
 }

@@ -80,6 +80,6 @@ fn picture(name: String, write: impl FnOnce(&mut Vec<u8>) -> io::Result<()>) -> 
     let mut png = Vec::new();
     match write(&mut png) {
         Ok(()) => Ok(Picture { name, png }),
-        Err(e) => Err(Error::Output { path: name.into(), what: e.to_string() }),
+        Err(why) => Err(Error::output(name.as_ref(), &why)),
     }
 }

@@ -80,8 +80,11 @@ pub struct Scene {
     pub altitude: f64,
     /// Horizontal field of view, degrees.
     pub fov: f64,
-    /// Flags of `hachure draw` that repeat the view.
+    /// Flags that repeat the view.
     pub flags: String,
+    /// The command that draws it, for the page alone.
+    #[serde(skip)]
+    pub command: String,
     /// Pixels across.
     pub width: u32,
     /// Pixels down.

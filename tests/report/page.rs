@@ -56,14 +56,16 @@ fn each_picture_is_in_the_page_once_and_a_missing_one_is_an_error() {
     assert_eq!(page.matches("data:image/png;base64,").count(), pictures.len());
     assert_eq!(page, page_of(&results), "the same results give the same page");
     let lacking = report_html(&results, "<svg></svg>", &pictures[1..]);
-    assert!(matches!(lacking, Err(Error::Mistake { what }) if what.contains("west-temple_truth.png")));
+    assert!(
+        matches!(lacking, Err(Error::Mistake { what }) if what == "the report cannot be made: there is no picture west-temple_truth.png")
+    );
 }
 
 #[test]
 fn texts_of_the_results_are_escaped_and_nothing_is_fetched() {
     let page = page_of(&sample());
     assert!(page.contains("a&lt;b &amp; c") && !page.contains("a<b"));
-    // The shell gets the file's name as it is.
+    // The command as it is, quotes and all.
     assert!(page.contains("hachure draw &#x27;a&lt;b &amp; c, &quot;d&#x27;\\&#x27;&#x27;s&quot;.tif&#x27;"));
     let links = page.matches("http").count();
     assert_eq!(links, page.matches("http://www.w3.org/2000/svg").count() + page.matches("http-equiv").count());

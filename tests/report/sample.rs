@@ -8,6 +8,9 @@ use hachure::report::results::{Machine, Results, SCHEMA, Scene, TruthSummary};
 /// A name that HTML, CSV, SVG and the shell each have to quote.
 pub const AWKWARD: &str = "a<b & c, \"d's\"";
 
+/// Flags of a view.
+const FLAGS: &str = "--eye 325249,4117889,2000 --azimuth 310 --altitude 0 --fov 60 --size 1280x720 --border off";
+
 /// Level, precision and recall (1 px), milliseconds of a frame.
 type Figures = (u32, f64, f64, f64);
 
@@ -90,7 +93,8 @@ fn scene(name: &str, width: u32, height: u32) -> Scene {
         azimuth: 310.0,
         altitude: 0.0,
         fov: 60.0,
-        flags: "--eye 325249,4117889,2000 --azimuth 310 --altitude 0 --fov 60 --size 1280x720 --border off".into(),
+        flags: FLAGS.into(),
+        command: format!("hachure draw '{}.tif' {FLAGS}", name.replace('\'', r"'\''")),
         width,
         height,
         border: name == AWKWARD,
