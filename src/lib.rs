@@ -27,7 +27,7 @@
 //! |---|---|---|---|
 //! | read | raster files | [`Dem`](dem::Dem): a north-up grid of metres, voids marked | [`geo::read()`], CPU |
 //! | surface | the grid | [`Surface`](surface::Surface): one normal a sample, cubic PN triangles between them | CPU, once a DEM |
-//! | view | flags, or nothing | [`Camera`](view::Camera): eye, directions, page | CPU |
+//! | view | what is [`Fixed`](view::Fixed) of it, or nothing | [`Camera`](view::Camera): eye, directions, page | CPU |
 //! | plan | what is asked ([`Plan`](plan::Plan): method, level, border), a camera | [`Frame`](plan::Frame): lattice, batches, passes, what is left out | CPU |
 //! | upload | surface and frame | [`Renderer`](render::Renderer): buffers and compiled passes | what is not there yet |
 //! | frame | plan and camera | the mask, on the device: tessellate, facing, rasterize, silhouette, border | [`Renderer::frame`](render::Renderer::frame), GPU |
@@ -42,8 +42,8 @@
 //!
 //! World coordinates are metres, x east, y north, z up and exaggerated; angles are degrees, azimuth clockwise from grid
 //! north; pages are pixels from the top left corner. [`Georeference`](dem::Georeference) leads from there to the
-//! coordinates of the file and to longitude and latitude. Whatever can go wrong is an [`Error`](error::Error) of one
-//! line: what, where, remedy. A renderer draws as many frames as are asked of it, by any plan, on a page of any size; for each the
+//! coordinates of the file and to longitude and latitude. Whatever can go wrong is an [`Error`](error::Error): what,
+//! where and, where there is one, a remedy, in which settings stand by their names. A renderer draws as many frames as are asked of it, by any plan, on a page of any size; for each the
 //! camera is uploaded, and what is not there yet.
 //!
 //! # Modules

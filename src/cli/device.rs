@@ -18,15 +18,7 @@ pub struct DeviceArguments {
 }
 
 impl DeviceArguments {
-    /// Opens the device and says which it is.
-    ///
-    /// # Errors
-    /// As [`Gpu::open`].
-    pub fn open(&self, talk: &Talk) -> Result<Gpu> {
-        self.open_with(wgpu::Features::empty(), talk)
-    }
-
-    /// The same with those of the `extra` features that the device has.
+    /// Opens the device with those of the `extra` features that it has, and says which it is.
     ///
     /// # Errors
     /// As [`Gpu::open_with`].
@@ -36,7 +28,7 @@ impl DeviceArguments {
         Ok(gpu)
     }
 
-    /// Opens the device with those of the `extra` features that it has, for those who say later which it is.
+    /// The same for those who say later which it is.
     ///
     /// # Errors
     /// As [`Gpu::open_with`].

@@ -72,7 +72,7 @@ impl Arguments {
     /// Does what was asked.
     ///
     /// # Errors
-    /// Whatever went wrong, with the exit code it stands for.
+    /// Whatever went wrong; [`words::exit_code`] says with which code the program ends then.
     pub fn run(&self, talk: &Talk) -> Result<()> {
         match &self.command {
             Command::Draw(arguments) => draw::run(arguments, talk),

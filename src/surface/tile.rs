@@ -43,6 +43,7 @@ impl TileSamples {
     /// As [`Surface::part`] and [`Dem::spaced`](crate::dem::Dem::spaced).
     pub fn read(surface: &Surface, tiles: &[Tile]) -> Result<Self> {
         let zeros = |tiles: usize| vec![0.0; tiles * TILE_SAMPLES as usize];
+        debug_assert!(tiles.iter().all(|tile| tile.has_gradients() == tiles[0].has_gradients()), "tiles of one kind");
         let patched = if tiles.first().is_some_and(Tile::has_gradients) { tiles.len() } else { 0 };
         let mut heights = zeros(tiles.len());
         let mut gradients = [zeros(patched), zeros(patched)];

@@ -1,8 +1,8 @@
 //! Samples in memory as datasets of GDAL, which warps and fills them where they lie.
 //!
 //! A dataset borrows its samples as long as it lives, for reading or for writing, and shows its handle to nobody: no safe
-//! code can keep it longer, change what is borrowed for reading, or look at what is being written. The unsafe calls stand
-//! here alone; GDAL's driver for memory takes a bare pointer, and its warper and filler have no safe wrapper.
+//! code can keep it longer, change what is borrowed for reading, or look at what is being written. Its calls are
+//! unsafe: GDAL's driver for memory takes a bare pointer, and its warper and filler have no safe wrapper.
 
 use std::ffi::{CString, c_char, c_int, c_void};
 use std::marker::PhantomData;
