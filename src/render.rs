@@ -13,7 +13,7 @@ use crate::gpu::work::Work;
 use crate::gpu::{Gpu, OnDevice, PageBuffers, Scene, Stages};
 use crate::line::InkRaster;
 use crate::message;
-use crate::plan::PassName::{Compose, Facing, Project, Rasterize, RasterizeLarge, Seam, Tessellate};
+use crate::plan::PassName::Compose;
 use crate::plan::frame::Kept;
 use crate::plan::{Frame, Piece, Plan};
 use crate::surface::Surface;
@@ -116,7 +116,7 @@ impl Renderer {
         for round in 0..frame.visibility.rounds() {
             for batch in 0..frame.batches.len() as u32 {
                 work.empty("queue", "empty_queue")?;
-                for pass in [Tessellate, Seam, Facing, Project, Rasterize, RasterizeLarge] {
+                for pass in frame.of_batch() {
                     work.run(pass, [batch, round])?;
                 }
                 if frame.batches.len() > 1 {

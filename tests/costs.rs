@@ -6,8 +6,11 @@ mod bindings;
 use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
 use hachure::measure::cost::{PassCost, Quantities};
-use hachure::plan::{Border, Method, Plan, Visibility};
-use hachure::surface::{Lattice, Surface};
+use hachure::plan::batches::BATCH_CHUNKS;
+use hachure::plan::frame::Kept;
+use hachure::plan::passes::passes;
+use hachure::plan::{Border, Detail, Frame, Method, Plan, batches};
+use hachure::surface::Surface;
 use hachure::view::Camera;
 
 use crate::scenes::{level, look};
@@ -24,12 +27,28 @@ fn from_south(surface: &Surface) -> Camera {
     look(middle + DVec3::new(0.0, -500.0, 200.0), middle, 60.0, [64, 48])
 }
 
-fn quantities(n: u32) -> Quantities {
+/// A frame of [`flat`] by walks at level `n`, with 64-bit atomics or in two rounds.
+fn frame(n: u32, int64: bool) -> Frame {
     let surface = flat();
-    let lattice = Lattice::uniform(surface.dem(), level(n)).expect("a lattice");
     let plan = Plan::new(level(n), Method::Walk, Border::On);
-    let slots: Vec<u32> = (0..lattice.chunks().len() as u32).collect();
-    Quantities::of(&plan, &surface, &lattice, lattice.seen(), &slots, &from_south(&surface)).expect("quantities")
+    Frame::new(&plan, &surface, &from_south(&surface), int64, &mut Kept::default()).expect("a frame")
+}
+
+/// The same with more chunks than one batch holds.
+fn in_two_batches(mut frame: Frame) -> Frame {
+    frame.batches = batches(2 * BATCH_CHUNKS);
+    frame
+}
+
+fn quantities(n: u32) -> Quantities {
+    let frame = frame(n, true);
+    let slots: Vec<u32> = (0..frame.lattice.chunks().len() as u32).collect();
+    Quantities::of(&frame, &flat(), &slots).expect("quantities")
+}
+
+/// Of level 2, with a page.
+fn on_page() -> Quantities {
+    Quantities { pixels: 1000, land: 600, queued: 3, listed: [50, 20, 7], rim: 64, ..quantities(2) }
 }
 
 fn bytes(costs: &[PassCost], name: &str) -> u64 {
@@ -53,9 +72,8 @@ fn chunks_patches_and_samples_are_counted() {
 
 #[test]
 fn bytes_are_those_counted_by_hand() {
-    let page =
-        Quantities { pixels: 1000, land: 600, batches: 1, queued: 3, listed: [50, 20, 7], rim: 64, ..quantities(2) };
-    let walk = page.passes(Method::Walk, Visibility::Key64);
+    let page = on_page();
+    let walk = page.passes(&frame(2, true));
     for (name, expected) in [
         // 17 x 17 samples of a height and two gradients; four slots, chunks of 40 bytes and times 289 vertices of 16 bytes.
         ("tessellate", 289 * 12 + 4 * (4 + 40 + 289 * 16)),
@@ -69,13 +87,18 @@ fn bytes_are_those_counted_by_hand() {
         assert_eq!(bytes(&walk, name), expected, "{name}");
     }
     assert!(!walk.iter().any(|cost| cost.name == "seam"), "all chunks have one level");
-    let seams = Quantities { shared: 8, seams: true, ..page }.passes(Method::Walk, Visibility::Key64);
+    let mut with_seams = frame(2, true);
+    with_seams.passes = passes(&Plan::new(Detail::default(), Method::Walk, Border::On));
+    let seams = Quantities { shared: 8, ..page }.passes(&with_seams);
     assert_eq!(bytes(&seams, "seam"), 4 * (4 + 40) + 8 * 32, "a vertex is read, one written");
-    let rounds = page.passes(Method::Walk, Visibility::Key32);
+    let rounds = page.passes(&frame(2, false));
     assert_eq!(bytes(&rounds, "tessellate"), bytes(&walk, "tessellate"), "one batch keeps its vertices");
-    let batches = Quantities { batches: 2, ..page }.passes(Method::Walk, Visibility::Key32);
+    let batches = page.passes(&in_two_batches(frame(2, false)));
     assert_eq!(bytes(&batches, "tessellate"), 2 * bytes(&walk, "tessellate"));
-    let none_made = Quantities { made: 0, ..page }.passes(Method::Walk, Visibility::Key64);
+    // Two points on patches of three samples, each a height and two gradients, take the place of six vertices.
+    assert_eq!(bytes(&batches, "walk"), 20 * (4 + 2 * (8 + 36) + 8) + 7 * 4);
+    assert_eq!(bytes(&batches, "walk_rest"), 7 * (4 + 2 * (8 + 36) + 8));
+    let none_made = Quantities { made: 0, ..page }.passes(&frame(2, true));
     assert!(!none_made.iter().any(|cost| cost.name == "tessellate"), "vertices stay");
 }
 
@@ -84,8 +107,7 @@ type Grow = fn(&mut Quantities);
 
 #[test]
 fn more_work_never_costs_less() {
-    let base =
-        Quantities { pixels: 1000, land: 600, batches: 1, queued: 3, listed: [50, 20, 7], rim: 64, ..quantities(2) };
+    let (base, frame) = (on_page(), frame(2, true));
     let grows: [(&str, Grow); 15] = [
         ("pixels", |q| q.pixels += 9),
         ("land", |q| q.land += 9),
@@ -104,7 +126,7 @@ fn more_work_never_costs_less() {
         ("rim", |q| q.rim += 9),
     ];
     let of = |q: &Quantities| {
-        let costs = q.passes(Method::Walk, Visibility::Key64);
+        let costs = q.passes(&frame);
         costs.iter().map(|cost| [cost.bytes(), cost.operations]).collect::<Vec<_>>()
     };
     for (what, grow) in grows {

@@ -74,7 +74,7 @@ fn polylines_are_clipped_to_the_near_plane_and_the_page() {
 fn lines(chains: Vec<Chain>, raster: &InkRaster, seen: &Perspective) -> Lines {
     let marks = Marks::from(raster);
     let (width, height) = (raster.width, raster.height);
-    Lines { width, height, chains: crowded(&chains, &marks, seen), recession: Recession::of(&marks) }
+    Lines { width, height, chains: crowded(&chains, &marks, seen), recession: Recession::of(marks.depths()) }
 }
 
 #[test]

@@ -201,7 +201,7 @@ fn lattices_of_frames_are_conforming_meshes_of_the_land() {
         let surface = Surface::new(dem);
         for error_px in [0.5, 3.0, 20.0] {
             let camera = above(&surface, &mut random);
-            let lattice = detail::adaptive(&surface, &camera, error_px, Thrift::Nothing).expect("few chunks");
+            let (lattice, _) = detail::adaptive(&surface, &camera, error_px, Thrift::Nothing).expect("few chunks");
             check(surface.dem(), &lattice, &format!("scene {i}, {error_px} px, {camera:?}"));
             levels[0] = levels[0].max(variety(&lattice)[0]);
             levels[1] += variety(&lattice)[1];

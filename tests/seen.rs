@@ -134,7 +134,7 @@ fn check(eyes: usize) {
         for _ in 0..eyes {
             let camera = eye(&surface, &mut random);
             let seen = winners(&mut renderer, &camera);
-            let lattice = detail::adaptive(&surface, &camera, error_px, Thrift::Nothing).expect("few chunks");
+            let (lattice, _) = detail::adaptive(&surface, &camera, error_px, Thrift::Nothing).expect("few chunks");
             let [wrong, hidden] = coarse(&surface, &lattice, &camera, error_px, &seen);
             assert_eq!(wrong, 0, "scene {seed}: of {} facets seen, {camera:?}", seen.len());
             all_seen += seen.len();
@@ -162,7 +162,7 @@ fn what_another_eye_sees_is_coarse() {
     let plan = Plan { thrift: Thrift::Nothing, ..Plan::new(Detail::Uniform(level(4)), BY_ID, Border::Off) };
     let mut renderer = Planned::new(gpu(), &surface, plan);
     let camera = aimed(over(&surface, 20.0, 60.0, 3.0), 90.0, 0.0, PAGE);
-    let lattice = detail::adaptive(&surface, &camera, ERROR_PX, Thrift::Nothing).expect("few chunks");
+    let (lattice, _) = detail::adaptive(&surface, &camera, ERROR_PX, Thrift::Nothing).expect("few chunks");
     let higher = Camera { eye: camera.eye + DVec3::Z * 200.0, altitude: -10.0, ..camera };
     assert!(
         coarse(&surface, &lattice, &camera, ERROR_PX, &winners(&mut renderer, &higher))[0] > 0,

@@ -1,6 +1,7 @@
 //! A method that yields curves goes through a trial as those do that yield ink: truth of a coarser level takes its part.
 
 use std::cell::RefCell;
+use std::num::NonZeroU32;
 use std::time::Instant;
 
 use glam::{DVec2, DVec3};
@@ -97,7 +98,7 @@ fn try_level(terrain: &Terrain<'_>, camera: &Camera, of: Level, judge: &Judge<'_
         scene: "rough",
         method: "curves",
         level: DrawnLevel::Of(of.subdivisions()),
-        repeat: 2,
+        repeat: NonZeroU32::MIN.saturating_add(1),
         judge,
         truth_pop: 0.0,
         found: &|found| {

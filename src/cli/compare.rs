@@ -2,6 +2,7 @@
 
 use std::cell::{Cell, RefCell};
 use std::collections::HashSet;
+use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::thread::available_parallelism;
@@ -94,7 +95,7 @@ pub struct CompareArguments {
     truth_level: Option<Level>,
     /// Warm frames behind each time, 9 to 100
     #[arg(long, value_name = "N", value_parser = values::repeat, default_value = "9", help_heading = "Measure")]
-    repeat: u32,
+    repeat: NonZeroU32,
     /// Beside each frame, time a bare copy of the bytes its passes move and a hardware depth draw of its facets
     #[arg(long, help_heading = "Measure")]
     floor: bool,

@@ -1,6 +1,7 @@
 //! Values of flags: numbers with commas, sizes, levels, adapters. Each parser says what it wants.
 
 use std::fmt::Display;
+use std::num::NonZeroU32;
 use std::ops::RangeInclusive;
 
 use glam::DVec2;
@@ -231,8 +232,8 @@ pub fn truth_level(text: &str) -> Result<Level, String> {
 }
 
 /// Frames behind a median.
-pub fn repeat(text: &str) -> Result<u32, String> {
-    text.parse().ok().filter(|n| (9..=100).contains(n)).ok_or_else(|| "want 9 to 100 frames".into())
+pub fn repeat(text: &str) -> Result<NonZeroU32, String> {
+    text.parse().ok().filter(|n: &NonZeroU32| (9..=100).contains(&n.get())).ok_or_else(|| "want 9 to 100 frames".into())
 }
 
 /// A method with all it takes, by the name that reports have for it.

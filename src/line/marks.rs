@@ -61,6 +61,11 @@ impl Marks {
         self.ink().map(|mark| [mark.column, mark.row])
     }
 
+    /// Depths of the inked ones, in reading order; 0 where there is none.
+    pub fn depths(&self) -> impl Iterator<Item = f32> {
+        self.ink().map(|mark| mark.pixel.depth())
+    }
+
     /// How many pixels are ink.
     pub fn inked(&self) -> usize {
         self.ink().count()

@@ -51,7 +51,7 @@ impl Lines {
             width: marks.width,
             height: marks.height,
             chains: crowded(&chains, marks, perspective),
-            recession: Recession::of(marks),
+            recession: Recession::of(marks.depths()),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! How lines recede from the near to the far ink of a page.
 
-use super::{ChainPoint, Marks};
+use super::ChainPoint;
 
 /// Least ratio of the farthest to the nearest ink that uses the whole range.
 const LEAST_RANGE: f64 = 2.0;
@@ -15,10 +15,10 @@ pub struct Recession {
 }
 
 impl Recession {
-    /// From the nearest to the farthest ink, 5 % left out at either end; at least from one distance to twice that.
-    pub fn of(marks: &Marks) -> Self {
-        let mut depths: Vec<f32> = marks.ink().map(|mark| mark.pixel.depth()).collect();
-        depths.retain(|&d| d > 0.0);
+    /// From the nearest to the farthest ink of these depths, 5 % left out at either end; at least from one distance to twice
+    /// that. Ink without a depth, 0, does not count.
+    pub fn of(depths: impl Iterator<Item = f32>) -> Self {
+        let mut depths: Vec<f32> = depths.filter(|&depth| depth > 0.0).collect();
         depths.sort_unstable_by(f32::total_cmp);
         let quantile = |percent: usize| {
             let depth = depths.get(depths.len() * percent / 100).or(depths.last());

@@ -5,6 +5,7 @@
 //! Each warm frame moves the eye 1 m along the view axis, so that nothing of an earlier frame can be used again.
 
 use std::cell::Cell;
+use std::num::NonZeroU32;
 use std::sync::Arc;
 
 use glam::DVec2;
@@ -37,8 +38,8 @@ pub struct Comparison {
     pub methods: Vec<Method>,
     /// Each method is run at each.
     pub levels: Vec<Detail>,
-    /// Warm frames behind a median, at least one.
-    pub repeat: u32,
+    /// Warm frames behind a median.
+    pub repeat: NonZeroU32,
     /// Whether a bare copy and a hardware depth draw are timed in turn with the warm frames; pixels of the draw show facets
     /// where the device has [`FEATURE`](super::depth_draw::FEATURE).
     pub floor: bool,

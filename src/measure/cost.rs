@@ -14,12 +14,11 @@ use std::collections::HashMap;
 
 use crate::error::Result;
 use crate::gpu::sizes::{CHUNK_BYTES, PIXEL_BYTES, RIM_EDGE_BYTES, VERTEX_BYTES, WORD_BYTES};
-use crate::plan::detail::across;
-use crate::plan::{Method, PassName, Plan, Thrift, Visibility};
+use crate::plan::passes::{Often, Over, PlannedPass};
+use crate::plan::{Frame, Method, PassName, Visibility};
 use crate::surface::lattice::{CELL_STEPS, CHUNK_FACETS, CHUNK_QUADS, CHUNK_VERTICES, CHUNK_WORDS};
 use crate::surface::tile::TILE_SAMPLES;
-use crate::surface::{Lattice, Surface, Tile};
-use crate::view::Camera;
+use crate::surface::{Surface, Tile};
 
 /// Bytes of the vertices of a chunk.
 const VERTICES_BYTES: u64 = CHUNK_VERTICES as u64 * VERTEX_BYTES;
@@ -78,15 +77,11 @@ pub struct Quantities {
     pub samples: [u64; 2],
     /// Vertices, of those made, that take the place of another, on sides shared with coarser chunks.
     pub shared: u64,
-    /// Whether chunks of different levels meet.
-    pub seams: bool,
-    /// Vertex batches.
-    pub batches: u64,
     /// Facets queued for `rasterize_large`; of several batches the last one's.
     pub queued: u64,
     /// Pixels listed by `candidates`, by `pairs`, and by `walk`.
     pub listed: [u64; 3],
-    /// Edges of the rim that are drawn.
+    /// Edges of the rim.
     pub rim: u64,
 }
 
@@ -146,33 +141,21 @@ fn both(buffer: &'static str, bytes: u64) -> Traffic {
 }
 
 impl Quantities {
-    /// What a lattice seen by a camera takes, of which the chunks in the first `seen` slots are rasterized and the
-    /// vertices of those in the slots `made` are made. Pixels, lists and rim are for the caller to say.
+    /// What a frame takes, of which the vertices of the chunks in the slots `made` are made. Pixels, lists and rim are for the
+    /// caller to say.
     ///
     /// # Errors
     /// As [`Surface::pyramid`].
-    pub fn of(
-        plan: &Plan,
-        surface: &Surface,
-        lattice: &Lattice,
-        seen: u32,
-        made: &[u32],
-        camera: &Camera,
-    ) -> Result<Self> {
-        let mut of = Self {
-            chunks: lattice.chunks().len() as u64,
-            made: made.len() as u64,
-            seams: lattice.has_seams(),
-            ..Self::default()
-        };
-        let across = across(surface, lattice, camera)?.map(|across| across || plan.thrift == Thrift::Nothing);
-        for (slot, _) in (0..).zip(across).filter(|(_, across)| *across) {
+    pub fn of(frame: &Frame, surface: &Surface, made: &[u32]) -> Result<Self> {
+        let chunks = frame.lattice.chunks();
+        let mut of = Self { chunks: chunks.len() as u64, made: made.len() as u64, ..Self::default() };
+        for (slot, _) in (0..).zip(frame.across(surface)?).filter(|(_, across)| *across) {
             of.across += 1;
-            of.drawn += u64::from(slot < seen);
+            of.drawn += u64::from(slot < frame.seen);
         }
         // Whether a tile's gradients are read.
         let mut tiles = HashMap::new();
-        for chunk in made.iter().filter_map(|slot| lattice.chunks().get(*slot as usize)) {
+        for chunk in made.iter().filter_map(|slot| chunks.get(*slot as usize)) {
             of.shared += u64::from(chunk.coarser.count_ones() * CHUNK_QUADS / 2);
             let fine = chunk.step < CELL_STEPS;
             if fine {
@@ -186,25 +169,46 @@ impl Quantities {
         Ok(of)
     }
 
-    /// What each pass costs, in the order of a frame; `clear` stands for clears and copies.
-    pub fn passes(&self, method: Method, visibility: Visibility) -> Vec<PassCost> {
-        let rounds = u64::from(visibility.rounds());
-        // Vertices are found anew where other batches have overwritten them.
-        let vertex_rounds = if self.batches > 1 { rounds } else { 1 };
-        let mut costs = vec![self.clear(method)];
-        if self.made > 0 {
-            costs.push(self.tessellate().times(vertex_rounds));
+    /// What each pass of a frame costs, in its order; `clear` stands for clears and copies.
+    pub fn passes(&self, frame: &Frame) -> Vec<PassCost> {
+        let passes = frame.passes.iter().filter(|pass| self.runs(pass)).filter_map(|pass| self.pass(pass.name, frame));
+        std::iter::once(self.clear(frame.plan.method)).chain(passes).collect()
+    }
+
+    /// Whether there is something for a pass to do in a frame.
+    fn runs(&self, pass: &PlannedPass) -> bool {
+        match pass.over {
+            Over::FreshChunks => self.made > 0,
+            Over::RimEdges => self.rim > 0,
+            Over::Chunks | Over::SeenChunks | Over::List(_) | Over::Pixels => pass.often != Often::OnReading,
         }
-        if self.made > 0 && self.seams {
-            costs.push(self.seam().times(vertex_rounds));
-        }
-        costs.extend([self.facing(), self.project().times(vertex_rounds)]);
-        costs.extend([self.rasterize(method, visibility), self.rasterize_large().times(rounds)]);
-        costs.extend(method.entry().passes.iter().filter_map(|pass| self.silhouette(*pass, method)));
-        if self.rim > 0 {
-            costs.push(self.border());
-        }
-        costs
+    }
+
+    /// What a pass costs over all rounds of a frame; `None` where it is not counted as part of one.
+    fn pass(&self, name: PassName, frame: &Frame) -> Option<PassCost> {
+        let [_, pairs, rest] = self.listed;
+        let method = frame.plan.method;
+        let rounds = (0..frame.visibility.rounds()).filter(|round| frame.pass(name, *round).is_some()).count() as u64;
+        Some(match name {
+            PassName::Tessellate => self.tessellate().times(rounds),
+            PassName::Seam => self.seam().times(rounds),
+            PassName::Facing => self.facing().times(rounds),
+            PassName::Project => self.project().times(rounds),
+            PassName::Rasterize => self.rasterize(method, frame.visibility, rounds),
+            PassName::RasterizeLarge => self.rasterize_large().times(rounds),
+            PassName::Candidates => self.candidates(),
+            PassName::Pairs => self.pairs(),
+            PassName::Walk => {
+                let mut walk = self.walk("walk", "pairs", pairs, frame.keeps_vertices());
+                walk.traffic.push(written("rest", rest * WORD_BYTES));
+                walk
+            }
+            PassName::WalkRest => self.walk("walk_rest", "rest", rest, frame.keeps_vertices()),
+            PassName::TowardAway => self.toward_away(method),
+            PassName::Adjacency => self.adjacency(),
+            PassName::Border => self.border(),
+            PassName::Compose => return None,
+        })
     }
 
     fn clear(&self, method: Method) -> PassCost {
@@ -259,10 +263,10 @@ impl Quantities {
         cost("project", self.drawn * u64::from(CHUNK_VERTICES) * PROJECT, traffic)
     }
 
-    fn rasterize(&self, method: Method, visibility: Visibility) -> PassCost {
+    fn rasterize(&self, method: Method, visibility: Visibility, rounds: u64) -> PassCost {
         let traffic = [read("chunks", self.drawn * CHUNK_BYTES), read("screens", self.drawn * VERTICES_BYTES)];
         let operations = self.drawn * u64::from(CHUNK_FACETS) * SET_UP + self.land * COVER;
-        let mut of = cost("rasterize", operations, traffic).times(u64::from(visibility.rounds()));
+        let mut of = cost("rasterize", operations, traffic).times(rounds);
         of.traffic.push(written("queue", self.queued * WORD_BYTES));
         let words = self.land * WORD_BYTES;
         match visibility {
@@ -282,24 +286,6 @@ impl Quantities {
     fn rasterize_large(&self) -> PassCost {
         let traffic = [read("queue", self.queued * WORD_BYTES), read("places", self.queued * POINT_BYTES)];
         cost("rasterize_large", self.queued * CLIP, traffic)
-    }
-
-    /// What a pass of a method costs; `None` for the others.
-    fn silhouette(&self, pass: PassName, method: Method) -> Option<PassCost> {
-        let [_, pairs, rest] = self.listed;
-        Some(match pass {
-            PassName::Candidates => self.candidates(),
-            PassName::Pairs => self.pairs(),
-            PassName::Walk => {
-                let mut walk = self.walk("walk", "pairs", pairs);
-                walk.traffic.push(written("rest", rest * WORD_BYTES));
-                walk
-            }
-            PassName::WalkRest => self.walk("walk_rest", "rest", rest),
-            PassName::TowardAway => self.toward_away(method),
-            PassName::Adjacency => self.adjacency(),
-            _ => return None,
-        })
     }
 
     fn candidates(&self) -> PassCost {
@@ -343,29 +329,32 @@ impl Quantities {
 
     /// Walks from so many listed pixels: of each its own pixel and a neighbour, the points that they show, and the ink of one
     /// of them.
-    fn walk(&self, name: &'static str, list: &'static str, pixels: u64) -> PassCost {
-        // Of several batches no vertices are left: points are found anew.
-        let points = if self.batches > 1 { "heights" } else { "places" };
+    fn walk(&self, name: &'static str, list: &'static str, pixels: u64, keeps_vertices: bool) -> PassCost {
         let traffic = [
             read(list, pixels * WORD_BYTES),
             read("pixels", pixels * 2 * PIXEL_BYTES),
-            read(points, pixels * 2 * POINT_BYTES),
             both("ink", pixels * WORD_BYTES),
         ];
-        cost(name, pixels * WALK, traffic)
+        let mut of = cost(name, pixels * WALK, traffic);
+        if keeps_vertices {
+            of.traffic.push(read("places", pixels * 2 * POINT_BYTES));
+        } else {
+            of.traffic.extend(found_anew(pixels * 2));
+        }
+        of
     }
 
-    /// Each edge has two ends, found anew from three samples each.
+    /// Each edge has two ends, found anew.
     fn border(&self) -> PassCost {
-        let samples = self.rim * 2 * 3 * WORD_BYTES;
-        let traffic = [
-            read("rim", self.rim * RIM_EDGE_BYTES),
-            read("heights", samples),
-            read("gradients_east", samples),
-            read("gradients_north", samples),
-        ];
-        cost("border", self.rim * EDGE, traffic)
+        let mut of = cost("border", self.rim * EDGE, [read("rim", self.rim * RIM_EDGE_BYTES)]);
+        of.traffic.extend(found_anew(self.rim * 2));
+        of
     }
+}
+
+/// So many points of the surface, where their vertices are not at hand: each from the three samples of its patch.
+fn found_anew(points: u64) -> [Traffic; 3] {
+    ["heights", "gradients_east", "gradients_north"].map(|buffer| read(buffer, points * 3 * WORD_BYTES))
 }
 
 /// Bytes of a pixel that only this method has.

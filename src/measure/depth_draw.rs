@@ -99,10 +99,10 @@ impl DepthDraw {
     /// Records the draw of the vertices that lie on the device.
     ///
     /// # Errors
-    /// [`Error::Gpu`] when no facets were loaded or the driver refuses.
+    /// [`Error::Mistake`] when no facets were loaded; [`Error::Gpu`] when the driver refuses.
     pub fn record(&self, on_device: OnDevice<'_>, encoder: &mut wgpu::CommandEncoder) -> Result<()> {
         let gpu = on_device.gpu;
-        let facets = self.facets.as_ref().ok_or_else(|| Error::Gpu { what: "no facets to draw".into() })?;
+        let facets = self.facets.as_ref().ok_or_else(|| Error::mistake("there are no facets to draw"))?;
         let entry = |(binding, name): &(u32, String)| {
             Ok(wgpu::BindGroupEntry { binding: *binding, resource: on_device.buffer(name)?.as_entire_binding() })
         };

@@ -9,8 +9,7 @@ use crate::error::{Error, Result};
 use crate::gpu::Gpu;
 use crate::gpu::clock::time_of;
 use crate::line::Kind;
-use crate::plan::detail::across;
-use crate::plan::{Border, Frame, Thrift};
+use crate::plan::Frame;
 use crate::render::{Drawn, Renderer};
 
 /// What each pass of the last frame had to move and compute; `drawn` is what it left. Of a page in pieces, the last one.
@@ -19,10 +18,8 @@ use crate::render::{Drawn, Renderer};
 /// Whatever the driver reports; [`Error::Mistake`] when there was no frame.
 pub fn costs(renderer: &Renderer, drawn: &Drawn) -> Result<Vec<PassCost>> {
     let frame = last(renderer)?;
-    let Frame { plan, camera, lattice, seen, .. } = frame;
     let on_device = renderer.on_device();
-    let made = on_device.scene.made();
-    let of_lattice = Quantities::of(plan, renderer.surface(), lattice, *seen, made, camera)?;
+    let of_chunks = Quantities::of(frame, renderer.surface(), on_device.scene.made())?;
     let count = |list| {
         // The last word of a header counts the items.
         let header: Vec<u32> = renderer.gpu().read(on_device.buffer(list)?, 4)?;
@@ -34,13 +31,12 @@ pub fn costs(renderer: &Renderer, drawn: &Drawn) -> Result<Vec<PassCost>> {
     let quantities = Quantities {
         pixels: pixels.len() as u64,
         land: pixels.iter().filter(|pixel| pixel.kind() != Kind::Sky).count() as u64,
-        batches: frame.batches.len() as u64,
         queued: count("queue")?,
         listed: [listed("candidates")?, listed("pairs")?, listed("rest")?],
-        rim: if plan.border == Border::On { on_device.scene.rim_edges() as u64 } else { 0 },
-        ..of_lattice
+        rim: on_device.scene.rim_edges() as u64,
+        ..of_chunks
     };
-    Ok(quantities.passes(plan.method, frame.visibility))
+    Ok(quantities.passes(frame))
 }
 
 /// The frame that lies on the device.
@@ -91,9 +87,8 @@ impl Floor {
             return Ok(None);
         }
         // Chunks beside the page have the vertices of an earlier frame.
-        let across = across(renderer.surface(), &frame.lattice, &frame.camera)?;
-        let slots = (0..frame.seen).zip(across);
-        let drawn = slots.filter(|(_, across)| *across || frame.plan.thrift == Thrift::Nothing).map(|(slot, _)| slot);
+        let slots = (0..frame.seen).zip(frame.across(renderer.surface())?);
+        let drawn = slots.filter(|(_, across)| *across).map(|(slot, _)| slot);
         self.draw.load(&self.gpu, &frame.lattice, drawn)?;
         time_of(&self.gpu, |encoder| self.draw.record(renderer.on_device(), encoder))
     }

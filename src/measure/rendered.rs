@@ -47,6 +47,8 @@ pub(super) fn try_plan(
     floor: bool,
 ) -> Result<Run> {
     memory::reset_peak();
+    // Each run compiles its passes, whichever ran before it.
+    gpu.forget_passes();
     let start = Instant::now();
     let mut renderer = Renderer::new(gpu.clone(), surface.clone())?;
     renderer.prepare(&plan, trial.camera)?;

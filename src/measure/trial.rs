@@ -4,6 +4,8 @@
 //! the view axis, so that nothing of an earlier frame can be used again. The first frame, of the eye that was asked for,
 //! is the one that is judged.
 
+use std::num::NonZeroU32;
+
 use glam::DVec2;
 use xxhash_rust::xxh3::xxh3_64;
 
@@ -85,7 +87,7 @@ pub struct Trial<'a> {
     /// The level of its facets.
     pub level: DrawnLevel,
     /// Warm frames.
-    pub repeat: u32,
+    pub repeat: NonZeroU32,
     /// By what it is measured.
     pub judge: &'a Judge<'a>,
     /// Share of truth, drawn one pixel wide, that pops when the eye moves on.
@@ -130,9 +132,9 @@ impl Trial<'_> {
     fn time<D: Draws>(&self, method: &mut D, setup_ms: f64) -> Result<Timed<D::Yield>> {
         let first_frame_ms = method.time_of_frame(self.camera)?;
         let first = method.yielded()?;
-        let passes = method.passes(&moved(self.camera, self.repeat + 1))?;
+        let passes = method.passes(&moved(self.camera, self.repeat.get() + 1))?;
         let (mut times, mut mask_hashes, mut next) = (Vec::new(), Vec::new(), None);
-        for step in 1..=self.repeat {
+        for step in 1..=self.repeat.get() {
             let camera = moved(self.camera, step);
             times.push(method.time_of_frame(&camera)?);
             let mask = method.yielded()?.mask();

@@ -4,12 +4,14 @@
 //! or hidden by nearer land stays as coarse as its neighbours allow. The level of a chunk depends on the surface and the
 //! camera alone.
 
+use std::cell::Cell;
 use std::collections::HashSet;
 
 use glam::{DVec2, DVec3};
 
 use super::Thrift;
 use super::horizon::Horizon;
+use super::left_out::Omission;
 use crate::error::Result;
 use crate::surface::lattice::{CELL_STEPS, CHUNK_QUADS, Role};
 use crate::surface::quadtree::Growth;
@@ -54,33 +56,35 @@ impl From<Level> for Detail {
 }
 
 /// The lattice of a frame: chunks as coarse as `error_px` allows where they can be seen, else as their neighbours allow.
-/// Those that neither appear nor can be crossed by a walk are left out.
+/// Those that neither appear nor can be crossed by a walk are left out. And what it does without for that.
 ///
 /// # Errors
 /// See [`Lattice::adaptive`].
-pub fn adaptive(surface: &Surface, camera: &Camera, error_px: f64, thrift: Thrift) -> Result<Lattice> {
+pub fn adaptive(surface: &Surface, camera: &Camera, error_px: f64, thrift: Thrift) -> Result<(Lattice, Vec<Omission>)> {
     let (dem, pyramid) = (surface.dem(), surface.pyramid()?);
     let mut demand = Demand::new(surface, pyramid, camera, error_px);
     let wedge = View::wedge(surface, camera);
     let from = dem.grid_place(camera.eye.truncate()) * f64::from(CELL_STEPS);
     let tree = Lattice::grow(dem, pyramid.coarsest_step(), from.to_array(), &mut demand)?;
-    Lattice::adaptive(dem, tree, |origin, step| {
+    let role = |origin, step| {
         let bounds = pyramid.bounds(origin, step)?;
         let seen = demand.view.meets(bounds) && !demand.is_hidden(origin, step);
         let crossed = thrift == Thrift::Nothing || wedge.meets(bounds);
         seen.then_some(Role::Seen).or(crossed.then_some(Role::Crossed))
-    })
+    };
+    let drops = Cell::new(false);
+    let lattice = Lattice::adaptive(dem, tree, |origin, step| {
+        let role = role(origin, step);
+        drops.set(drops.get() || role.is_none());
+        role
+    })?;
+    // Chunks coarser than the grid take some of its samples.
+    let skips_samples = drops.get() || lattice.chunks().iter().any(|chunk| chunk.step > CELL_STEPS);
+    let left_out = [(Omission::FineFacets, demand.stops), (Omission::Samples, skips_samples)];
+    Ok((lattice, left_out.into_iter().filter(|(_, is_left_out)| *is_left_out).map(|(what, _)| what).collect()))
 }
 
-/// How many chunks of a lattice lie beside the page's map projection.
-///
-/// # Errors
-/// As [`Surface::pyramid`].
-pub fn beside(surface: &Surface, lattice: &Lattice, camera: &Camera) -> Result<usize> {
-    Ok(across(surface, lattice, camera)?.filter(|across| !across).count())
-}
-
-/// Of each chunk of a lattice whether it does not.
+/// Of each chunk of a lattice whether some of it is not beside the page's map projection.
 ///
 /// # Errors
 /// As [`Surface::pyramid`].
@@ -125,6 +129,8 @@ struct Demand<'a> {
     widest: f64,
     /// Squares found hidden, by their corner and size.
     hidden: HashSet<([u32; 2], u32)>,
+    /// Whether a chunk was left coarser than it could be.
+    stops: bool,
 }
 
 impl<'a> Demand<'a> {
@@ -148,6 +154,7 @@ impl<'a> Demand<'a> {
             tolerance: error_px / corner,
             widest: SIDES * error_px / corner / surface.dem().cell().max_element() * f64::from(CELL_STEPS),
             hidden: HashSet::new(),
+            stops: false,
         }
     }
 
@@ -186,6 +193,25 @@ impl<'a> Demand<'a> {
         least > 0.0 || most < 0.0
     }
 
+    /// Whether the page shows what the facets of a square lack. Notes the square where nearer land hides it.
+    fn wants(&mut self, origin: [u32; 2], step: u32, bounds: [DVec3; 2]) -> bool {
+        let deviation = self.pyramid.deviation(origin, step);
+        if deviation.is_infinite() {
+            // Seen or not: where the rim is wrong, so is what a neighbour shares with it.
+            return true;
+        }
+        if !self.view.meets(bounds) {
+            return false;
+        }
+        if self.below_horizon(origin, step, 2) {
+            self.hidden.insert((origin, CHUNK_QUADS * step));
+            return false;
+        }
+        let calm = self.is_calm(origin, step, bounds);
+        let distance = self.distance(bounds) * if calm { CALM } else { 1.0 };
+        deviation > self.tolerance * distance || f64::from(step) > self.widest * distance
+    }
+
     /// From the eye to the nearest place of a box, metres.
     fn distance(&self, [low, high]: [DVec3; 2]) -> f64 {
         self.view.eye.clamp(low, high).distance(self.view.eye)
@@ -220,21 +246,9 @@ impl Growth for Demand<'_> {
     fn splits(&mut self, origin: [u32; 2], size: u32) -> bool {
         let (pyramid, step) = (self.pyramid, size / CHUNK_QUADS);
         let Some(bounds) = pyramid.bounds(origin, step).filter(|_| step > 1) else { return false };
-        let deviation = pyramid.deviation(origin, step);
-        if deviation.is_infinite() {
-            // Seen or not: where the rim is wrong, so is what a neighbour shares with it.
-            return true;
-        }
-        if !self.view.meets(bounds) {
-            return false;
-        }
-        if self.below_horizon(origin, step, 2) {
-            self.hidden.insert((origin, size));
-            return false;
-        }
-        let calm = self.is_calm(origin, step, bounds);
-        let distance = self.distance(bounds) * if calm { CALM } else { 1.0 };
-        deviation > self.tolerance * distance || f64::from(step) > self.widest * distance
+        let wanted = self.wants(origin, step, bounds);
+        self.stops |= !wanted;
+        wanted
     }
 
     /// Beside a coarser chunk a facet of level 1 spans two cells, one of which may lack its patch.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::left_out::Omission;
 use super::passes::{Often, Over, PassName, PlannedPass, passes};
-use super::{Batch, Border, Detail, Pieces, Plan, Thrift, Visibility, batches, detail};
+use super::{Batch, Detail, Pieces, Plan, Thrift, Visibility, batches, detail};
 use crate::error::Result;
 use crate::surface::{Lattice, Level, Surface};
 use crate::view::Camera;
@@ -62,11 +62,14 @@ impl Frame {
     /// [`Error::Limit`](crate::error::Error::Limit) when the scene or the page is too large; as [`Surface::pyramid`].
     pub fn new(plan: &Plan, surface: &Surface, camera: &Camera, int64: bool, kept: &mut Kept) -> Result<Self> {
         check(surface, camera)?;
-        let lattice = match plan.detail {
-            Detail::Uniform(level) => kept.uniform(surface, level)?,
-            Detail::Adaptive { error_px } => Arc::new(detail::adaptive(surface, camera, error_px, plan.thrift)?),
+        let (lattice, omissions) = match plan.detail {
+            Detail::Uniform(level) => (kept.uniform(surface, level)?, Vec::new()),
+            Detail::Adaptive { error_px } => {
+                let (lattice, omissions) = detail::adaptive(surface, camera, error_px, plan.thrift)?;
+                (Arc::new(lattice), omissions)
+            }
         };
-        Ok(Self::over(lattice, plan, surface, camera, int64))
+        Ok(Self::over(lattice, plan, surface, camera, int64).leave_out(omissions))
     }
 
     /// What is known of the frames of a plan before there is an eye, on pages as large as the camera's: where each frame
@@ -80,14 +83,14 @@ impl Frame {
             Detail::Uniform(level) => kept.uniform(surface, level)?,
             Detail::Adaptive { .. } => Arc::new(Lattice::empty(surface.dem(), surface.pyramid()?.coarsest_step())?),
         };
-        Ok(Self::over(lattice, plan, surface, camera, int64))
+        Ok(Self::over(lattice, plan, surface, camera, int64).leave_out(Vec::new()))
     }
 
     fn over(lattice: Arc<Lattice>, plan: &Plan, surface: &Surface, camera: &Camera, int64: bool) -> Self {
         let visibility = plan.method.visibility(int64);
         let chunks = lattice.chunks().len() as u32;
         let all_seen = plan.thrift == Thrift::Nothing || visibility == Visibility::TwoDepths;
-        let mut frame = Self {
+        Self {
             plan: *plan,
             camera: *camera,
             pieces: Pieces::from([camera.width, camera.height]),
@@ -96,31 +99,29 @@ impl Frame {
             visibility,
             passes: passes(plan),
             tests_voids: surface.dem().voids() > 0,
-            omissions: match (plan.detail, plan.thrift) {
-                (Detail::Adaptive { .. }, _) if all_seen => vec![Omission::FineFacets, Omission::Samples],
-                (Detail::Adaptive { .. }, _) => vec![Omission::FineFacets, Omission::Rasterizing, Omission::Samples],
-                (Detail::Uniform(_), Thrift::LeaveOut) => vec![Omission::Chunks],
-                (Detail::Uniform(_), Thrift::Nothing) => Vec::new(),
-            },
+            omissions: Vec::new(),
             lattice,
-        };
-        frame.leave_out();
-        frame
+        }
     }
 
-    /// Leaves out the passes and tests that would find nothing to do.
-    fn leave_out(&mut self) {
-        let has_seams = matches!(self.plan.detail, Detail::Adaptive { .. }) && self.lattice.has_seams();
-        if !has_seams {
-            self.passes.retain(|pass| pass.name != PassName::Seam);
-            self.omissions.push(Omission::SeamPass);
-        }
-        if self.plan.border == Border::Off {
-            self.omissions.push(Omission::BorderPass);
-        }
-        if !self.tests_voids {
-            self.omissions.push(Omission::VoidTests);
-        }
+    /// Leaves out the passes that would find nothing to do, and notes what else is not done, beside what its lattice does
+    /// without.
+    fn leave_out(mut self, of_lattice: Vec<Omission>) -> Self {
+        self.passes.retain(|pass| pass.name != PassName::Seam || self.lattice.has_seams());
+        let lacks = |name| self.passes.iter().all(|pass| pass.name != name);
+        // Chunks beside the page are among those that a lattice of several levels keeps from being rasterized.
+        let passes_over = self.plan.thrift == Thrift::LeaveOut && matches!(self.plan.detail, Detail::Uniform(_));
+        let left_out = [
+            (Omission::Rasterizing, (self.seen as usize) < self.lattice.chunks().len()),
+            (Omission::Chunks, passes_over),
+            (Omission::SeamPass, lacks(PassName::Seam)),
+            (Omission::BorderPass, lacks(PassName::Border)),
+            (Omission::VoidTests, !self.tests_voids),
+        ];
+        self.omissions = of_lattice;
+        self.omissions.extend(left_out.into_iter().filter(|(_, is_left_out)| *is_left_out).map(|(what, _)| what));
+        self.omissions.sort();
+        self
     }
 
     /// The same frame on a page that is cut in another way.
@@ -142,6 +143,12 @@ impl Frame {
         self.passes.iter().find(|pass| pass.name == name && runs(pass.often))
     }
 
+    /// The passes that run over each batch.
+    pub fn of_batch(&self) -> impl Iterator<Item = PassName> {
+        let of_batch = |often| matches!(often, Often::EachRound | Often::ForVertices | Often::EachBatch);
+        self.passes.iter().filter(move |pass| of_batch(pass.often)).map(|pass| pass.name)
+    }
+
     /// The passes that run once for a piece: those of the method, and the border.
     pub fn of_piece(&self) -> impl Iterator<Item = PassName> {
         self.passes.iter().filter(|pass| pass.often == Often::Once).map(|pass| pass.name)
@@ -156,6 +163,16 @@ impl Frame {
     /// Whether the vertices of all chunks fit in one batch, and so stay from round to round and from frame to frame.
     pub fn keeps_vertices(&self) -> bool {
         self.batches.len() <= 1
+    }
+
+    /// Of each chunk, slot by slot, whether passes look at it: not at those beside the page's map projection, unless nothing is
+    /// left out.
+    ///
+    /// # Errors
+    /// As [`Surface::pyramid`].
+    pub fn across(&self, surface: &Surface) -> Result<impl Iterator<Item = bool>> {
+        let all = self.plan.thrift == Thrift::Nothing;
+        Ok(detail::across(surface, &self.lattice, &self.camera)?.map(move |across| across || all))
     }
 
     /// How many facets exist. Cost: see [`Lattice::facets`]; nothing for a uniform lattice.

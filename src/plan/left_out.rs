@@ -5,14 +5,13 @@
 
 use std::collections::{BTreeMap, HashSet};
 
-use super::detail;
 use super::frame::Frame;
 use crate::error::{Message, Result, Setting};
 use crate::surface::lattice::{CELL_STEPS, CHUNK_QUADS};
 use crate::surface::{Surface, Tile};
 
-/// Something a frame does without.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// Something a frame does without, in the order of telling.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Omission {
     /// Facets finer than the page shows.
     FineFacets,
@@ -87,14 +86,14 @@ impl Frame {
                 let saved = uniform.saturating_sub(lattice.facets(surface.dem()));
                 Some(format!("{saved} of {uniform} facets of level {}", CELL_STEPS / finest))
             }
-            Omission::Rasterizing => of(chunks.len() - lattice.seen() as usize, chunks.len(), "chunks"),
+            Omission::Rasterizing => of(chunks.len() - self.seen as usize, chunks.len(), "chunks"),
             Omission::Samples => {
                 let tiles: HashSet<Tile> = chunks.iter().map(Tile::of).collect();
                 let of_level_1 = |samples: usize| (samples - 1).div_ceil(CHUNK_QUADS as usize);
                 let all = of_level_1(surface.dem().columns()) * of_level_1(surface.dem().rows());
                 of(all.saturating_sub(tiles.len()), all, "tiles of samples")
             }
-            Omission::Chunks => of(detail::beside(surface, lattice, &self.camera)?, chunks.len(), "chunks"),
+            Omission::Chunks => of(self.across(surface)?.filter(|across| !across).count(), chunks.len(), "chunks"),
             Omission::SeamPass | Omission::BorderPass | Omission::VoidTests => None,
         })
     }

@@ -15,7 +15,7 @@ use super::chart::{
 };
 use super::labels::{self, Choice, Page, Rect};
 use super::results::Scene;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::measure::figures::Run;
 use crate::plan::Method;
 use crate::plan::registry::Look;
@@ -41,10 +41,31 @@ const FRONT: RGBColor = RGBColor(190, 190, 190);
 /// 1 - F of 0.0001 or less is drawn there, and the axis says so.
 ///
 /// # Errors
-/// [`Error::Mistake`](crate::error::Error::Mistake) where the plotting library gives up.
+/// [`Error::Mistake`] where a method is not in the registry, or the plotting library gives up.
 pub fn error_time_svg(results: &Results) -> Result<String> {
-    let panel = |root: &Area, panel: &Area, scene: &Scene| draw_panel(root, panel, scene, results);
-    plot(TITLE, &description(results), &FOOTNOTE, &results.scenes, panel)
+    let panels = results.scenes.iter().map(|scene| Panel::of(scene, results)).collect::<Result<Vec<_>>>()?;
+    plot(TITLE, &description(results), &FOOTNOTE, &panels, draw_panel)
+}
+
+/// What a panel shows.
+struct Panel<'a> {
+    scene: &'a Scene,
+    runs: Vec<&'a Run>,
+    curves: Vec<Curve<'a>>,
+}
+
+/// The runs of a method, by level, and how they look.
+struct Curve<'a> {
+    runs: Vec<&'a Run>,
+    look: Look,
+}
+
+impl<'a> Panel<'a> {
+    fn of(scene: &'a Scene, results: &'a Results) -> Result<Self> {
+        let runs: Vec<&Run> = results.runs.iter().filter(|run| run.scene == scene.name).collect();
+        let curve = |runs: Vec<&'a Run>| Ok(Curve { look: look(runs[0].method)?, runs });
+        Ok(Self { scene, curves: curves(&runs).into_iter().map(curve).collect::<Result<_>>()?, runs })
+    }
 }
 
 /// What the plot shows, in words.
@@ -61,8 +82,8 @@ fn description(results: &Results) -> String {
 }
 
 /// The axes of a scene, its curves, and what stands beside them.
-fn draw_panel(root: &Area, panel: &Area, scene: &Scene, results: &Results) -> Drawn {
-    let runs: Vec<&Run> = results.runs.iter().filter(|run| run.scene == scene.name).collect();
+fn draw_panel(root: &Area, panel: &Area, shown: &Panel) -> Drawn {
+    let Panel { scene, runs, curves } = shown;
     let x = Axis::new(
         "time of a frame, camera to mask, ms (median; left is faster)",
         f64::to_string,
@@ -74,21 +95,20 @@ fn draw_panel(root: &Area, panel: &Area, scene: &Scene, results: &Results) -> Dr
     let caption = format!("{}, {} × {} px", shorten(&scene.name, 60), scene.width, scene.height);
     let chart = axes(panel, &caption, &x, &y)?;
     let place = |run: &Run| place(&chart, [millis(run), error(run)]);
-    let curves = curves(&runs);
-    let front = front(&runs, &place);
+    let front = front(runs, &place);
     root.draw(&PathElement::new(front.iter().map(|at| whole(*at)).collect::<Vec<_>>(), FRONT.stroke_width(5)))?;
     let mut page = label_page(&chart, segments(&front));
-    for curve in &curves {
-        let points: Vec<[f64; 2]> = curve.iter().map(|run| place(run)).collect();
-        draw_curve(root, &points, &look(curve[0].method))?;
+    for Curve { runs, look } in curves {
+        let points: Vec<[f64; 2]> = runs.iter().map(|run| place(run)).collect();
+        draw_curve(root, &points, look)?;
         page.lines.extend(segments(&points));
         let reach = |run: &&Run| if run.pareto { RING + 1.0 } else { MARKER };
-        page.taken.extend(curve.iter().zip(&points).map(|(run, point)| Rect::around(*point, reach(run))));
+        page.taken.extend(runs.iter().zip(&points).map(|(run, point)| Rect::around(*point, reach(run))));
     }
     for run in runs.iter().filter(|run| run.pareto) {
         root.draw(&Circle::new(whole(place(run)), RING as i32, INK))?;
     }
-    draw_labels(root, &curves, page, &place)
+    draw_labels(root, curves, page, &place)
 }
 
 /// The runs of each method, by level.
@@ -112,20 +132,20 @@ fn front(runs: &[&Run], place: &impl Fn(&Run) -> [f64; 2]) -> Vec<[f64; 2]> {
 }
 
 /// The method's name beside one point of its curve, levels beside the others.
-fn draw_labels(root: &Area, curves: &[Vec<&Run>], mut page: Page, place: &impl Fn(&Run) -> [f64; 2]) -> Drawn {
+fn draw_labels(root: &Area, curves: &[Curve], mut page: Page, place: &impl Fn(&Run) -> [f64; 2]) -> Drawn {
     let choice = |run: &Run, text: String| Choice { point: place(run), text };
     let named = |run: &&Run| choice(run, format!("{}, level {}", run.method, run.level));
     // Names are wide: they choose first, and beside which point.
-    let names: Vec<Vec<Choice>> = curves.iter().map(|curve| curve.iter().map(named).collect()).collect();
+    let names: Vec<Vec<Choice>> = curves.iter().map(|curve| curve.runs.iter().map(named).collect()).collect();
     let names = labels::place(&names, &mut page);
     for (curve, name) in curves.iter().zip(names) {
         let told = name.as_ref().map(|name| name.choice.point);
-        let others = curve.iter().filter(|run| Some(place(run)) != told);
+        let others = curve.runs.iter().filter(|run| Some(place(run)) != told);
         let levels: Vec<_> = others.map(|run| vec![choice(run, run.level.to_string())]).collect();
         let levels = labels::place(&levels, &mut page);
         name.iter()
             .chain(levels.iter().flatten())
-            .try_for_each(|label| draw_label(root, label, rgb(look(curve[0].method).colour)))?;
+            .try_for_each(|label| draw_label(root, label, rgb(curve.look.colour)))?;
     }
     Ok(())
 }
@@ -146,7 +166,8 @@ fn error(run: &Run) -> f64 {
     (1.0 - run.f).max(FLOOR)
 }
 
-/// How the curve of a method looks; of one that is not in the registry, as the default does.
-fn look(method: &str) -> Look {
-    Method::named(method).unwrap_or_default().entry().look
+/// How the curve of a method looks.
+fn look(method: &str) -> Result<Look> {
+    let none = || Error::mistake(format!("no method is called {method}"));
+    Ok(Method::named(method).ok_or_else(none)?.entry().look)
 }

@@ -18,7 +18,7 @@ use hachure::surface::tile::TILE_SAMPLES;
 use hachure::surface::{Lattice, Surface};
 use hachure::view::Camera;
 
-use super::{bytes, flat, from_south, quantities};
+use super::{bytes, flat, frame, from_south, in_two_batches, on_page};
 use crate::frames::{METHODS, Planned};
 use crate::reflection::{Bound, bound, shaders};
 use crate::scenes::{gpu, gpu_without_int64, level, rough};
@@ -50,11 +50,11 @@ fn sizes(lattice: &Lattice, rim_edges: u64, page: [u32; 2]) -> Sizes {
     sizes
 }
 
-/// What the passes of a raster of this kind bind, each by its name.
+/// What the passes of a raster of this kind bind, each by its name, where vertices are kept or found anew.
 type Passes = BTreeMap<&'static str, BTreeMap<String, Bound>>;
 
-fn passes(visibility: Visibility) -> Passes {
-    shaders(visibility, true).into_iter().map(|(name, source)| (name, bound(name, &source))).collect()
+fn passes(visibility: Visibility, keeps_vertices: bool) -> Passes {
+    shaders(visibility, keeps_vertices).into_iter().map(|(name, source)| (name, bound(name, &source))).collect()
 }
 
 /// What is wrong with costs beside what passes bind, where facets are rasterized in so many rounds.
@@ -138,7 +138,7 @@ fn costs_are_of_what_passes_bind() {
                 let names: Vec<_> = drawn.costs.iter().map(|cost| cost.name).collect();
                 assert_eq!(names, drawn.names, "{name}, {detail:?}");
                 let rounds = u64::from(drawn.visibility.rounds());
-                let faults = faults(&drawn.costs, &passes(drawn.visibility), &drawn.sizes, rounds);
+                let faults = faults(&drawn.costs, &passes(drawn.visibility, true), &drawn.sizes, rounds);
                 assert_eq!(faults, Vec::<String>::new(), "{name}, {detail:?}, {:?}", drawn.visibility);
                 for cost in &drawn.costs {
                     let idle = ["rasterize_large", "walk_rest"].contains(&cost.name);
@@ -163,8 +163,8 @@ fn costs_are_of_what_passes_bind() {
 fn what_costs_leave_out_is_bound() {
     for (pass, buffers, why) in UNCOUNTED {
         assert!(!why.is_empty());
-        let bound: Vec<_> =
-            [Visibility::Key64, Visibility::TwoDepths].into_iter().flat_map(|v| passes(v)[pass].clone()).collect();
+        let rasters = [Visibility::Key64, Visibility::TwoDepths];
+        let bound: Vec<_> = rasters.into_iter().flat_map(|raster| passes(raster, true)[pass].clone()).collect();
         let stale: Vec<_> = buffers.iter().filter(|buffer| !bound.iter().any(|(name, _)| name == *buffer)).collect();
         assert!(stale.is_empty(), "{pass} does not bind {stale:?}");
     }
@@ -174,10 +174,8 @@ fn what_costs_leave_out_is_bound() {
 fn found(spoil: impl Fn(&mut Vec<PassCost>, &mut Passes)) -> String {
     let surface = flat();
     let lattice = Lattice::uniform(surface.dem(), level(2)).expect("a lattice");
-    let page =
-        Quantities { pixels: 3072, land: 600, batches: 1, queued: 3, listed: [50, 20, 7], rim: 64, ..quantities(2) };
-    let mut costs = page.passes(Method::Walk, Visibility::Key64);
-    let mut passes = passes(Visibility::Key64);
+    let mut costs = Quantities { pixels: 3072, ..on_page() }.passes(&frame(2, true));
+    let mut passes = passes(Visibility::Key64, true);
     spoil(&mut costs, &mut passes);
     faults(&costs, &passes, &sizes(&lattice, 64, [64, 48]), 1).join("; ")
 }
@@ -210,6 +208,21 @@ fn costs_that_are_wrong_are_noticed() {
         passes.get_mut("project").expect("the pass").insert("summaries".into(), summaries);
     });
     assert_eq!(more, "project writes summaries, which costs nothing");
+}
+
+#[test]
+fn costs_of_several_batches_are_of_what_their_passes_bind() {
+    let surface = flat();
+    let lattice = Lattice::uniform(surface.dem(), level(2)).expect("a lattice");
+    let sizes = sizes(&lattice, 64, [64, 48]);
+    for (int64, visibility) in [(true, Visibility::Key64), (false, Visibility::Key32)] {
+        let costs = Quantities { pixels: 3072, ..on_page() }.passes(&in_two_batches(frame(2, int64)));
+        let rounds = u64::from(visibility.rounds());
+        let faults = |keeps_vertices| faults(&costs, &passes(visibility, keeps_vertices), &sizes, rounds);
+        assert_eq!(faults(false), Vec::<String>::new(), "{visibility:?}");
+        let kept = faults(true).join("; ");
+        assert!(kept.contains("walk does not bind heights; walk does not bind gradients_east"), "{kept}");
+    }
 }
 
 /// Where chunks of 512 facets cover the page and all of them appear: straight down on 33 x 33 samples, a little more land than
@@ -307,7 +320,7 @@ fn buffers_hold_whole_items_as_shaders_lay_them_out() {
     let sizes = sizes(&lattice, 128, page);
     let mut seen = Vec::new();
     for visibility in [Visibility::Key64, Visibility::Key32, Visibility::TwoDepths] {
-        for (pass, binds) in passes(visibility) {
+        for (pass, binds) in [true, false].into_iter().flat_map(|keeps_vertices| passes(visibility, keeps_vertices)) {
             for (buffer, bound) in binds.iter().filter(|(buffer, _)| !["valid", "counts"].contains(&buffer.as_str())) {
                 // Two atomic words of a pixel are two items.
                 let parts = if buffer == "pixels" { 8 / bound.item } else { 1 };
