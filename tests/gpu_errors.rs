@@ -132,6 +132,9 @@ fn a_pass_is_compiled_once_for_the_constants_on_which_it_depends() {
     assert!(!Arc::ptr_eq(&first, &pass(&[("needed", 2.0)])));
     assert!(!Arc::ptr_eq(&first, &pass(&[("needed", 1.0), ("optional", 1.0)])));
     assert_eq!(gpu.compiled(), 3);
+    gpu.forget_passes();
+    assert!(!Arc::ptr_eq(&first, &pass(&[("needed", 1.0)])));
+    assert_eq!(gpu.compiled(), 4);
 }
 
 #[test]

@@ -53,6 +53,12 @@ impl Compiled {
         self.count.load(Ordering::Relaxed)
     }
 
+    /// Drops all passes, and what is known of their shaders.
+    pub fn forget(&self) {
+        lock(&self.shaders).clear();
+        lock(&self.passes).clear();
+    }
+
     /// What a shader says, read once.
     fn reflection(&self, shader: &Shader) -> Result<Arc<Reflection>> {
         if let Some(reflection) = lock(&self.shaders).get(shader) {

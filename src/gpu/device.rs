@@ -139,6 +139,12 @@ impl Gpu {
         self.compiled.count()
     }
 
+    /// Drops all compiled passes, so that the next frames compile theirs again: for measuring what setting up takes.
+    /// Renderers keep those they have bound.
+    pub fn forget_passes(&self) {
+        self.compiled.forget();
+    }
+
     /// Waits until all submitted work is done.
     ///
     /// # Errors
