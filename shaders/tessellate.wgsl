@@ -1,5 +1,6 @@
 // One invocation a block of vertices, some columns and rows, of a chunk whose vertices are not there yet: of each the
-// offset from its sample, and the sample's height. No camera counts.
+// offset from its sample, and the sample's height. Whatever the camera, but for chunks beside the page where batches share
+// the buffer.
 // Chunks that share a vertex evaluate it from the same cell in the same way: they agree to the bit.
 
 @group(0) @binding(20) var<storage, read_write> out_places: array<vec4<f32>>;

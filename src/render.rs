@@ -24,8 +24,9 @@ pub use page::Page;
 
 /// A surface on a device, ready to be seen from any eye by any plan on a page of any size.
 ///
-/// Passes belong to the device, samples and vertices to the scene, what is kept of pixels to the page's size: whatever a
-/// frame has in common with earlier ones is neither compiled nor uploaded again.
+/// Passes belong to the device, samples and vertices to the scene, what is kept of pixels to the page's size:
+/// whatever a frame has in common with earlier ones is neither compiled nor uploaded again. The buffers of a page are made
+/// anew where its size changes; of uniform levels the last one's lattice is kept.
 pub struct Renderer {
     gpu: Arc<Gpu>,
     surface: Arc<Surface>,
@@ -33,7 +34,8 @@ pub struct Renderer {
     scene: Scene,
     page: PageBuffers,
     stages: Stages,
-    last: Option<Frame>,
+    /// What lies on the device: `None` while a frame is on its way, and after one that failed there.
+    last: Option<(Frame, Piece)>,
 }
 
 /// What a frame leaves to read, and what was counted on the way.
@@ -81,8 +83,6 @@ impl Renderer {
         let frame = self.plan(plan, camera)?;
         self.upload(&frame)?;
         frame.pieces.iter().try_for_each(|piece| self.passes(&frame, piece, None))?;
-        // What could not be read has passed for a void.
-        self.surface.dem().check()?;
         Ok(frame)
     }
 
@@ -106,6 +106,7 @@ impl Renderer {
 
     /// All passes over a piece of a frame, from clean buffers to its ink.
     fn passes(&mut self, frame: &Frame, piece: Piece, timer: Option<&mut Timer>) -> Result<()> {
+        self.last = None;
         self.scene.write_camera(&self.gpu, &self.surface, frame, piece)?;
         let mut work = Work::new(self.on_device(), frame, piece, timer);
         work.clear(&["pixels", "ink", "summaries", "counts"])?;
@@ -129,29 +130,32 @@ impl Renderer {
         }
         work.finish()?;
         self.scene.made_vertices(frame);
-        self.last = Some(frame.clone());
+        // What could not be read has passed for a void.
+        self.surface.dem().check()?;
+        self.last = Some((frame.clone(), piece));
         Ok(())
     }
 
-    /// Composes the last frame and copies it to the CPU.
+    /// Composes the last frame and copies it to the CPU: after [`Self::draw_piece`] that piece.
     ///
     /// # Errors
     /// Whatever the driver reports; [`Error::Gpu`] when a walk was cut short; [`Error::Limit`] when the page takes several
     /// pieces, of which the device holds the last alone; [`Error::Mistake`] when there was no frame, or a pixel has a
     /// depth and no ID.
-    pub fn read(&self) -> Result<Drawn> {
-        let frame = self.last.as_ref().ok_or_else(|| Error::mistake("there is no frame to read"))?;
-        let mut pieces = frame.pieces.iter();
-        match (pieces.next(), pieces.len()) {
-            (Some(piece), 0) => self.read_piece(frame, piece),
-            (_, more) => {
-                let what = format!("the page takes {} pieces, one can be read", more + 1);
+    pub fn read(&mut self) -> Result<Drawn> {
+        let (frame, piece) = self.last.clone().ok_or_else(|| Error::mistake("there is no frame to read"))?;
+        match frame.pieces.iter().len() {
+            1 => self.read_piece(&frame, piece),
+            pieces => {
+                let what = format!("the page takes {pieces} pieces, one can be read");
                 Err(Error::limit(what, message!["draw it piece by piece, or use a smaller ", Setting::Size]))
             }
         }
     }
 
-    fn read_piece(&self, frame: &Frame, piece: Piece) -> Result<Drawn> {
+    /// Composes a piece that was drawn; where that fails, there is no frame to read.
+    fn read_piece(&mut self, frame: &Frame, piece: Piece) -> Result<Drawn> {
+        self.last = None;
         let [width, height] = piece.drawn.size;
         let on_device = self.on_device();
         let mut work = Work::new(on_device, frame, piece, None);
@@ -161,6 +165,7 @@ impl Renderer {
         let counts: Vec<Counts> = self.gpu.read(on_device.buffer("counts")?, 1)?;
         let longest_walk = checked(&counts)?;
         self.surface.dem().check()?;
+        self.last = Some((frame.clone(), piece));
         Ok(Drawn { raster: InkRaster { width, height, pixels }, longest_walk })
     }
 
@@ -179,10 +184,10 @@ impl Renderer {
         &self.surface
     }
 
-    /// The frame that lies on the device, of a page in pieces its last one; `None` before the first frame, and after one
-    /// that failed.
+    /// The frame that lies on the device, of a page in pieces the last one drawn; `None` before the first frame, and after
+    /// one that failed on its way there or back.
     pub fn last(&self) -> Option<&Frame> {
-        self.last.as_ref()
+        self.last.as_ref().map(|(frame, _)| frame)
     }
 
     /// What lies on the device, for reading what passes left.

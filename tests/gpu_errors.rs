@@ -1,6 +1,7 @@
 //! What cannot be drawn is refused with what, where and remedy, before anything is allocated.
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use glam::DVec2;
 use hachure::cli::words::{exit_code, line};
@@ -97,6 +98,57 @@ fn an_eye_out_of_reach_is_wrong_usage() {
     }
 }
 
+#[test]
+fn pages_that_are_empty_or_of_another_frame_are_wrong_usage() {
+    let scene = Arc::new(Surface::new(flat(4, 4)));
+    let mut renderer = Planned::by_id(gpu(), &scene, 1);
+    let plan = renderer.plan;
+    for (width, height) in [(0, 0), (0, 48), (64, 0)] {
+        let camera = from_south(width, height);
+        for outcome in [renderer.frame(&camera).map(drop), renderer.prepare(&plan, &camera)] {
+            assert_eq!(exit_code(&refused(outcome, &["--size", &format!("{width}x{height} has no pixels")])), 2);
+        }
+    }
+    let frame = renderer.plan(&plan, &from_south(64, 48)).expect("a frame");
+    for page in [[64, 49], [63, 48], [48, 64], [0, 0]] {
+        let cut = frame.clone().cut(Pieces::new(page, [32, 32]));
+        let of = format!("of {}x{}", page[0], page[1]);
+        assert!(matches!(refused(cut, &["--size", &of, "64x48"]), Error::Setting { .. }));
+    }
+    assert!(frame.cut(Pieces::new([64, 48], [32, 32])).is_ok());
+}
+
+#[test]
+fn what_is_read_after_a_piece_is_that_piece() {
+    let scene = noisy(1, [20, 20], 50.0, 40.0);
+    let mut renderer = Planned::by_id(gpu(), &scene, 1);
+    let camera = aimed(over(&scene, 3.0, 3.0, 50.0), 140.0, -10.0, [64, 48]);
+    let frame = renderer.plan_in(&camera, Pieces::from([64, 48]));
+    let whole = renderer.draw(&camera).expect("a frame").raster;
+    for piece in Pieces::new([64, 48], [20, 30]).iter() {
+        let drawn = renderer.draw_piece(&frame, piece).expect("a piece").raster;
+        let read = renderer.read().expect("that piece").raster;
+        assert_eq!([read.width, read.height], piece.drawn.size);
+        assert!(read == drawn && read != whole, "{piece:?} is read as something else");
+    }
+    // Of a page in several pieces none is the page.
+    let frame = renderer.plan_in(&camera, Pieces::new([64, 48], [32, 48]));
+    let piece = frame.pieces.iter().next().expect("a piece");
+    renderer.draw_piece(&frame, piece).expect("a piece");
+    refused(renderer.read(), &["2 pieces", "--size"]);
+}
+
+#[test]
+fn vertices_of_pieces_are_refused_in_words_of_pieces() {
+    let scene = Arc::new(Surface::new(flat(4, 4)));
+    let mut renderer = Planned::by_id(gpu(), &scene, 1);
+    let plan = renderer.plan;
+    let mut encoder = gpu().device.create_command_encoder(&Default::default());
+    let large = renderer.record_vertices(&plan, &from_south(17_000, 16), &mut encoder);
+    let error = refused(large, &["the page takes 9 pieces, one can be drawn", "--size"]);
+    assert!(matches!(error, Error::Limit { .. }));
+}
+
 /// A pass of a shader with one override that it needs, one that it does not, and one that it only declares.
 const SHADER: &str = "
     override needed: u32;
@@ -135,6 +187,40 @@ fn a_pass_is_compiled_once_for_the_constants_on_which_it_depends() {
     gpu.forget_passes();
     assert!(!Arc::ptr_eq(&first, &pass(&[("needed", 1.0)])));
     assert_eq!(gpu.compiled(), 4);
+}
+
+#[test]
+fn what_the_driver_refuses_is_refused_whatever_other_threads_ask() {
+    const TRIES: usize = 50;
+    let gpu = Gpu::open(&AdapterChoice::Best, Int64::IfPresent).expect("an adapter");
+    // More invocations than any device must grant.
+    let source = SHADER.replace("workgroup_size(1)", "workgroup_size(4096)");
+    let pass = gpu.pass("fill", SHADER, &[("needed", 1.0)]).expect("a pass");
+    let usage = wgpu::BufferUsages::UNIFORM;
+    let descriptor = wgpu::BufferDescriptor { label: None, size: 16, usage, mapped_at_creation: false };
+    let no_storage = gpu.device.create_buffer(&descriptor);
+    let done = AtomicBool::new(false);
+    let (refusals, taken) = std::thread::scope(|scope| {
+        let other = scope.spawn(|| {
+            std::iter::repeat_with(|| gpu.check())
+                .take_while(|_| !done.load(Ordering::Relaxed))
+                .filter(Result::is_err)
+                .count()
+        });
+        let tries = (0..TRIES).map(|_| {
+            let bound = pass.bind(&gpu, |_| Some(no_storage.as_entire_binding())).map(drop);
+            [gpu.pass("fill", source.clone(), &[("needed", 1.0)]).map(drop), bound]
+        });
+        let refusals: Vec<_> = tries.collect();
+        done.store(true, Ordering::Relaxed);
+        (refusals, other.join().expect("no panic"))
+    });
+    for [compiled, bound] in refusals {
+        assert!(matches!(refused(compiled, &["workgroup"]), Error::Gpu { .. }));
+        assert!(matches!(refused(bound, &["STORAGE"]), Error::Gpu { .. }));
+    }
+    assert_eq!(taken, 0, "errors went to another thread");
+    assert_eq!(gpu.compiled(), 1 + TRIES, "a refused pass was kept");
 }
 
 #[test]
@@ -180,6 +266,9 @@ fn a_pixel_with_a_depth_and_no_facet_is_a_mistake() {
     let words = [0, 1.0_f32.to_bits()].repeat(3);
     gpu().queue.write_buffer(&renderer.buffer("pixels"), 0, bytemuck::cast_slice(&words));
     mistake(renderer.read(), &["3 pixels have a depth and no facet"]);
+    // What failed is not there to be read again.
+    assert!(renderer.last().is_none());
+    mistake(renderer.read(), &["no frame"]);
 }
 
 #[test]

@@ -49,7 +49,7 @@ fn fault(time: &FrameTime, passes: &[&str]) -> Option<String> {
 }
 
 /// Page, depths and IDs of the last frame.
-fn picture(renderer: &Planned) -> Vec<u8> {
+fn picture(renderer: &mut Planned) -> Vec<u8> {
     renderer.read().expect("no pixel without a facet");
     ["page", "pixels"].map(|name| renderer.values(name, PAGE[0] as usize * PAGE[1] as usize * 8)).concat()
 }
@@ -69,13 +69,13 @@ fn time_and_compare(surface: &Arc<Surface>, n: u32, method: Method, int64: Int64
     let make = |gpu| Planned::new(gpu, surface, Plan::new(level(n), method, Border::On));
     let mut untimed = make(plain);
     untimed.frame(&view).expect("a frame");
-    let expected = picture(&untimed);
+    let expected = picture(&mut untimed);
     let mut timed = make(stamping(int64));
     // Another picture first: one that is left to stand must not pass.
     timed.timed_frame(&other).expect("a timed frame");
-    assert!(picture(&timed) != expected, "{method:?}: the comparison is blind");
+    assert!(picture(&mut timed) != expected, "{method:?}: the comparison is blind");
     let time = timed.timed_frame(&view).expect("a timed frame");
-    assert!(picture(&timed) == expected, "{method:?}, level {n}: timing changes the picture");
+    assert!(picture(&mut timed) == expected, "{method:?}, level {n}: timing changes the picture");
     // The other frame left them, unless several batches share one buffer.
     let anew = timed.lattice().chunks().len() > BATCH_CHUNKS as usize;
     assert_eq!(fault(&time, &passes(method, anew)), None, "{method:?}, level {n}");

@@ -159,6 +159,11 @@ pub const SAME_GRID_SHARE: f64 = 0.999;
 /// Example: of 128 MiB taken on a machine of 64 CPUs, up to 128 pages of 4 KiB on each may not be counted yet.
 pub const RESIDENT_BYTES: u64 = 32 << 20;
 
+/// How much more memory a process may hold after as many frames again, bytes: allocators keep what is freed.
+///
+/// Example: buffers of a page that are never dropped take 36 bytes for each pixel, 220 KB for one of 96 x 64.
+pub const GROWN_BYTES: u64 = 2 << 20;
+
 /// Sines, shares of a ray and of a facet that are decided by less are doubtful: rounding may decide otherwise.
 ///
 /// Example: on a facet of 5 m a ray that passes its side at 5 nm may be held up or not.

@@ -161,12 +161,29 @@ impl Gpu {
         self.check()
     }
 
-    /// The first error the driver reported since the last call, if any.
+    /// The first error the driver reported to no one else since the last call, of whatever thread, if any.
     ///
     /// # Errors
     /// [`Error::Gpu`] with the driver's words.
     pub fn check(&self) -> Result<()> {
         take(&self.failure).map_or(Ok(()), |what| Err(memory::failure(what)))
+    }
+
+    /// Does work of this thread, and gives the error that the driver reports of it: no other thread's, and to no other
+    /// thread.
+    ///
+    /// # Errors
+    /// [`Error::Gpu`] with the driver's words.
+    pub(super) fn checked<T>(&self, work: impl FnOnce() -> T) -> Result<T> {
+        use wgpu::ErrorFilter::{Internal, OutOfMemory, Validation};
+        let scopes = [Validation, Internal, OutOfMemory].map(|filter| self.device.push_error_scope(filter));
+        let done = work();
+        // The last one first; and all, whatever one of them holds.
+        let failure = scopes.into_iter().rev().fold(None, |first: Option<wgpu::Error>, scope| {
+            let failure = pollster::block_on(scope.pop());
+            first.or(failure)
+        });
+        failure.map_or(Ok(done), |e| Err(memory::failure(one_line(&e))))
     }
 
     /// Copies the first `count` values of a buffer to the CPU.

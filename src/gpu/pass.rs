@@ -36,8 +36,6 @@ pub struct Reflection {
     pub bindings: Vec<(u32, String)>,
     /// The constants that the shader declares.
     pub overrides: Vec<Override>,
-    /// The parsed module, for comparing structs.
-    pub module: naga::Module,
 }
 
 /// A pipeline constant of a shader.
@@ -51,16 +49,26 @@ pub struct Override {
     pub has_default: bool,
 }
 
+/// Parses a composed shader of pass `name`, and says what its parts use.
+///
+/// # Errors
+/// [`Error::Mistake`] when it is no valid WGSL.
+pub fn parse(name: &str, source: &str) -> Result<(naga::Module, naga::valid::ModuleInfo)> {
+    let fail = |what: String| mistake(name, one_line(&what));
+    let module = naga::front::wgsl::parse_str(source).map_err(|e| fail(e.emit_to_string(source)))?;
+    let mut validator = naga::valid::Validator::new(Default::default(), naga::valid::Capabilities::all());
+    let info = validator.validate(&module).map_err(|e| fail(e.emit_to_string(source)))?;
+    Ok((module, info))
+}
+
 /// Reads a composed shader.
 ///
 /// # Errors
-/// [`Error::Mistake`] when it is no valid WGSL or lacks the entry point.
+/// As [`parse`]; [`Error::Mistake`] when it lacks the entry point.
 pub fn reflect(name: &str, source: &str) -> Result<Reflection> {
-    let fail = |what: &dyn std::fmt::Display| mistake(name, one_line(what));
-    let module = naga::front::wgsl::parse_str(source).map_err(|e| fail(&e.emit_to_string(source)))?;
-    let mut validator = naga::valid::Validator::new(Default::default(), naga::valid::Capabilities::all());
-    let info = validator.validate(&module).map_err(|e| fail(&e.emit_to_string(source)))?;
-    let index = module.entry_points.iter().position(|e| e.name == name).ok_or_else(|| fail(&"no entry point"))?;
+    let (module, info) = parse(name, source)?;
+    let none = || mistake(name, "no entry point");
+    let index = module.entry_points.iter().position(|e| e.name == name).ok_or_else(none)?;
     let used = info.get_entry_point(index);
     let bindings = module
         .global_variables
@@ -72,7 +80,7 @@ pub fn reflect(name: &str, source: &str) -> Result<Reflection> {
         })
         .collect();
     let workgroup = module.entry_points[index].workgroup_size;
-    Ok(Reflection { workgroup, bindings, overrides: overrides(name, &module), module })
+    Ok(Reflection { workgroup, bindings, overrides: overrides(name, &module) })
 }
 
 /// The pipeline constants of a valid module.
@@ -124,23 +132,24 @@ impl Pass {
         reflection: &Reflection,
         constants: &[(&str, f64)],
     ) -> Result<Self> {
-        let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some(name),
-            source: wgpu::ShaderSource::Wgsl(source),
-        });
-        let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some(name),
-            layout: None,
-            module: &module,
-            entry_point: Some(name),
-            compilation_options: wgpu::PipelineCompilationOptions {
-                constants,
-                // Passes read of it only what they wrote.
-                zero_initialize_workgroup_memory: false,
-            },
-            cache: None,
-        });
-        gpu.check()?;
+        let pipeline = gpu.checked(|| {
+            let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some(name),
+                source: wgpu::ShaderSource::Wgsl(source),
+            });
+            gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(name),
+                layout: None,
+                module: &module,
+                entry_point: Some(name),
+                compilation_options: wgpu::PipelineCompilationOptions {
+                    constants,
+                    // Passes read of it only what they wrote.
+                    zero_initialize_workgroup_memory: false,
+                },
+                cache: None,
+            })
+        })?;
         Ok(Self { name, workgroup: reflection.workgroup, pipeline, bindings: reflection.bindings.clone() })
     }
 
@@ -157,13 +166,14 @@ impl Pass {
             let resource = resource(label).ok_or_else(|| mistake(self.name, format!("no buffer is named {label}")))?;
             Ok(wgpu::BindGroupEntry { binding: *binding, resource })
         });
-        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some(self.name),
-            layout: &self.pipeline.get_bind_group_layout(0),
-            entries: &entries.collect::<Result<Vec<_>>>()?,
-        });
-        gpu.check()?;
-        Ok(group)
+        let entries = entries.collect::<Result<Vec<_>>>()?;
+        gpu.checked(|| {
+            gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some(self.name),
+                layout: &self.pipeline.get_bind_group_layout(0),
+                entries: &entries,
+            })
+        })
     }
 
     /// Records the pass over at least `invocations` along x and y.

@@ -50,7 +50,7 @@ pub struct Scene {
     fresh: Vec<u32>,
     /// Whether they still are not.
     pending: bool,
-    /// Whether the last frame made them.
+    /// Whether the last piece made them.
     made: bool,
 }
 
@@ -287,7 +287,7 @@ impl Scene {
         if self.pending { self.fresh.len() as u32 } else { 0 }
     }
 
-    /// Slots of the chunks whose vertices the last frame made.
+    /// Slots of the chunks whose vertices the last piece made.
     pub fn made(&self) -> &[u32] {
         if self.made { &self.fresh } else { &[] }
     }

@@ -71,6 +71,7 @@ impl Stages {
         let none = [Batch { first_slot: 0, chunks: 0 }];
         let batches = if frame.batches.is_empty() { &none[..] } else { &frame.batches };
         let uniforms = upload_uniforms(gpu, &batch_uniforms(batches, rounds));
+        gpu.check()?;
         let bound = Bound { scene: scene.buffers(), page: page.buffers(), batches: &uniforms, rounds };
         let mut stages = Vec::new();
         for (planned, pass) in made_for.passes.iter().zip(passes) {

@@ -1,4 +1,5 @@
-//! Pass `tessellate`: the vertices on the surface of chunks that have none yet; no camera counts.
+//! Pass `tessellate`: the vertices on the surface of chunks that have none yet, whatever the camera, but for chunks beside
+//! the page where batches share the buffer.
 
 use std::sync::Arc;
 

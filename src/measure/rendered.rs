@@ -78,7 +78,8 @@ impl Draws for Rendered {
 
     fn passes(&mut self, camera: &Camera) -> Result<Vec<PassFigures>> {
         let passes = self.renderer.timed_frame(&self.plan, camera)?.passes;
-        let costs = costs(&self.renderer, &self.renderer.read()?)?;
+        let drawn = self.renderer.read()?;
+        let costs = costs(&self.renderer, &drawn)?;
         if self.wants_floor {
             let page = [camera.width, camera.height];
             let bytes = costs.iter().map(PassCost::bytes).sum();

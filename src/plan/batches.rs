@@ -15,7 +15,7 @@ pub struct Batch {
 }
 
 impl Batch {
-    /// Which of the four buffers of facing bits holds the batch.
+    /// Which of the two buffers of facing bits holds the batch.
     pub fn part(&self) -> u32 {
         self.first_slot / PART_CHUNKS
     }

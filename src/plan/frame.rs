@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::left_out::Omission;
 use super::passes::{Often, Over, PassName, PlannedPass, passes};
 use super::{Batch, Detail, Pieces, Plan, Thrift, Visibility, batches, detail};
-use crate::error::Result;
+use crate::error::{Error, Result, Setting};
 use crate::surface::{Lattice, Level, Surface};
 use crate::view::Camera;
 
@@ -59,7 +59,8 @@ impl Frame {
     /// Plans what `camera` sees, for a device with or without 64-bit atomics.
     ///
     /// # Errors
-    /// [`Error::Limit`](crate::error::Error::Limit) when the scene or the page is too large; as [`Surface::pyramid`].
+    /// [`Error::Limit`] when the scene or the page is too large, [`Error::Setting`] when the page has no pixels; as
+    /// [`Surface::pyramid`].
     pub fn new(plan: &Plan, surface: &Surface, camera: &Camera, int64: bool, kept: &mut Kept) -> Result<Self> {
         check(surface, camera)?;
         let (lattice, omissions) = match plan.detail {
@@ -127,9 +128,15 @@ impl Frame {
     /// The same frame on a page that is cut in another way.
     ///
     /// # Errors
-    /// As [`Pieces::check`].
+    /// As [`Pieces::check`]; [`Error::Setting`] when they are those of another page than the camera's.
     pub fn cut(self, pieces: Pieces) -> Result<Self> {
         pieces.check()?;
+        let (page, [width, height]) = ([self.camera.width, self.camera.height], pieces.page());
+        if pieces.page() != page {
+            let what =
+                format!("these are pieces of a page of {width}x{height}, the frame's is {}x{}", page[0], page[1]);
+            return Err(Error::setting(Setting::Size, what, "cut the page of the frame's camera"));
+        }
         Ok(Self { pieces, ..self })
     }
 
@@ -186,6 +193,11 @@ impl Frame {
 
 /// Whether there is something to draw, on a page that can be.
 fn check(surface: &Surface, camera: &Camera) -> Result<()> {
-    Pieces::from([camera.width, camera.height]).check()?;
+    let Camera { width, height, .. } = *camera;
+    if width == 0 || height == 0 {
+        let what = format!("a page of {width}x{height} has no pixels");
+        return Err(Error::setting(Setting::Size, what, "give at least one pixel across and one down"));
+    }
+    Pieces::from([width, height]).check()?;
     surface.dem().check_patches()
 }

@@ -21,10 +21,14 @@ impl Renderer {
         encoder: &mut wgpu::CommandEncoder,
     ) -> Result<Frame> {
         let frame = self.plan(plan, camera)?;
-        let (Some(piece), 1, 1) = (frame.pieces.iter().next(), frame.pieces.iter().len(), frame.batches.len()) else {
+        let (Some(piece), 1) = (frame.pieces.iter().next(), frame.pieces.iter().len()) else {
+            let what = format!("the page takes {} pieces, one can be drawn", frame.pieces.iter().len());
+            return Err(Error::limit(what, message!["use a smaller ", Setting::Size]));
+        };
+        if frame.batches.len() != 1 {
             let what = format!("the vertices take {} batches, one can be drawn", frame.batches.len());
             return Err(Error::limit(what, message!["use a lower ", Setting::Level, " or a ", Setting::Crop]));
-        };
+        }
         self.upload(&frame)?;
         self.scene.write_camera(&self.gpu, &self.surface, &frame, piece)?;
         for planned in [Tessellate, Seam, Project].into_iter().filter_map(|name| frame.pass(name, 0)) {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use hachure::gpu::pass::reflect;
+use hachure::gpu::pass::parse;
 use wgpu::naga;
 
 /// How a pass binds a storage buffer.
@@ -23,9 +23,7 @@ pub struct Bound {
 /// # Panics
 /// Where one is written and not called `out_`, or the other way round.
 pub fn bound(name: &str, source: &str) -> BTreeMap<String, Bound> {
-    let module = reflect(name, source).expect("valid WGSL with this entry point").module;
-    let mut validator = naga::valid::Validator::new(Default::default(), naga::valid::Capabilities::all());
-    let info = validator.validate(&module).expect("valid WGSL");
+    let (module, info) = parse(name, source).expect("valid WGSL");
     let entry = module.entry_points.iter().position(|e| e.name == name).expect("this entry point");
     let used = module.global_variables.iter().map(|(handle, global)| (global, info.get_entry_point(entry)[handle]));
     let storage = used.filter(|(global, used)| {
