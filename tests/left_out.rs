@@ -1,10 +1,13 @@
-//! Leaving out changes time, never the picture: every frame is drawn with all shortcuts and with none, bit for bit.
+//! Leaving out changes time, never the picture: every frame is drawn with all shortcuts and with none, bit for bit. And
+//! what a frame says it did without, it did without.
 
+use std::collections::{BTreeMap, HashSet};
 use std::sync::Arc;
 
 use glam::DVec3;
-use hachure::plan::{Border, Detail, Method, Plan, Thrift};
-use hachure::surface::Surface;
+use hachure::plan::frame::Kept;
+use hachure::plan::{Border, Detail, Frame, Method, PassName, Plan, Thrift, detail};
+use hachure::surface::{Surface, Tile};
 use hachure::view::Camera;
 
 use crate::common::shared_dems;
@@ -133,4 +136,52 @@ fn another_frame_is_noticed() {
     };
     let moved = Camera { azimuth: camera.azimuth + 0.1, ..camera };
     assert!(page(Thrift::LeaveOut, &moved) != page(Thrift::Nothing, &camera));
+}
+
+/// What a frame does without, by rule and in the order of telling.
+fn expected(frame: &Frame, surface: &Surface) -> Vec<&'static str> {
+    let Frame { plan, lattice, .. } = frame;
+    let (dem, chunks) = (surface.dem(), lattice.chunks());
+    let is_adaptive = matches!(plan.detail, Detail::Adaptive { .. });
+    let tiles: HashSet<Tile> = chunks.iter().map(Tile::of).collect();
+    let all_tiles = [dem.columns(), dem.rows()].map(|samples| (samples - 1).div_ceil(16)).iter().product();
+    let beside = detail::across(surface, lattice, &frame.camera).expect("a pyramid").any(|across| !across);
+    let rules = [
+        ("fine facets", is_adaptive),
+        ("rasterizing", (frame.seen as usize) < chunks.len()),
+        ("samples", is_adaptive && tiles.len() < all_tiles),
+        ("chunks", !is_adaptive && plan.thrift == Thrift::LeaveOut && beside),
+        ("seam pass", chunks.iter().all(|chunk| chunk.coarser == 0)),
+        ("border pass", plan.border == Border::Off),
+        ("void tests", dem.voids() == 0),
+    ];
+    rules.into_iter().filter(|(_, is_left_out)| *is_left_out).map(|(what, _)| what).collect()
+}
+
+#[test]
+fn frames_say_what_they_do_without() {
+    let scenes = [rough(60, 50, 3.0, 5.0, false), rough(60, 50, 2.0, 2.0, true)].map(Surface::new);
+    let details: [Detail; 3] = [level(2).into(), Detail::default(), Detail::Adaptive { error_px: 9.0 }];
+    let mut random = Random::new(41);
+    let (mut frames, mut told) = (0, BTreeMap::<&str, usize>::new());
+    for (surface, (name, method)) in scenes.iter().flat_map(|surface| METHODS.map(|method| (surface, method))) {
+        for (detail, int64) in details.into_iter().flat_map(|detail| [(detail, true), (detail, false)]) {
+            for thrift in [Thrift::LeaveOut, Thrift::Nothing] {
+                for border in [Border::On, Border::Off] {
+                    let plan = Plan { thrift, ..Plan::new(detail, method, border) };
+                    let camera = anywhere(surface, &mut random);
+                    let frame = Frame::new(&plan, surface, &camera, int64, &mut Kept::default()).expect("a frame");
+                    let left_out = frame.left_out(surface).expect("words");
+                    let whats: Vec<_> = left_out.iter().map(|left_out| left_out.what).collect();
+                    assert_eq!(whats, expected(&frame, surface), "{name}, {plan:?}, {camera:?}");
+                    let lacks = |pass| frame.passes.iter().all(|planned| planned.name != pass);
+                    let passes = [("seam pass", PassName::Seam), ("border pass", PassName::Border)];
+                    assert!(passes.iter().all(|(what, pass)| whats.contains(what) == lacks(*pass)), "{whats:?}");
+                    frames += 1;
+                    whats.into_iter().for_each(|what| *told.entry(what).or_default() += 1);
+                }
+            }
+        }
+    }
+    assert!(told.len() == 7 && told.values().all(|n| *n > 0 && *n < frames), "of {frames} frames: {told:?}");
 }

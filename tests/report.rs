@@ -4,6 +4,7 @@ mod browser;
 mod page;
 mod sample;
 
+use hachure::error::Error;
 use hachure::report::results::Results;
 use hachure::report::{error_time_svg, write_csv};
 use sample::AWKWARD;
@@ -50,6 +51,14 @@ fn the_plot_follows_the_results() {
     assert!(error_time_svg(&results).expect("a plot").contains("west-temple"));
     results.scenes.clear();
     assert!(error_time_svg(&results).expect("a plot").contains("</svg>"));
+}
+
+#[test]
+fn a_method_that_nobody_knows_is_not_drawn_as_another() {
+    let mut results = sample();
+    results.runs[0].method = "stranger";
+    let error = error_time_svg(&results).expect_err("no look of its own");
+    assert!(matches!(&error, Error::Mistake { what } if what == "no method is called stranger"), "{error:?}");
 }
 
 /// Names of the columns, and rows by name.

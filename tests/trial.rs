@@ -1,15 +1,20 @@
 //! A method that yields curves goes through a trial as those do that yield ink: truth of a coarser level takes its part.
+//! And what setting up a run takes does not hang on the runs before it.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::num::NonZeroU32;
+use std::sync::Arc;
 use std::time::Instant;
 
 use glam::{DVec2, DVec3};
+use hachure::cache::Cache;
 use hachure::error::Result;
+use hachure::gpu::{AdapterChoice, Gpu, Int64};
 use hachure::line::{Chain, ChainPoint, Line};
-use hachure::measure::compare::{Found, Shown};
+use hachure::measure::compare::{Comparison, Found, Hearing, LEAST_TRUTH_LEVEL, Shown};
 use hachure::measure::figures::{DrawnLevel, PassFigures, Run};
 use hachure::measure::trial::{Draws, Trial, Yield};
+use hachure::plan::{Border, Method, Share};
 use hachure::report::pictures::of_shown;
 use hachure::surface::{Level, Surface};
 use hachure::truth::metrics::Judge;
@@ -85,6 +90,13 @@ impl Yield for Seen {
     }
 }
 
+/// From the south, on hills against hills and sky.
+fn from_south(surface: &Surface) -> Camera {
+    let [west, south, east, north] = surface.dem().extent();
+    let middle = DVec3::new((west + east) / 2.0, (south + north) / 2.0, 0.0);
+    look(middle + DVec3::new(0.0, -700.0, 160.0), middle, 60.0, [160, 96])
+}
+
 /// The camera so many metres on.
 fn moved(camera: &Camera, metres: f64) -> Camera {
     Camera { eye: camera.eye + camera.axes()[2] * metres, ..*camera }
@@ -115,9 +127,7 @@ fn try_level(terrain: &Terrain<'_>, camera: &Camera, of: Level, judge: &Judge<'_
 #[test]
 fn curves_are_judged_as_ink_is() {
     let surface = Surface::new(rough(40, 36, 1.0, 4.0, false));
-    let [west, south, east, north] = surface.dem().extent();
-    let middle = DVec3::new((west + east) / 2.0, (south + north) / 2.0, 0.0);
-    let camera = look(middle + DVec3::new(0.0, -700.0, 160.0), middle, 60.0, [160, 96]);
+    let camera = from_south(&surface);
     let terrain = Terrain::new(&surface);
     let truth = terrain.truth(&camera, level(8));
     let judge = Judge::new(&truth).expect("a line");
@@ -147,4 +157,42 @@ fn curves_are_judged_as_ink_is() {
     let (coarse, other) = try_level(&terrain, &camera, level(1), &judge);
     assert!(coarse.f < run.f && coarse.chamfer_px > run.chamfer_px && other != png, "level 1 passes for level 4");
     assert_ne!(coarse.mask_hashes, run.mask_hashes);
+}
+
+/// How many passes each run of a comparison of these methods compiles.
+fn compiled(gpu: &Arc<Gpu>, methods: &[Method]) -> Vec<usize> {
+    let surface = Arc::new(Surface::new(rough(40, 36, 1.0, 4.0, false)));
+    let comparison = Comparison {
+        methods: methods.to_vec(),
+        levels: vec![level(1).into()],
+        repeat: NonZeroU32::MIN,
+        floor: false,
+        border: Border::On,
+        truth_level: Some(LEAST_TRUTH_LEVEL),
+        cache: Cache::none(),
+    };
+    let (before, compiled) = (Cell::new(gpu.compiled()), RefCell::new(Vec::new()));
+    let hearing = Hearing {
+        stage: &|_, _| (),
+        warn: &|_| (),
+        found: &|found| {
+            if let Found::Run(_) = found {
+                compiled.borrow_mut().push(gpu.compiled() - before.replace(gpu.compiled()));
+            }
+            Ok(())
+        },
+    };
+    let camera = from_south(&surface);
+    comparison.scene(gpu, &surface, "rough", &Terrain::new(&surface), &camera, &hearing).expect("runs");
+    compiled.into_inner()
+}
+
+#[test]
+fn every_run_compiles_its_passes_whichever_ran_before() {
+    let gpu = Arc::new(Gpu::open(&AdapterChoice::Best, Int64::IfPresent).expect("an adapter"));
+    let [walk, adjacency] = [Method::Walk, Method::Adjacency { share: Share::Edge }];
+    let alone = [walk, adjacency].map(|method| compiled(&gpu, &[method])[0]);
+    assert!(alone.iter().all(|passes| *passes > 5), "{alone:?}");
+    assert_eq!(compiled(&gpu, &[walk, adjacency]), alone);
+    assert_eq!(compiled(&gpu, &[walk, walk]), [alone[0]; 2], "the second of two runs of one method");
 }
