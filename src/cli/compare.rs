@@ -316,8 +316,7 @@ fn draw_command(files: &[String], flags: &str) -> String {
         false => format!("'{}'", name.replace('\'', r"'\''")),
     };
     let files: Vec<_> = files.iter().map(quoted).collect();
-    // No space before -o: the page is what it was, to the byte.
-    format!("hachure draw {}-o drawing.png {flags}", files.join(" "))
+    format!("hachure draw {} -o drawing.png {flags}", files.join(" "))
 }
 
 fn contents(results: &Results, pictures: &[Picture]) -> Result<Contents> {
@@ -364,8 +363,8 @@ mod tests {
     fn files_of_a_command_are_quoted_where_a_shell_would_read_more() {
         let command =
             |files: &[&str]| draw_command(&files.iter().map(ToString::to_string).collect::<Vec<_>>(), "--fov 60");
-        assert_eq!(command(&["dem/a.tif", "b.tif"]), "hachure draw dem/a.tif b.tif-o drawing.png --fov 60");
-        assert_eq!(command(&["a b & \"d's\".tif"]), r#"hachure draw 'a b & "d'\''s".tif'-o drawing.png --fov 60"#);
-        assert_eq!(command(&[""]), "hachure draw ''-o drawing.png --fov 60");
+        assert_eq!(command(&["dem/a.tif", "b.tif"]), "hachure draw dem/a.tif b.tif -o drawing.png --fov 60");
+        assert_eq!(command(&["a b & \"d's\".tif"]), r#"hachure draw 'a b & "d'\''s".tif' -o drawing.png --fov 60"#);
+        assert_eq!(command(&[""]), "hachure draw '' -o drawing.png --fov 60");
     }
 }
