@@ -109,8 +109,7 @@ impl Renderer {
         self.last = None;
         self.scene.write_camera(&self.gpu, &self.surface, frame, piece)?;
         let mut work = Work::new(self.on_device(), frame, piece, timer);
-        work.clear(&["pixels", "ink", "summaries", "counts"])?;
-        work.clear(frame.plan.method.entry().words)?;
+        work.clear(&[&["pixels", "ink", "summaries", "counts"], frame.plan.method.entry().words].concat())?;
         for list in frame.lists() {
             work.empty(list, "no_pixels")?;
         }
