@@ -221,7 +221,7 @@ fn a_terminal_gets_colours_and_no_picture() {
     assert_eq!(place.written(), Vec::<String>::new());
 }
 
-/// Draws, held up for over a second in the midst of it; all that was said.
+/// Draws so many facets that work is left when the first file is seen, held up for over a second then; all that was said.
 #[cfg(target_os = "linux")]
 fn held_up(place: &Place, arguments: &str, shell: impl Fn(&str) -> Command) -> String {
     let signal = |name: &str| {
@@ -229,7 +229,8 @@ fn held_up(place: &Place, arguments: &str, shell: impl Fn(&str) -> Command) -> S
         assert!(Command::new("kill").args([name, pid.trim()]).status().expect("kill runs").success());
     };
     let hachure = env!("CARGO_BIN_EXE_hachure");
-    let line = format!("{hachure} {arguments} {} --size 640x480 & echo $! > pid; wait $!", DRAW[..4].join(" "));
+    let line =
+        format!("{hachure} {arguments} {} --size 640x480 --level 64 & echo $! > pid; wait $!", DRAW[..4].join(" "));
     let mut command = shell(&line);
     let command = command.current_dir(place.path("")).stdout(Stdio::piped()).stderr(Stdio::piped());
     let child = command.spawn().expect("a shell");

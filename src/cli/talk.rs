@@ -149,6 +149,9 @@ impl Talk {
         }
         let mut bar = self.bar.lock().unwrap_or_else(PoisonError::into_inner);
         let bar = bar.get_or_insert_with(|| bar_after(PATIENCE.saturating_sub(self.began.elapsed())));
+        if bar.is_hidden() && self.began.elapsed() >= PATIENCE {
+            show(bar);
+        }
         bar.set_message(stage.to_owned());
         bar.set_position((share * STEPS) as u64);
     }
@@ -183,8 +186,15 @@ fn bar_after(wait: Duration) -> ProgressBar {
     // Where the system has no thread left there is no bar.
     let _ = thread::Builder::new().spawn(move || {
         thread::sleep(wait);
-        waiting.set_draw_target(ProgressDrawTarget::stderr());
-        waiting.enable_steady_tick(TICK);
+        show(&waiting);
     });
     bar
+}
+
+/// Draws a bar from now on, unless it is finished.
+fn show(bar: &ProgressBar) {
+    if !bar.is_finished() {
+        bar.set_draw_target(ProgressDrawTarget::stderr());
+        bar.enable_steady_tick(TICK);
+    }
 }
