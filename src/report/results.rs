@@ -5,6 +5,7 @@
 
 use serde::Serialize;
 
+use crate::dem::North;
 use crate::measure::figures::{Convergence, Run, TruthReport};
 
 /// Version of the schema: raised when a key changes its meaning or goes.
@@ -74,7 +75,9 @@ pub struct Scene {
     pub patches: u64,
     /// Eye: easting, northing, exaggerated height.
     pub eye_m: [f64; 3],
-    /// Degrees clockwise from grid north.
+    /// What `azimuth` is counted from.
+    pub north: North,
+    /// Degrees clockwise from `north`.
     pub azimuth: f64,
     /// Degrees above the horizon.
     pub altitude: f64,
