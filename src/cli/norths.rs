@@ -2,26 +2,22 @@
 
 use glam::DVec2;
 
-use crate::dem::{Georeference, North, convergence_in_words};
+use crate::dem::{Bearings, Georeference, North, convergence_in_words};
 use crate::error::{Error, Message, Result, Setting};
 use crate::message;
 
-/// Decimals of azimuths that are printed: a fiftieth of a pixel on the widest page.
+/// Decimals of azimuths that are printed: a twentieth of a pixel on a page of 65536 px and 60 degrees.
 const DECIMALS: i32 = 4;
 
-/// The norths at an eye, degrees clockwise from the world's y axis, and which of them is in use.
+/// The norths at an eye, and which of them is in use.
 #[derive(Debug, Clone, Copy)]
 pub struct Norths {
     /// The one in use.
     pub north: North,
-    /// Of the one in use.
+    /// Its bearing, degrees clockwise from the world's y axis.
     bearing: f64,
-    /// `None` where nobody knows.
-    pub grid: Option<f64>,
-    /// `None` where nobody knows.
-    pub true_north: Option<f64>,
-    /// From true north clockwise to grid north, degrees.
-    convergence: Option<f64>,
+    /// Those of both.
+    pub bearings: Bearings,
 }
 
 impl Norths {
@@ -30,14 +26,11 @@ impl Norths {
     /// # Errors
     /// [`Error::Setting`] where the north in use is unknown there.
     pub fn at(georeference: &Georeference, north: North, eye: DVec2) -> Result<Self> {
-        let [grid, true_north] = [North::Grid, North::True].map(|north| georeference.bearing(north, eye));
-        let (grid, true_north) = (grid?, true_north?);
-        let in_use = match north {
-            North::Grid => grid,
-            North::True => true_north,
-        };
-        let Some(bearing) = in_use else { return Err(unknown(georeference, north, grid.is_some(), eye)?) };
-        Ok(Self { north, bearing, grid, true_north, convergence: georeference.convergence(eye)? })
+        let bearings = georeference.bearings(eye)?;
+        match bearings.of(north) {
+            Some(bearing) => Ok(Self { north, bearing, bearings }),
+            None => Err(unknown(georeference, north, bearings.grid.is_some(), eye)?),
+        }
     }
 
     /// The azimuth in the world of one that is counted from the north in use.
@@ -57,7 +50,7 @@ impl Norths {
 
     /// How far the two norths are apart, where that is worth a line.
     pub fn words(&self) -> Option<String> {
-        let apart = convergence_in_words(self.convergence?)?;
+        let apart = convergence_in_words(self.bearings.convergence()?)?;
         let Self { north, .. } = self;
         Some(format!("azimuths are counted from {north} north; at the eye {apart} (--north {})", north.other()))
     }
@@ -67,9 +60,13 @@ impl Norths {
 fn unknown(georeference: &Georeference, north: North, grid_is_known: bool, eye: DVec2) -> Result<Error> {
     let label = georeference.world().label();
     let what = match georeference.lonlat(eye)? {
-        Some(place) => format!("there is no {north} north at longitude {:.5}, latitude {:.5} degrees", place.x, place.y),
+        Some(place) => {
+            format!("there is no {north} north at longitude {:.5}, latitude {:.5} degrees", place.x, place.y)
+        }
         None if label.is_empty() => format!("the DEM names no coordinate system, so {north} north is unknown"),
-        None => format!("the DEM lies in {label}, of which no place on the globe is known, so {north} north is unknown"),
+        None => {
+            format!("the DEM lies in {label}, of which no place on the globe is known, so {north} north is unknown")
+        }
     };
     let remedy: Message = match north {
         North::True if grid_is_known => message!["give ", Setting::North.at(North::Grid)],
@@ -83,7 +80,8 @@ mod tests {
     use super::*;
 
     fn turned_by(bearing: f64) -> Norths {
-        Norths { north: North::True, bearing, grid: Some(0.0), true_north: Some(bearing), convergence: Some(-bearing) }
+        let bearings = Bearings { grid: Some(0.0), true_north: Some(bearing) };
+        Norths { north: North::True, bearing, bearings }
     }
 
     #[test]

@@ -61,8 +61,8 @@ impl ViewReport {
             north: norths.north,
             azimuth: view.azimuth,
             altitude: camera.altitude,
-            grid_north: norths.grid,
-            true_north: norths.true_north,
+            grid_north: norths.bearings.grid,
+            true_north: norths.bearings.true_north,
             fov: camera.fov,
             size: [camera.width, camera.height],
             projection: "central: with d = world - eye the place on the page, px from its top left corner, \

@@ -18,7 +18,7 @@ pub const FOV: f64 = 60.0;
 /// Decimals of printed degrees of longitude and latitude: a millimetre.
 const DEGREE_DECIMALS: i32 = 8;
 /// Decimals of an eye on the globe: so many that it is brought to the same millimetre.
-const LONLAT_DECIMALS: usize = 9;
+const LONLAT_DECIMALS: i32 = 9;
 /// Decimals of other printed coordinates.
 const METRE_DECIMALS: i32 = 3;
 /// By how much an eye that is printed with them may be off, and a little more for what f32 rounds: metres.
@@ -174,7 +174,7 @@ impl ViewArguments {
             (None, Some(_)) => {
                 let [west, south, east, north] = surface.dem().extent();
                 let georeference = surface.dem().georeference();
-                georeference.bearing(self.north(georeference), DVec2::new(west + east, south + north) / 2.0)?
+                georeference.bearings(DVec2::new(west + east, south + north) / 2.0)?.of(self.north(georeference))
             }
             _ => None,
         };
@@ -213,8 +213,8 @@ impl View {
 
     /// The same with the eye on the globe, where the DEM's CRS is known.
     pub fn lonlat_flags(&self) -> Option<String> {
-        let eye = |at: DVec2| format!("--lonlat {:.LONLAT_DECIMALS$},{:.LONLAT_DECIMALS$},{}", at.x, at.y, self.camera.eye.z);
-        self.lonlat.map(|at| self.flags_from(&eye(at)))
+        let DVec2 { x, y } = rounded(self.lonlat?, LONLAT_DECIMALS);
+        Some(self.flags_from(&format!("--lonlat {x},{y},{}", self.camera.eye.z)))
     }
 
     /// The flags with those of the eye.
@@ -246,7 +246,6 @@ impl View {
     pub fn is_on_earth(&self) -> bool {
         self.lonlat.is_some()
     }
-
 }
 
 /// World place of one given in `crs`, else in the file's own.
@@ -269,13 +268,18 @@ fn settled(georeference: &Georeference, world: DVec2) -> Result<(DVec2, DVec2)> 
         None => DEGREE_DECIMALS,
         Some(metres) => METRE_DECIMALS + metres.log10().ceil().max(0.0) as i32,
     };
-    let scale = 10f64.powi(decimals);
-    let place = georeference.place_in(file, world).map(|place| (place * scale).round() / scale);
+    let place = georeference.place_in(file, world).map(|place| rounded(place, decimals));
     let settled = place.and_then(|place| Some((georeference.world_place(file, place)?, place)));
     settled.ok_or_else(|| {
         let what = format!("there is no place {},{} m in the DEM's coordinate system", world.x, world.y);
         Error::setting(Setting::Eye, what, "give a place on the map of the DEM")
     })
+}
+
+fn rounded(place: DVec2, decimals: i32) -> DVec2 {
+    let scale = 10f64.powi(decimals);
+    // No -0 is printed.
+    (place * scale).round() / scale + DVec2::ZERO
 }
 
 /// A map place at a height.

@@ -28,7 +28,7 @@ pub use bands::Band;
 pub use georeference::Georeference;
 pub use held::{LARGEST_SIDE, MAX_SAMPLES, held_bytes, mebibytes};
 pub use history::History;
-pub use north::{North, convergence_in_words};
+pub use north::{Bearings, North, convergence_in_words};
 pub use overviews::{Entry, OverviewBuilder, Overviews};
 pub use samples::Samples;
 pub use survey::{Survey, SurveyBuilder};

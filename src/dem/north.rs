@@ -54,36 +54,54 @@ impl Display for North {
     }
 }
 
-impl Georeference {
-    /// Where a north is at a place of the world, degrees clockwise from the world's y axis; `None` where nobody knows, or
-    /// within 100 m of a pole. Grid north is 0 to the last bit where the grid of the file is the world's.
-    ///
-    /// # Errors
-    /// Those of [`Self::lonlat`], for true north alone.
-    pub fn bearing(&self, north: North, world: DVec2) -> Result<Option<f64>> {
+/// Where the norths are at a place, degrees clockwise from the world's y axis; `None` where nobody knows, or within 100 m
+/// of a pole.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bearings {
+    /// Of grid north: 0 to the last bit where the grid of the file is the world's.
+    pub grid: Option<f64>,
+    /// Of true north.
+    pub true_north: Option<f64>,
+}
+
+impl Bearings {
+    /// Of one of them.
+    pub fn of(&self, north: North) -> Option<f64> {
         match north {
-            North::Grid if self.file() == self.world() => Ok(Some(0.0)),
-            North::Grid => {
-                let axes = Axes::of(&|place| self.place_in(self.file(), place), world, self.file().turn());
-                let same = |axes: &Axes| axes.are_the_worlds(self.file().metres_per_unit());
-                Ok(axes.map(|axes| if same(&axes) { 0.0 } else { axes.bearing() }))
-            }
-            North::True => {
-                self.lonlat(world)?;
-                let lonlat = |place| self.lonlat(place).ok().flatten();
-                Ok(Axes::of(&lonlat, world, Some(360.0)).map(|axes| axes.bearing()))
-            }
+            North::Grid => self.grid,
+            North::True => self.true_north,
         }
     }
 
-    /// Degrees from true north clockwise to grid north at a place of the world, -180 to 180; `None` as for
-    /// [`Self::bearing`].
+    /// Degrees from true north clockwise to grid north, -180 to 180.
+    pub fn convergence(&self) -> Option<f64> {
+        Some(wrapped(self.grid? - self.true_north?, 360.0))
+    }
+}
+
+impl Georeference {
+    /// The bearings of both norths at a place of the world, metres.
     ///
     /// # Errors
     /// Those of [`Self::lonlat`].
-    pub fn convergence(&self, world: DVec2) -> Result<Option<f64>> {
-        let bearings = self.bearing(North::True, world)?.zip(self.bearing(North::Grid, world)?);
-        Ok(bearings.map(|(true_north, grid)| wrapped(grid - true_north, 360.0)))
+    pub fn bearings(&self, world: DVec2) -> Result<Bearings> {
+        Ok(Bearings { grid: self.grid_north(world), true_north: self.true_north(world)? })
+    }
+
+    fn grid_north(&self, world: DVec2) -> Option<f64> {
+        let file = self.file();
+        if file == self.world() {
+            return Some(0.0);
+        }
+        let place = |at| self.place_in(file, at);
+        let axes = Axes::of(&place, world, place(world)?, file.turn())?;
+        Some(if axes.are_the_worlds(file.metres_per_unit()) { 0.0 } else { axes.bearing() })
+    }
+
+    fn true_north(&self, world: DVec2) -> Result<Option<f64>> {
+        let Some(here) = self.lonlat(world)? else { return Ok(None) };
+        let lonlat = |at| self.lonlat(at).ok().flatten();
+        Ok(Axes::of(&lonlat, world, here, Some(360.0)).map(|axes| axes.bearing()))
     }
 }
 
@@ -100,8 +118,9 @@ struct Axes {
 }
 
 impl Axes {
-    /// Of the coordinates that `place` gives, longitude and latitude where there is a full `turn` of them.
-    fn of(place: &dyn Fn(DVec2) -> Option<DVec2>, world: DVec2, turn: Option<f64>) -> Option<Self> {
+    /// Of the coordinates that `place` gives, `here` at a place of the world: longitude and latitude where there is a full
+    /// `turn` of them.
+    fn of(place: &dyn Fn(DVec2) -> Option<DVec2>, world: DVec2, here: DVec2, turn: Option<f64>) -> Option<Self> {
         let slope = |axis: DVec2| {
             let way = place(world + axis * STEP)? - place(world - axis * STEP)?;
             // Over the meridian of 180 degrees longitude leaps.
@@ -113,10 +132,7 @@ impl Axes {
         if !(steps.is_finite() && second.length() > 0.0) {
             return None;
         }
-        let from_pole = match turn {
-            Some(turn) => (turn / 4.0 - place(world)?.y.abs()) * second.length(),
-            None => f64::INFINITY,
-        };
+        let from_pole = turn.map_or(f64::INFINITY, |turn| (turn / 4.0 - here.y.abs()) * second.length());
         (from_pole > POLE).then_some(Self { first, second })
     }
 

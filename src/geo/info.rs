@@ -70,7 +70,7 @@ pub fn info(paths: &[PathBuf], options: &ReadOptions, progress: &dyn Fn(Stage, f
         crs: dem.georeference().world().clone(),
         extent: dem.extent(),
         middle: lonlat.map(|place| place.to_array()),
-        convergence: dem.georeference().convergence(middle)?,
+        convergence: dem.georeference().bearings(middle)?.convergence(),
         cell: dem.cell().to_array(),
         range: survey.range.unwrap_or_default(),
         voids: survey.voids,
