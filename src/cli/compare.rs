@@ -278,7 +278,7 @@ impl CompareArguments {
             cell_m: dem.cell().to_array(),
             patches: surface.patches(),
             eye_m: camera.eye.to_array(),
-            north: view.norths.north,
+            north: view.norths.north.to_string(),
             azimuth: view.azimuth,
             altitude: camera.altitude,
             fov: camera.fov,

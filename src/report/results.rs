@@ -5,7 +5,6 @@
 
 use serde::Serialize;
 
-use crate::dem::North;
 use crate::measure::figures::{Convergence, Run, TruthReport};
 
 /// Version of the schema: raised when a key changes its meaning or goes.
@@ -75,8 +74,8 @@ pub struct Scene {
     pub patches: u64,
     /// Eye: easting, northing, exaggerated height.
     pub eye_m: [f64; 3],
-    /// What `azimuth` is counted from.
-    pub north: North,
+    /// What `azimuth` is counted from: `true` or `grid`.
+    pub north: String,
     /// Degrees clockwise from `north`.
     pub azimuth: f64,
     /// Degrees above the horizon.
