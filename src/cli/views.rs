@@ -1,8 +1,8 @@
-//! A file of views: `{"views": [{"name", "dem", "eye" or "lonlat", "north", "azimuth", "altitude",
-//! "fov"}, …]}`.
+//! A file of views: `{"views": [{"name", "dem", "eye" or "lonlat", "north", "azimuth", "altitude", "fov"}, …]}`.
 //!
 //! `eye` is [east, north, height] in the CRS of the DEM, `lonlat` [longitude, latitude, height] in degrees; a height is
-//! metres, or "+H" above the ground. `azimuth` is counted from `north`, "true" or "grid"; from grid north where it is absent. Other keys beside `views` are remarks.
+//! metres, or "+H" above the ground. `azimuth` is counted from `north`, "true" or "grid"; from grid north where it is absent.
+//! Other keys beside `views` are remarks.
 
 use std::fs;
 use std::path::{Path, PathBuf};

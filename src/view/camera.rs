@@ -11,7 +11,7 @@ use glam::{DVec2, DVec3};
 pub struct Camera {
     /// Eye in metres: easting, northing, exaggerated height.
     pub eye: DVec3,
-    /// Degrees clockwise from the y axis of the world, which [`bearing`](crate::dem::Georeference::bearing) sets beside north.
+    /// Degrees clockwise from the y axis of the world; [`bearings`](crate::dem::Georeference::bearings) says how north lies.
     pub azimuth: f64,
     /// Degrees above the horizon, -90 to 90.
     pub altitude: f64,

@@ -16,6 +16,14 @@ fn said(output: &std::process::Output) -> String {
     String::from_utf8_lossy(&output.stdout).into_owned()
 }
 
+/// What is said where a drawing is refused as wrong usage.
+fn refused(place: &Place, dem: &str, flags: &[&str]) -> String {
+    let output = place.run(&[&["draw", dem], &PAGE[..], flags].concat());
+    let words = stderr(&output);
+    assert_eq!(output.status.code(), Some(2), "{dem} {flags:?}: {words}");
+    words
+}
+
 #[test]
 fn norths_over_a_degree_apart_are_said() {
     let place = Place::new();
@@ -60,9 +68,7 @@ fn true_north_is_refused_where_nobody_knows_it() {
     assert!(place.run(&[&north[..7], &["grid"]].concat()).status.success(), "the remedy works");
     let crs = SpatialRef::from_wkt(SITE).expect("a system");
     write(&place.path("site.tif"), &crs, DVec2::new(5e5, 5e6), DVec2::splat(38.0), hills);
-    let refused = place.run(&[&["draw", "site.tif", "--north", "true"], &PAGE[..]].concat());
-    let words = stderr(&refused);
-    assert_eq!(refused.status.code(), Some(2), "{words}");
+    let words = refused(&place, "site.tif", &["--north", "true"]);
     assert!(words.contains("the DEM lies in Site") && words.contains("give --north grid"), "{words}");
     let view = view(&place, "site.tif", &["--north", "grid"]);
     assert_eq!((&view["grid_north"], &view["true_north"]), (&0.0.into(), &Value::Null), "the remedy works");
@@ -73,17 +79,37 @@ fn at_a_pole_there_is_grid_north_alone() {
     let place = Place::new();
     let crs = SpatialRef::from_epsg(3413).expect("EPSG:3413");
     write(&place.path("pole.tif"), &crs, DVec2::ZERO, DVec2::splat(38.0), hills);
-    let at_pole = ["--lonlat", "0,90,+40", "--azimuth", "0"];
-    let refused = place.run(&[&["draw", "pole.tif"], &PAGE[..], &at_pole].concat());
-    let words = stderr(&refused);
-    assert_eq!(refused.status.code(), Some(2), "{words}");
-    assert!(words.contains("there is no true north at longitude") && words.contains("give --north grid"), "{words}");
-    let grid = view(&place, "pole.tif", &[&at_pole[..], &["--north", "grid"]].concat());
-    assert_eq!((&grid["azimuth"], &grid["true_north"]), (&0.0.into(), &Value::Null), "the remedy works");
+    // 45 m away a sample of the DEM may lie beyond the pole.
+    for eye in ["0,90,+40", "30,89.9996,+40"] {
+        let at_pole = ["--lonlat", eye, "--azimuth", "0"];
+        let words = refused(&place, "pole.tif", &at_pole);
+        assert!(
+            words.contains("there is no true north at longitude") && words.contains("give --north grid"),
+            "{words}"
+        );
+        let grid = view(&place, "pole.tif", &[&at_pole[..], &["--north", "grid"]].concat());
+        assert_eq!((&grid["azimuth"], &grid["true_north"]), (&0.0.into(), &Value::Null), "the remedy works");
+    }
     // A few hundred metres away there is one: 30 + 45 degrees left of grid north.
     let near = view(&place, "pole.tif", &["--lonlat", "30,89.995,+40", "--azimuth", "0"]);
     let found = near["true_north"].as_f64().expect("a bearing");
     assert!((found + 75.0).abs() < 0.01, "{found}");
+}
+
+#[test]
+fn at_a_pole_a_dem_in_degrees_has_no_north_at_all() {
+    let place = Place::new();
+    let crs = SpatialRef::from_epsg(4326).expect("EPSG:4326");
+    write(&place.path("cap.tif"), &crs, DVec2::new(0.0, 89.5), DVec2::new(0.04, 0.0004), |_| 100.0);
+    for north in ["true", "grid"] {
+        let words = refused(&place, "cap.tif", &["--eye", "10,90,3000", "--north", north]);
+        assert!(words.contains(&format!("there is no {north} north")), "{words}");
+        assert!(words.contains("give an eye farther from the pole"), "{words}");
+    }
+    let view = view(&place, "cap.tif", &["--eye", "0,89.99,3000", "--azimuth", "180"]);
+    let north = view["true_north"].as_f64().expect("a bearing");
+    // On the polar map the meridian of 45 degrees west is upright.
+    assert!((north + 45.0).abs() < 0.01 && view["grid_north"] == view["true_north"], "{view}");
 }
 
 #[test]
