@@ -91,7 +91,7 @@ fn what_is_printed_names_its_north_and_repeats_the_picture() {
             let said = place.run(&[&["draw", dem, "--level", "1", "-o", "out.png"], flags].concat()).stdout;
             (printed(&said, "view: "), fs::read(place.path("out.png")).expect("out.png"), said)
         };
-        let (view, picture, said) = run(&[flags, &["--size", "320x180"]].concat());
+        let (view, picture, said) = run(&[flags, &["--size", "240x135"]].concat());
         assert!(!String::from_utf8_lossy(&said).contains(" 0 of "), "{dem} {flags:?}: nothing is drawn");
         assert_eq!(view[2..4], ["--north", north], "{dem} {flags:?}");
         assert!(view.iter().all(|word| word.len() < 40), "{view:?} is long");
