@@ -40,9 +40,9 @@
 //! | judge | ink and truth | [`Scores`](truth::metrics::Scores): how far apart they are | [`Judge`](truth::metrics::Judge) |
 //! | compare | methods and levels | [`Results`](report::Results): errors and times | [`Comparison`](measure::Comparison) |
 //!
-//! World coordinates are metres, x east, y north, z up and exaggerated; angles are degrees, azimuth clockwise from grid
-//! north; pages are pixels from the top left corner. [`Georeference`](dem::Georeference) leads from there to the
-//! coordinates of the file and to longitude and latitude. Whatever can go wrong is an [`Error`](error::Error): what,
+//! World coordinates are metres, x east, y north, z up and exaggerated; angles are degrees, azimuth clockwise from the
+//! world's y axis; pages are pixels from the top left corner. [`Georeference`](dem::Georeference) leads from there to the
+//! coordinates of the file, to longitude and latitude, and to grid north and true north. Whatever can go wrong is an [`Error`](error::Error): what,
 //! where and, where there is one, a remedy, in which settings stand by their names. A renderer draws as many frames as are asked of it, by any plan, on a page of any size; for each the
 //! camera is uploaded, and what is not there yet.
 //!

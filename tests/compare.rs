@@ -69,7 +69,7 @@ fn a_report_is_whole() {
     expected.sort();
     assert_eq!(files(&place.path("report")), expected);
     let found = results(&place);
-    assert_eq!((&found["version"], found["runs"].as_array().map(Vec::len)), (&1.into(), Some(4)));
+    assert_eq!((&found["version"], found["runs"].as_array().map(Vec::len)), (&2.into(), Some(4)));
     assert!(found["truth"]["level"].as_u64() >= Some(8) && found["truth"]["self_f"].as_f64() > Some(0.9), "{found}");
     let promised = ["method", "level", "width", "height", "precision", "recall", "f", "gaps", "spurious", "chamfer_px"];
     for run in found["runs"].as_array().expect("runs") {
@@ -365,6 +365,7 @@ fn a_wrong_file_of_views_is_refused() {
     }
     views(&place, VIEWS);
     refuses(&place, &[&base[..], &EYE].concat(), 2, "leave out one of the two");
+    refuses(&place, &[&base[..], &["--north", "true"]].concat(), 2, "so does --north; leave out one of the two");
 }
 
 #[test]

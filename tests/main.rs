@@ -37,6 +37,7 @@ mod mesh;
 mod methods;
 mod mixed;
 mod names;
+mod north;
 mod nothing;
 mod one_renderer;
 mod overwritten;

@@ -276,3 +276,18 @@ pub const REPROJECTED_PX: f64 = 1e-5;
 ///
 /// Example: seen with 330 px per unit of tangent from 1 000 m, 2 px are 6 m.
 pub const CHAIN_OFF_SURFACE_PX: f64 = 2.0;
+
+/// How far a north may be from its closed form on the sphere, degrees.
+///
+/// Example: places of 6e6 m in f64 are 1e-9 m off, which turns differences over 2 m by 3e-8 degrees.
+pub const NORTH_DEGREES: f64 = 1e-6;
+
+/// How far the convergence of UTM's meridians may be from that on the sphere, degrees.
+///
+/// Example: 2.9 degrees from the middle at 65 degrees north it is 2.628695 on the ellipsoid, 2.628693 on the sphere.
+pub const CONVERGENCE_DEGREES: f64 = 1e-4;
+
+/// How far from the middle column a peak due north may stand, px.
+///
+/// Example: the top of a smooth peak is a row of some 10 px, whose mean may be a pixel off.
+pub const DUE_NORTH_PX: f64 = 1.5;

@@ -78,17 +78,13 @@ fn both_printed_views_repeat_the_picture() {
     let output =
         draw(&place, &sample(), &[&SMALL[..], &["--lonlat", "-122.51,37.83,+250", "--azimuth", "20"]].concat());
     let first = fs::read(place.path("out.png")).expect("out.png");
-    let flags = printed(&output, "view: ");
-    let repeat: Vec<_> = flags.iter().map(String::as_str).chain(SMALL.into_iter().skip(2)).collect();
-    draw(&place, &sample(), &repeat);
-    assert_eq!(fs::read(place.path("out.png")).expect("out.png"), first, "{flags:?}");
-    let other = printed(&output, "or with: ");
-    assert_eq!(other[0], "--lonlat");
-    let on_globe = view(&place, &sample(), &[&SMALL[..], &["--lonlat", &other[1], "--azimuth", "20"]].concat());
-    let flat = view(&place, &sample(), &[&SMALL[..], &[&flags[0], &flags[1], "--azimuth", "20"]].concat());
-    let gap =
-        numbers(&on_globe["eye"]).iter().zip(numbers(&flat["eye"])).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    assert!(gap < 0.02, "{gap} m apart");
+    for (label, eye) in [("view: ", "--eye"), ("or with: ", "--lonlat")] {
+        let flags = printed(&output, label);
+        assert_eq!([&flags[0], &flags[2], &flags[3]], [eye, "--north", "true"]);
+        let repeat: Vec<_> = flags.iter().map(String::as_str).chain(SMALL.into_iter().skip(2)).collect();
+        draw(&place, &sample(), &repeat);
+        assert_eq!(fs::read(place.path("out.png")).expect("out.png"), first, "{flags:?}");
+    }
 }
 
 #[test]

@@ -30,7 +30,7 @@ pub fn warn(renderer: &mut Renderer, view: &View, level: LevelChoice, page: &Pag
     };
     let Camera { fov, width, height, .. } = view.camera;
     let chosen = |fov| {
-        let none_given = ViewArguments::of_file(None, None, [None; 2], fov, Size { width, height });
+        let none_given = ViewArguments::of_file(None, None, view.norths.north, [None; 2], fov, Size { width, height });
         none_given.view(&surface, level.near()).ok()
     };
     let turned = || towards.map(|(azimuth, altitude)| view.turned(azimuth, altitude));
@@ -47,7 +47,7 @@ pub fn warn(renderer: &mut Renderer, view: &View, level: LevelChoice, page: &Pag
 }
 
 /// Where the DEM lies as seen from an eye: azimuth and altitude of its middle, half-way between its lowest and its highest
-/// place, and the same in words.
+/// place; and the same in words, the azimuth from the view's north.
 pub fn where_it_lies(surface: &Surface, view: &View) -> (Option<(f64, f64)>, String) {
     let [west, south, east, north] = surface.dem().extent();
     let [low, high] = surface.dem().range().unwrap_or_default().map(f64::from);
@@ -56,7 +56,8 @@ pub fn where_it_lies(surface: &Surface, view: &View) -> (Option<(f64, f64)>, Str
     let words = towards.map_or_else(
         || "the eye is in its very middle".to_owned(),
         |(azimuth, altitude)| {
-            format!("its middle lies {} from the eye at azimuth {azimuth}, altitude {altitude}", length(way.length()))
+            let (away, azimuth) = (length(way.length()), view.norths.counted(azimuth));
+            format!("its middle lies {away} from the eye at azimuth {azimuth}, altitude {altitude}")
         },
     );
     (towards, words)

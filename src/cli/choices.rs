@@ -2,6 +2,7 @@
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
+use crate::dem::North;
 use crate::plan::registry::Entry;
 use crate::plan::{Border, Method, Share};
 
@@ -11,6 +12,10 @@ type Word<T> = (&'static str, &'static str, T);
 const SHARES: [Word<Share>; 2] = [
     ("edge", "Two lattice vertices", Share::Edge),
     ("corner", "One lattice vertex: the vertex-storage variant", Share::Corner),
+];
+const NORTHS: [Word<North>; 2] = [
+    ("grid", "Of the grid lines of the DEM's own CRS, before any warp", North::Grid),
+    ("true", "Of the meridian", North::True),
 ];
 const BORDERS: [Word<Border>; 2] = [("on", "Draw it", Border::On), ("off", "Leave it out", Border::Off)];
 
@@ -28,6 +33,11 @@ pub fn share() -> impl TypedValueParser<Value = Share> {
 /// The word for what they share if nothing is said.
 pub fn default_share() -> &'static str {
     word_for(&SHARES, Share::default())
+}
+
+/// What azimuths are counted from.
+pub fn north() -> impl TypedValueParser<Value = North> {
+    one_of(NORTHS)
 }
 
 /// Whether the border is drawn.

@@ -42,7 +42,8 @@ the CPU and kept in the user's folder for caches.
 
 A file of views is JSON: {\"views\": [{\"name\": \"crater\", \"dem\": \"st-helens.tif\", \"eye\": [560374, 5124979, 1223],
 \"azimuth\": 170, \"altitude\": -3, \"fov\": 60}, ...]}; \"lonlat\": [LON, LAT, HEIGHT] may stand for \"eye\", \"+200\" for a
-height of 200 m above the ground. Its views of the DEMs given are drawn.
+height of 200 m above the ground; \"north\": \"true\" has azimuths count from true north, not grid north. Its views of the DEMs
+given are drawn.
 
 Examples:
   hachure compare dem/golden-gate.tif -o report --size 1280x720
@@ -278,7 +279,8 @@ impl CompareArguments {
             cell_m: dem.cell().to_array(),
             patches: surface.patches(),
             eye_m: camera.eye.to_array(),
-            azimuth: camera.azimuth,
+            north: view.norths.north.to_string(),
+            azimuth: view.azimuth,
             altitude: camera.altitude,
             fov: camera.fov,
             flags: view.flags(),

@@ -15,7 +15,8 @@ use super::outputs::OutputArguments;
 use super::talk::Talk;
 use super::terrain::{TerrainArguments, warn_of_survey};
 use super::values::{self, LevelChoice};
-use super::viewpoint::{View, ViewArguments, ViewReport};
+use super::view_report::ViewReport;
+use super::viewpoint::{View, ViewArguments};
 use super::words::told;
 use super::{blank, cells, choices};
 use crate::cache::Cache;
@@ -242,7 +243,8 @@ impl DrawArguments {
         let view = self.view.view(surface, self.level.near())?;
         view.warn_below_ground(surface, self.level.near(), talk);
         talk.say(&format!("view: {}", view.flags()))?;
-        view.lonlat_flag().map_or(Ok(()), |flag| talk.say(&format!("or with: {flag}")))?;
+        view.lonlat_flags().map_or(Ok(()), |flags| talk.say(&format!("or with: {flags}")))?;
+        view.norths.words().map_or(Ok(()), |words| talk.say(&words))?;
         Ok(view)
     }
 
@@ -295,7 +297,7 @@ impl DrawArguments {
             passes: renderer.timed_frame(plan, camera)?.passes,
             adapter: format!("{} ({})", gpu.info.name, gpu.info.driver_info),
             int64: gpu.int64,
-            view: view.report(surface.dem().georeference(), self.exaggeration),
+            view: ViewReport::of(view, surface.dem().georeference(), self.exaggeration),
             flat_earth,
             left_out: page.frame.left_out(&surface)?.into_iter().map(LeftOutReport::of).collect(),
         })

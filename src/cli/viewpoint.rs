@@ -3,11 +3,12 @@
 //! Every eye ends as a place in the DEM's file with few decimals, so that the flags printed for it repeat the picture.
 
 use glam::{DVec2, DVec3};
-use serde::Serialize;
 
+use super::choices;
+use super::norths::Norths;
 use super::talk::Talk;
 use super::values::{self, Height, LookAt, Size, Standpoint};
-use crate::dem::{Crs, Georeference};
+use crate::dem::{Crs, Georeference, North};
 use crate::error::{Error, Result, Setting};
 use crate::surface::{Level, Surface};
 use crate::view::{Camera, Fixed, choose, direction};
@@ -16,6 +17,8 @@ use crate::view::{Camera, Fixed, choose, direction};
 pub const FOV: f64 = 60.0;
 /// Decimals of printed degrees of longitude and latitude: a millimetre.
 const DEGREE_DECIMALS: i32 = 8;
+/// Decimals of an eye on the globe: so many that it is brought to the same millimetre.
+const LONLAT_DECIMALS: i32 = 9;
 /// Decimals of other printed coordinates.
 const METRE_DECIMALS: i32 = 3;
 /// By how much an eye that is printed with them may be off, and a little more for what f32 rounds: metres.
@@ -40,7 +43,10 @@ pub struct ViewArguments {
     /// The CRS in which --eye and --look-at are given [default: the CRS of the DEM]
     #[arg(long, value_name = "EPSG:N", value_parser = values::epsg)]
     crs: Option<u32>,
-    /// Direction of view, degrees clockwise from grid north [default: towards the middle of the DEM]
+    /// What azimuths are counted from [default: true with --lonlat and for DEMs in degrees, else grid]
+    #[arg(long, value_parser = choices::north())]
+    north: Option<North>,
+    /// Direction of view, degrees clockwise from north [default: towards the middle of the DEM]
     #[arg(long, value_name = "DEG", value_parser = values::azimuth, allow_hyphen_values = true)]
     azimuth: Option<f64>,
     /// Direction of view, degrees above the horizon, -90 to 90 [default: level, from a given eye]
@@ -58,48 +64,14 @@ pub struct ViewArguments {
 pub struct View {
     /// In the world.
     pub camera: Camera,
+    /// Of the camera, from the north in use.
+    pub azimuth: f64,
+    /// What that azimuth is counted from.
+    pub norths: Norths,
     /// The eye's map place in units of the file's CRS.
-    file: DVec2,
+    pub file: DVec2,
     /// Degrees of longitude and latitude, where the DEM's CRS is known.
-    lonlat: Option<DVec2>,
-}
-
-/// The view in `--json`: enough to set any place of the world on the page.
-#[derive(Serialize)]
-pub struct ViewReport {
-    eye: [f64; 3],
-    lonlat: Option<[f64; 2]>,
-    azimuth: f64,
-    altitude: f64,
-    fov: f64,
-    size: [u32; 2],
-    projection: &'static str,
-    page: Page,
-    /// Name and number of the CRS whose coordinates, times `metres_per_unit`, are the world's.
-    crs: String,
-    crs_wkt: String,
-    metres_per_unit: Option<f64>,
-    file: FileReport,
-    exaggeration: f64,
-    flags: String,
-}
-
-/// The numbers of the projection: unit vectors of the world, and pixels.
-#[derive(Serialize)]
-struct Page {
-    right: [f64; 3],
-    up: [f64; 3],
-    forward: [f64; 3],
-    focal_px: f64,
-    centre_px: [f64; 2],
-}
-
-/// The eye in the coordinates of the file.
-#[derive(Serialize)]
-struct FileReport {
-    eye: [f64; 2],
-    crs: String,
-    crs_wkt: String,
+    pub lonlat: Option<DVec2>,
 }
 
 impl ViewArguments {
@@ -107,11 +79,12 @@ impl ViewArguments {
     pub fn of_file(
         eye: Option<Standpoint>,
         lonlat: Option<Standpoint>,
+        north: North,
         [azimuth, altitude]: [Option<f64>; 2],
         fov: f64,
         size: Size,
     ) -> Self {
-        Self { eye, lonlat, look_at: None, crs: None, azimuth, altitude, fov, size }
+        Self { eye, lonlat, look_at: None, crs: None, north: Some(north), azimuth, altitude, fov, size }
     }
 
     /// What says where the eye is or looks, if anything is given.
@@ -119,6 +92,7 @@ impl ViewArguments {
         let given = [
             (Setting::Eye, self.eye.is_some()),
             (Setting::LonLat, self.lonlat.is_some()),
+            (Setting::North, self.north.is_some()),
             (Setting::Azimuth, self.azimuth.is_some()),
             (Setting::Altitude, self.altitude.is_some()),
         ];
@@ -159,18 +133,7 @@ impl ViewArguments {
             }
             _ => None,
         };
-        let mut fixed = Fixed { eye, azimuth: self.azimuth, altitude: self.altitude };
-        if let (Some(eye), Some(look_at)) = (eye, self.look_at) {
-            let towards = self.towards(surface, level, look_at)?;
-            let (azimuth, altitude) = direction(towards - eye).ok_or_else(|| {
-                Error::setting(
-                    Setting::LookAt,
-                    "is where the eye stands",
-                    "give another place, or --azimuth and --altitude",
-                )
-            })?;
-            (fixed.azimuth, fixed.altitude) = (Some(azimuth), Some(altitude));
-        }
+        let fixed = self.fixed(surface, level, eye)?;
         let mut camera = choose(surface.dem(), fixed, self.fov, self.size.width, self.size.height)?;
         let file = match place {
             Some((_, file)) => file,
@@ -180,9 +143,42 @@ impl ViewArguments {
                 file
             }
         };
+        let norths = Norths::at(georeference, self.north(georeference), camera.eye.truncate())?;
+        let azimuth = self.azimuth.unwrap_or_else(|| norths.counted(camera.azimuth));
+        camera.azimuth = norths.in_world(azimuth);
         let lonlat = georeference.lonlat(camera.eye.truncate())?;
         surface.dem().check()?;
-        Ok(View { camera, file, lonlat })
+        Ok(View { camera, azimuth, norths, file, lonlat })
+    }
+
+    /// What azimuths are counted from: people who think in degrees know no grid.
+    fn north(&self, georeference: &Georeference) -> North {
+        let in_degrees = self.lonlat.is_some() || georeference.file().is_geographic();
+        self.north.unwrap_or(if in_degrees { North::True } else { North::Grid })
+    }
+
+    /// What is fixed of the view, in the world. An azimuth without an eye is brought there at the middle of the DEM.
+    fn fixed(&self, surface: &Surface, level: Level, eye: Option<DVec3>) -> Result<Fixed> {
+        if let (Some(eye), Some(look_at)) = (eye, self.look_at) {
+            let towards = self.towards(surface, level, look_at)?;
+            let (azimuth, altitude) = direction(towards - eye).ok_or_else(|| {
+                Error::setting(
+                    Setting::LookAt,
+                    "is where the eye stands",
+                    "give another place, or --azimuth and --altitude",
+                )
+            })?;
+            return Ok(Fixed { eye: Some(eye), azimuth: Some(azimuth), altitude: Some(altitude) });
+        }
+        let turn = match (eye, self.azimuth) {
+            (None, Some(_)) => {
+                let [west, south, east, north] = surface.dem().extent();
+                let georeference = surface.dem().georeference();
+                georeference.bearings(DVec2::new(west + east, south + north) / 2.0)?.of(self.north(georeference))
+            }
+            _ => None,
+        };
+        Ok(Fixed { eye, azimuth: self.azimuth.map(|a| a + turn.unwrap_or(0.0)), altitude: self.altitude })
     }
 
     /// The eye's place in the world and in the file.
@@ -211,14 +207,28 @@ impl ViewArguments {
 impl View {
     /// The flags that repeat it.
     pub fn flags(&self) -> String {
-        let Camera { eye, azimuth, altitude, fov, width, height } = self.camera;
         let DVec2 { x, y } = self.file;
-        format!("--eye {x},{y},{} --azimuth {azimuth} --altitude {altitude} --fov {fov} --size {width}x{height}", eye.z)
+        self.flags_from(&format!("--eye {x},{y},{}", self.camera.eye.z))
     }
 
-    /// The same eye, looking elsewhere.
+    /// The same with the eye on the globe, where the DEM's CRS is known.
+    pub fn lonlat_flags(&self) -> Option<String> {
+        let DVec2 { x, y } = rounded(self.lonlat?, LONLAT_DECIMALS);
+        Some(self.flags_from(&format!("--lonlat {x},{y},{}", self.camera.eye.z)))
+    }
+
+    /// The flags with those of the eye.
+    fn flags_from(&self, eye: &str) -> String {
+        let Camera { altitude, fov, width, height, .. } = self.camera;
+        let Self { azimuth, norths: Norths { north, .. }, .. } = self;
+        format!("{eye} --north {north} --azimuth {azimuth} --altitude {altitude} --fov {fov} --size {width}x{height}")
+    }
+
+    /// The same eye, looking elsewhere: to an azimuth of the world.
     pub fn turned(&self, azimuth: f64, altitude: f64) -> Self {
-        Self { camera: Camera { azimuth, altitude, ..self.camera }, ..*self }
+        let counted = self.norths.counted(azimuth);
+        let camera = Camera { azimuth: self.norths.in_world(counted), altitude, ..self.camera };
+        Self { camera, azimuth: counted, ..*self }
     }
 
     /// Warns where the eye is below the ground of that level, by more than eyes are rounded.
@@ -235,41 +245,6 @@ impl View {
     /// Whether the DEM's CRS says where on Earth it lies.
     pub fn is_on_earth(&self) -> bool {
         self.lonlat.is_some()
-    }
-
-    /// The same eye on the globe, as a flag, where the DEM's CRS is known.
-    pub fn lonlat_flag(&self) -> Option<String> {
-        self.lonlat.map(|at| format!("--lonlat {:.7},{:.7},{}", at.x, at.y, self.camera.eye.z))
-    }
-
-    /// What `--json` says of it.
-    pub fn report(&self, georeference: &Georeference, exaggeration: f64) -> ViewReport {
-        let camera = &self.camera;
-        let [right, up, forward] = camera.axes().map(|axis| axis.to_array());
-        let (world, file) = (georeference.world(), georeference.file());
-        ViewReport {
-            eye: camera.eye.to_array(),
-            lonlat: self.lonlat.map(|at| at.to_array()),
-            azimuth: camera.azimuth,
-            altitude: camera.altitude,
-            fov: camera.fov,
-            size: [camera.width, camera.height],
-            projection: "central: with d = world - eye the place on the page, px from its top left corner, \
-                         is centre + focal / (d . forward) * (d . right, -(d . up))",
-            page: Page {
-                right,
-                up,
-                forward,
-                focal_px: camera.focal(),
-                centre_px: [f64::from(camera.width) / 2.0, f64::from(camera.height) / 2.0],
-            },
-            crs: world.label(),
-            crs_wkt: world.wkt().to_owned(),
-            metres_per_unit: world.metres_per_unit(),
-            file: FileReport { eye: self.file.to_array(), crs: file.label(), crs_wkt: file.wkt().to_owned() },
-            exaggeration,
-            flags: self.flags(),
-        }
     }
 }
 
@@ -293,13 +268,18 @@ fn settled(georeference: &Georeference, world: DVec2) -> Result<(DVec2, DVec2)> 
         None => DEGREE_DECIMALS,
         Some(metres) => METRE_DECIMALS + metres.log10().ceil().max(0.0) as i32,
     };
-    let scale = 10f64.powi(decimals);
-    let place = georeference.place_in(file, world).map(|place| (place * scale).round() / scale);
+    let place = georeference.place_in(file, world).map(|place| rounded(place, decimals));
     let settled = place.and_then(|place| Some((georeference.world_place(file, place)?, place)));
     settled.ok_or_else(|| {
         let what = format!("there is no place {},{} m in the DEM's coordinate system", world.x, world.y);
         Error::setting(Setting::Eye, what, "give a place on the map of the DEM")
     })
+}
+
+fn rounded(place: DVec2, decimals: i32) -> DVec2 {
+    let scale = 10f64.powi(decimals);
+    // No -0 is printed.
+    (place * scale).round() / scale + DVec2::ZERO
 }
 
 /// A map place at a height.

@@ -1,7 +1,8 @@
-//! A file of views: `{"views": [{"name", "dem", "eye" or "lonlat", "azimuth", "altitude", "fov"}, …]}`.
+//! A file of views: `{"views": [{"name", "dem", "eye" or "lonlat", "north", "azimuth", "altitude", "fov"}, …]}`.
 //!
 //! `eye` is [east, north, height] in the CRS of the DEM, `lonlat` [longitude, latitude, height] in degrees; a height is
-//! metres, or "+H" above the ground. Other keys beside `views` are remarks.
+//! metres, or "+H" above the ground. `azimuth` is counted from `north`, "true" or "grid"; from grid north where it is absent.
+//! Other keys beside `views` are remarks.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -10,6 +11,7 @@ use serde::Deserialize;
 
 use super::values::{self, Size, Standpoint};
 use super::viewpoint::ViewArguments;
+use crate::dem::North;
 use crate::error::{Error, Result};
 
 /// A view of the file, with the flags that give it.
@@ -35,6 +37,8 @@ struct Entry {
     dem: PathBuf,
     eye: Option<[Coordinate; 3]>,
     lonlat: Option<[Coordinate; 3]>,
+    #[serde(default)]
+    north: North,
     azimuth: Option<f64>,
     altitude: Option<f64>,
     fov: Option<f64>,
@@ -87,7 +91,7 @@ impl Entry {
         Ok(NamedView {
             name: file_name(&self.name),
             dem,
-            view: ViewArguments::of_file(eye, lonlat, [azimuth, altitude], fov, size),
+            view: ViewArguments::of_file(eye, lonlat, self.north, [azimuth, altitude], fov, size),
         })
     }
 }

@@ -41,6 +41,7 @@ pub fn flag(setting: Setting) -> &'static str {
         Setting::Memory => "--memory",
         Setting::Methods => "--methods",
         Setting::Nodata => "--nodata",
+        Setting::North => "--north",
         Setting::Output => "--output",
         Setting::Resample => "--resample",
         Setting::Share => "--share",

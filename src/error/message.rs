@@ -84,6 +84,8 @@ settings! {
     Methods = "methods",
     /// Numbers that are no data.
     Nodata = "nodata",
+    /// What azimuths are counted from.
+    North = "north",
     /// The file or folder that is written.
     Output = "output",
     /// Metres of the cells that are resampled to.

@@ -4,7 +4,7 @@ use std::fmt::{self, Display, Formatter, Write};
 use std::path::PathBuf;
 
 use super::{ReadOptions, Reading, Stage};
-use crate::dem::{Crs, History};
+use crate::dem::{Crs, History, convergence_in_words};
 use crate::error::{Message, Result, shown};
 
 /// What is known of a DEM after reading it whole. `Display` prints a few aligned lines, settings by their names.
@@ -28,6 +28,8 @@ pub struct Info {
     pub extent: [f64; 4],
     /// Degrees of longitude and latitude of the DEM's middle, where its system is known.
     pub middle: Option<[f64; 2]>,
+    /// Degrees from true north clockwise to grid north of the files' system, at the middle of the DEM, where both are known.
+    pub convergence: Option<f64>,
     /// Metres between columns and between rows.
     pub cell: [f64; 2],
     /// Lowest and highest elevation, metres.
@@ -57,7 +59,8 @@ pub fn info(paths: &[PathBuf], options: &ReadOptions, progress: &dyn Fn(Stage, f
     let mut history = dem.history().clone();
     survey.assumed.iter().for_each(|clause| history.assume(clause.clone()));
     let [west, south, east, north] = dem.extent();
-    let middle = dem.georeference().lonlat(glam::DVec2::new((west + east) / 2.0, (south + north) / 2.0))?;
+    let middle = glam::DVec2::new((west + east) / 2.0, (south + north) / 2.0);
+    let lonlat = dem.georeference().lonlat(middle)?;
     Ok(Info {
         paths: paths.to_owned(),
         driver,
@@ -66,7 +69,8 @@ pub fn info(paths: &[PathBuf], options: &ReadOptions, progress: &dyn Fn(Stage, f
         rows: dem.rows(),
         crs: dem.georeference().world().clone(),
         extent: dem.extent(),
-        middle: middle.map(|place| place.to_array()),
+        middle: lonlat.map(|place| place.to_array()),
+        convergence: dem.georeference().bearings(middle)?.convergence(),
         cell: dem.cell().to_array(),
         range: survey.range.unwrap_or_default(),
         voids: survey.voids,
@@ -102,6 +106,9 @@ impl Info {
         writeln!(f, "extent     W {west:.2}  S {south:.2}  E {east:.2}  N {north:.2} m (outermost samples)")?;
         if let Some([longitude, latitude]) = self.middle {
             writeln!(f, "middle     longitude {longitude:.5}, latitude {latitude:.5} degrees (WGS 84)")?;
+        }
+        if let Some(apart) = self.convergence.and_then(convergence_in_words) {
+            writeln!(f, "north      at the middle {apart}")?;
         }
         let [across, down] = self.cell.map(short);
         writeln!(f, "cell       {across} m x {down} m (east x north)")?;

@@ -1,4 +1,4 @@
-//! What a comparison found, as `results.json` holds it. Schema version 1.
+//! What a comparison found, as `results.json` holds it. Schema version 2: azimuths count from `north`.
 //!
 //! Truths and runs are told as they were measured: see [`figures`](crate::measure::figures), units too. What is measured anew in every run and so differs between two runs of the same
 //! comparison has one of the last two endings or is called `passes` or `floor`; all else is the same to the last digit.
@@ -8,7 +8,7 @@ use serde::Serialize;
 use crate::measure::figures::{Convergence, Run, TruthReport};
 
 /// Version of the schema: raised when a key changes its meaning or goes.
-pub const SCHEMA: u32 = 1;
+pub const SCHEMA: u32 = 2;
 
 /// The whole comparison.
 #[derive(Debug, Clone, Serialize)]
@@ -74,7 +74,9 @@ pub struct Scene {
     pub patches: u64,
     /// Eye: easting, northing, exaggerated height.
     pub eye_m: [f64; 3],
-    /// Degrees clockwise from grid north.
+    /// What `azimuth` is counted from: `true` or `grid`.
+    pub north: String,
+    /// Degrees clockwise from `north`.
     pub azimuth: f64,
     /// Degrees above the horizon.
     pub altitude: f64,

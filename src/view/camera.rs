@@ -1,6 +1,6 @@
 //! Pinhole camera with directions as surveyors give them.
 //!
-//! Azimuth a clockwise from grid north, altitude e upwards: forward f = (sin a cos e, cos a cos e, sin e), right
+//! Azimuth a clockwise from the y axis of the world, altitude e upwards: forward f = (sin a cos e, cos a cos e, sin e), right
 //! r = (cos a, -sin a, 0), up u = r x f, so that altitude +-90 is defined. Pixels are square, pixel (0, 0) is top
 //! left with its centre at (0.5, 0.5).
 
@@ -11,7 +11,7 @@ use glam::{DVec2, DVec3};
 pub struct Camera {
     /// Eye in metres: easting, northing, exaggerated height.
     pub eye: DVec3,
-    /// Degrees clockwise from grid north.
+    /// Degrees clockwise from the y axis of the world; [`bearings`](crate::dem::Georeference::bearings) says how north lies.
     pub azimuth: f64,
     /// Degrees above the horizon, -90 to 90.
     pub altitude: f64,

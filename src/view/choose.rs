@@ -34,7 +34,7 @@ const RISE: f64 = 0.002;
 pub struct Fixed {
     /// Eye in metres: easting, northing, exaggerated height.
     pub eye: Option<DVec3>,
-    /// Degrees clockwise from grid north.
+    /// Degrees clockwise from the y axis of the world.
     pub azimuth: Option<f64>,
     /// Degrees above the horizon.
     pub altitude: Option<f64>,

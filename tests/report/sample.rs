@@ -90,6 +90,7 @@ fn scene(name: &str, width: u32, height: u32) -> Scene {
         cell_m: [50.0, 50.0],
         patches: 33_082,
         eye_m: [325_249.0, 4_117_889.0, 2000.0],
+        north: "grid".into(),
         azimuth: 310.0,
         altitude: 0.0,
         fov: 60.0,
