@@ -108,7 +108,11 @@ impl Info {
         writeln!(f, "crs        {crs}")?;
         writeln!(f, "extent     W {west:.2}  S {south:.2}  E {east:.2}  N {north:.2} m (outermost samples)")?;
         if let (Some([longitude, latitude]), Some(globe)) = (self.middle, &self.globe) {
-            writeln!(f, "middle     longitude {longitude:.5}, latitude {latitude:.5} degrees ({})", name_of_globe(globe))?;
+            writeln!(
+                f,
+                "middle     longitude {longitude:.5}, latitude {latitude:.5} degrees ({})",
+                name_of_globe(globe)
+            )?;
         }
         let [across, down] = self.cell.map(short);
         writeln!(f, "cell       {across} m x {down} m (east x north)")?;

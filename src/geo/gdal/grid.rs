@@ -160,7 +160,8 @@ impl Grid {
     /// The same in the coordinates of the file, whatever way they run there.
     pub fn extent_in_file(&self) -> [f64; 4] {
         let [west, south, east, north] = self.extent();
-        let corners = [DVec2::new(west, south), DVec2::new(east, north)].map(|corner| self.crs.axes().transpose() * corner);
+        let corners =
+            [DVec2::new(west, south), DVec2::new(east, north)].map(|corner| self.crs.axes().transpose() * corner);
         let [low, high] = span(&corners);
         [low.x, low.y, high.x, high.y]
     }

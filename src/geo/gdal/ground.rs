@@ -70,7 +70,7 @@ impl Ground {
 
     /// Scale and shear, in words.
     pub fn words(&self) -> String {
-        let [least, greatest] = self.scale().map(|scale| format!("{scale:.2}"));
+        let [least, greatest] = self.scale().map(|scale| format!("{scale:.3}"));
         let scale = if least == greatest { least } else { format!("{least} to {greatest}") };
         format!("scale {scale}, shear {:.1} degrees", self.shear().min(1.0).asin().to_degrees())
     }
@@ -125,9 +125,11 @@ pub(super) fn upright(grid: Grid, like: Option<&Crs>, history: &mut History) -> 
 /// What turns and flips the map of `grid` to east and north, as nearly as can be; one where nothing is to be done.
 fn axes(grid: &Grid) -> DMat2 {
     let none = DMat2::IDENTITY;
-    let ground = Ground::of(grid, grid.whole());
-    let Some(derivative) = ground.and_then(|ground| ground.0.first().copied()) else { return none };
-    if derivative.determinant() > 0.0 && !grid.crs.says_west_or_south() {
+    let Some(Ground(derivatives)) = Ground::of(grid, grid.whole()) else { return none };
+    // Where a map folds over beyond its area, it is left-handed in a part.
+    let left_handed = derivatives.iter().all(|derivative| derivative.determinant() < 0.0);
+    let derivative = derivatives[0];
+    if !left_handed && !grid.crs.says_west_or_south() {
         return none;
     }
     let signs = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]].map(|[x, y]| [x * DVec2::X, y * DVec2::Y]);
@@ -155,7 +157,12 @@ mod tests {
         let way = Way::between(&Crs::lonlat().expect("degrees"), &crs).expect("a way");
         let place = way.place(DVec2::new(longitude, latitude)).expect("a place");
         let matrix = DMat2::from_diagonal(DVec2::new(30.0, -30.0));
-        Grid { crs, to_crs: DAffine2::from_mat2_translation(matrix, place - matrix * DVec2::splat(100.0)), columns: 200, rows: 200 }
+        Grid {
+            crs,
+            to_crs: DAffine2::from_mat2_translation(matrix, place - matrix * DVec2::splat(100.0)),
+            columns: 200,
+            rows: 200,
+        }
     }
 
     fn ground(grid: &Grid) -> Ground {

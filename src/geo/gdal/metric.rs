@@ -56,25 +56,26 @@ fn of_body(globe: &Crs, DVec2 { x: longitude, y: latitude }: DVec2) -> Option<Cr
         let pole = if latitude > 0.0 { 90.0 } else { -90.0 };
         let name = format!("polar stereographic about latitude {pole}");
         let middle = [pole / unit, 0.0];
-        (name, "Polar_Stereographic", parameters(middle, 0.994, [2e6, 2e6]))
+        (name, "Polar_Stereographic", parameters(middle, 0.994))
     } else {
         let meridian = ((longitude / ZONE).floor() + 0.5) * ZONE;
         let name = format!("transverse Mercator about longitude {meridian}");
-        (name, "Transverse_Mercator", parameters([0.0, meridian / unit], 0.9996, [5e5, 0.0]))
+        (name, "Transverse_Mercator", parameters([0.0, meridian / unit], 0.9996))
     };
     let base = globe.wkt();
     let wkt = format!("PROJCS[\"{name}\",{base},PROJECTION[\"{method}\"],{parameters},UNIT[\"metre\",1]]");
     Crs::of(heard(|| SpatialRef::from_wkt(&wkt)).0.ok()?)
 }
 
-/// Latitude and longitude of the origin in units of the globe, scale there, and its coordinates in metres.
-fn parameters([latitude, longitude]: [f64; 2], scale: f64, [east, north]: [f64; 2]) -> String {
+/// Latitude and longitude of the origin in units of the globe, and the scale there. Coordinates count from it: with the
+/// false eastings of UTM and UPS PROJ takes the map for one of them, which have no spheres.
+fn parameters([latitude, longitude]: [f64; 2], scale: f64) -> String {
     [
         ("latitude_of_origin", latitude),
         ("central_meridian", longitude),
         ("scale_factor", scale),
-        ("false_easting", east),
-        ("false_northing", north),
+        ("false_easting", 0.0),
+        ("false_northing", 0.0),
     ]
     .map(|(name, value)| format!("PARAMETER[\"{name}\",{value}]"))
     .join(",")

@@ -205,6 +205,9 @@ impl Placed {
         let grid = Grid::of(&source, options.cell, alone, &mut own)?;
         let grid = upright(grid, base.as_ref().map(|(_, onto)| &onto.crs), &mut own);
         let (grid, transposed) = grid.transposed().map_or((grid, false), |grid| (grid, true));
+        if transposed {
+            own.convert("rows are read for columns, north up");
+        }
         let elevation = Elevation::of(&source, &grid.crs, options, &mut own)?;
         let later = base.is_some();
         let (first, onto) = base.unwrap_or_else(|| (path, grid.north_up()));

@@ -68,7 +68,8 @@ impl Source {
         let (opened, complaint) = vsi::open(&name, flags, drivers);
         let dataset = opened.ok_or_else(|| cannot_open(path, &name, &place, complaint))?;
         let (columns, rows) = dataset.raster_size();
-        let source = Self { path: path.to_owned(), exact, member, dataset, columns, rows, band, rasters, transposed: false };
+        let source =
+            Self { path: path.to_owned(), exact, member, dataset, columns, rows, band, rasters, transposed: false };
         source.check_band(&name)?;
         source.check_length()?;
         Ok(source)

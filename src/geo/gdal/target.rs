@@ -143,7 +143,10 @@ impl Asked<'_> {
         let window = reach(&grid, files).ok_or_else(|| lost(path))?;
         history.convert(format!(
             "warped from {} to {}, cubic, {} x {} square cells of {} m, {kept}",
-            off.map_or_else(|| turned(files), |off| format!("a map off the ground ({}; {})", files.crs.label(), off.words())),
+            off.map_or_else(
+                || turned(files),
+                |off| format!("a map off the ground ({}; {})", files.crs.label(), off.words())
+            ),
             if files.crs == *crs { "north-up".to_owned() } else { crs.label() },
             grid.columns,
             grid.rows,
@@ -184,7 +187,8 @@ fn off_the_ground(off: &Ground, truer: Option<&Crs>, options: &ReadOptions) -> M
         (_, true) => "too steep",
         _ => "wrong",
     };
-    let what = format!("map metres are metres on the ground (this map is off it: {}, slopes are drawn {wrong}; ", off.words());
+    let what =
+        format!("map metres are metres on the ground (this map is off it: {}, slopes are drawn {wrong}; ", off.words());
     let first = |crs: &Crs| format!("warp it first: `gdalwarp -t_srs {} -r cubic IN OUT.tif`)", crs.typed());
     match truer {
         None => message![what, "take a smaller part with ", Setting::Crop, ")"],
