@@ -192,6 +192,7 @@ fn numbers_and_limits() {
         Case::new("samples at or below -32767", &marked).fill(&[("N", "-32768")]),
         Case::new("options for GDAL's drivers", &vrt(&at("options.vrt"), "", options)),
         Case::new("where they are warped", &degrees).with(&memory),
+        Case::new("where they are warped", &super::ground::mars(&at("mars.tif"))).with(&memory),
         Case {
             without: &["--fill-voids"],
             ..Case::new("where voids are filled", &void).with(&["--fill-voids", "--memory", "10B"])

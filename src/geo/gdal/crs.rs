@@ -97,14 +97,14 @@ impl Crs {
         }
     }
 
-    /// Whether its definition says that an axis runs west or south, beside another from pole to pole or along the equator.
-    pub(super) fn says_west_or_south(&self) -> bool {
-        let Some(reference) = self.reference() else { return false };
+    /// What its coordinates grow by east and north, as its definition says, where one of them grows west or south; `None`
+    /// for all others and for maps of a pole, whose axes both run north or both south.
+    pub(super) fn west_or_south(&self) -> Option<DMat2> {
+        let reference = self.reference()?;
         let (axes, _) = heard(|| [0, 1].map(|axis| reference.axis_orientation("PROJCS", axis).ok()));
-        let any = |of: [_; 2]| axes.iter().flatten().any(|axis| of.contains(axis));
-        any([Axis::OAO_North, Axis::OAO_South])
-            && any([Axis::OAO_East, Axis::OAO_West])
-            && any([Axis::OAO_South, Axis::OAO_West])
+        let [Some(x), Some(y)] = axes.map(|axis| axis.and_then(east_north)) else { return None };
+        let derivative = DMat2::from_cols(x, y).transpose();
+        (x.dot(y) == 0.0 && (x + y).min_element() < 0.0).then_some(derivative)
     }
 
     /// `x` taken round the globe, where it is a longitude, to within half a turn of `middle`.
@@ -192,6 +192,17 @@ impl Way {
         let mut places = [place];
         self.carry(&mut places);
         places[0].is_finite().then_some(places[0])
+    }
+}
+
+/// Where an axis runs, east and north.
+fn east_north(axis: Axis::Type) -> Option<DVec2> {
+    match axis {
+        Axis::OAO_East => Some(DVec2::X),
+        Axis::OAO_North => Some(DVec2::Y),
+        Axis::OAO_West => Some(-DVec2::X),
+        Axis::OAO_South => Some(-DVec2::Y),
+        _ => None,
     }
 }
 

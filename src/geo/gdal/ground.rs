@@ -125,13 +125,14 @@ pub(super) fn upright(grid: Grid, like: Option<&Crs>, history: &mut History) -> 
 /// What turns and flips the map of `grid` to east and north, as nearly as can be; one where nothing is to be done.
 fn axes(grid: &Grid) -> DMat2 {
     let none = DMat2::IDENTITY;
-    let Some(Ground(derivatives)) = Ground::of(grid, grid.whole()) else { return none };
+    let ground = Ground::of(grid, grid.whole()).map(|ground| ground.0);
     // Where a map folds over beyond its area, it is left-handed in a part.
-    let left_handed = derivatives.iter().all(|derivative| derivative.determinant() < 0.0);
-    let derivative = derivatives[0];
-    if !left_handed && !grid.crs.says_west_or_south() {
-        return none;
-    }
+    let left_handed = |places: &[DMat2]| places.iter().all(|derivative| derivative.determinant() < 0.0);
+    let derivative = match (ground, grid.crs.west_or_south()) {
+        (Some(places), said) if said.is_some() || left_handed(&places) => places[0],
+        (None, Some(said)) => said,
+        _ => return none,
+    };
     let signs = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]].map(|[x, y]| [x * DVec2::X, y * DVec2::Y]);
     let turns = signs.into_iter().flat_map(|[x, y]| [DMat2::from_cols(x, y), DMat2::from_cols(y, x)]);
     let righted = turns.filter(|turn| (*turn * derivative).determinant() > 0.0);
@@ -201,7 +202,10 @@ mod tests {
         assert_eq!(axes(&about(5513, 15.0, 50.0)), swapped, "south, west");
         assert_eq!(axes(&about(2065, 15.0, 50.0)), swapped);
         assert_eq!(axes(&about(2048, 19.5, -30.0)), columns([-1.0, 0.0], [0.0, -1.0]), "west, south");
-        assert_eq!(axes(&about(3052, -19.0, 65.0)), columns([-1.0, 0.0], [0.0, 1.0]), "west, north");
+        // PROJ knows no way from there to the globe.
+        let to_crs = DAffine2::from_translation(DVec2::splat(5e5));
+        let west_north = Grid { crs: Crs::from_epsg(3052).expect("a system"), to_crs, ..about(2048, 19.5, -30.0) };
+        assert_eq!(axes(&west_north), columns([-1.0, 0.0], [0.0, 1.0]), "west, north");
         // North, east; east, north; and maps of a pole, whose axes both run north or south.
         for (epsg, longitude, latitude) in
             [(2193, 173.0, -41.0), (31467, 9.0, 50.0), (5514, 15.0, 50.0), (3413, 100.0, 72.0), (3031, 100.0, -72.0)]
