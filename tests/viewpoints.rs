@@ -223,6 +223,30 @@ fn a_place_off_the_map_is_told_with_the_system_of_the_dem() {
     assert!(parts.iter().all(|part| said.contains(part)), "{said}");
 }
 
+#[test]
+fn longitude_and_latitude_of_another_body_are_its_own() {
+    let place = Place::new();
+    let mut text = String::from("ncols 40\nnrows 40\nxllcorner -134\nyllcorner 18\ncellsize 0.02\n");
+    for (r, c) in (0..40).flat_map(|r| (0..40).map(move |c| (r, c))) {
+        let hill = (-(f64::from(c - 20).powi(2) + f64::from(r - 10).powi(2)) / 30.0).exp();
+        text += &format!("{} ", -2000.0 + 3000.0 * hill);
+    }
+    fs::write(place.path("mars.asc"), text).expect("mars.asc");
+    let sphere = "DATUM[\"Mars\",SPHEROID[\"Mars\",3396190,0]],PRIMEM[\"Reference meridian\",0]";
+    let globe = format!("GEOGCS[\"Mars\",{sphere},UNIT[\"degree\",0.0174532925199433]]");
+    fs::write(place.path("mars.prj"), globe).expect("mars.prj");
+    let flags = ["--lonlat", "-133.6,18.1,+2000", "--azimuth", "0", "--size", "96x64", "-o", "out.png"];
+    let view = view(&place, "mars.asc", &flags);
+    let at = numbers(&view["lonlat"]);
+    assert!((at[0] + 133.6).abs() < 1e-7 && (at[1] - 18.1).abs() < 1e-7, "{at:?}");
+    // Land 30 km away, of which it would be said how far the Earth's curve lowers it.
+    let said = draw(&place, "mars.asc", &flags).stdout;
+    assert!(!String::from_utf8_lossy(&said).contains("Earth"));
+    let output = place.run(&["draw", "mars.asc", "-o", "out.png", "--crs", "EPSG:4326", "--eye", "-133.6,18.1,9000"]);
+    let said = stderr(&output);
+    assert!(output.status.code() == Some(2) && said.contains("the DEM, which lies in \"Mars"), "{said}");
+}
+
 /// A grid of 60 x 40 samples with a high hill in the west and a low one in the east, on a map whose axes run so.
 fn two_hills(place: &Place, name: &str, epsg: u32, south_west: bool) {
     let (columns, rows, cell) = (60, 40, 30.0);

@@ -211,6 +211,21 @@ fn maps_of_unequal_or_other_scale_are_warped_and_true_ones_are_not() {
 }
 
 #[test]
+fn degrees_too_wide_for_a_zone_are_drawn_with_a_warning() {
+    let dir = folder();
+    for (step, named) in [(0.3, true), (0.1, false)] {
+        let transform = Some([0.0, step, 0.0, 2.0, 0.0, -step]);
+        let raster = Raster { transform, epsg: Some(4326), ..Raster::new(60, told_apart(60, 20)) };
+        let said = words(read_all(&raster.write("GTiff", &dir.path().join("wide.tif"))).history().assumed()).join("\n");
+        assert_eq!(
+            said.contains("scale 1.000 to 1.01") && said.contains("take a smaller part with --crop"),
+            named,
+            "{said}"
+        );
+    }
+}
+
+#[test]
 fn shared_maps_are_true() {
     let Some(shared) = shared_dems() else { return };
     for name in ["inl_idaho_feet.tif", "west_temple_50m.tif", "yosemite_calif3_feet.tif", "SainteHelens.dem"] {

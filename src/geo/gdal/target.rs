@@ -134,7 +134,8 @@ impl Asked<'_> {
             |at: &[[usize; 2]]| region.holds(at.iter().map(|[c, r]| all.sample(*c as f64, *r as f64)).collect());
         check_extent(&all, cell * unit, path)?;
         let part = largest(all.columns, all.rows, inside).ok_or_else(|| too_small(files, path, cell * unit, crs))?;
-        let share = part.samples() as f64 * cell * cell / (area * window.samples() as f64);
+        let [across, down] = window.size.map(|samples| (samples as f64 - 2.0 * BORDER).max(1.0));
+        let share = part.samples() as f64 * cell * cell / (area * across * down);
         let (part, kept) = match off {
             Some(_) if share < INSIDE => (all.whole(), "all of the data, voids beside them"),
             _ => (part, "the largest rectangle inside the data"),
