@@ -3,6 +3,7 @@
 mod archives;
 mod converted;
 mod filed;
+mod ground;
 mod large;
 mod mosaics;
 mod opened;

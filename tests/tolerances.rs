@@ -128,6 +128,11 @@ pub mod raster {
 /// Example: on a crest of 1 540 m the warped sample may be 1 539.9 m.
 pub const WARP_METRES: f64 = 0.1;
 
+/// By which share distances on a map may be off those on the ground: what UTM is at its meridian, and a hundred-thousandth.
+///
+/// Example: 10 km on the ground may be 9.996 km on the map, or 60 km of Mars 59.7 near a pole, where the map is UPS.
+pub const MAP_SHARE: f64 = 0.0061;
+
 /// How far a sample resampled on a plane may lie from it, m: weights that add up to 1 but for rounding.
 ///
 /// Example: on a slope of 0.36 with cells of 30 m 0.02 m are a five-hundredth of a cell.

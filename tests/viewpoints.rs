@@ -192,6 +192,111 @@ fn wrong_viewpoints_exit_with_2() {
     }
 }
 
+#[test]
+fn a_place_on_the_globe_is_refused_in_the_name_of_a_local_system() {
+    let place = Place::new();
+    fs::write(place.path("hill.prj"), "LOCAL_CS[\"Site\",UNIT[\"metre\",1]]").expect("hill.prj");
+    for flags in [&["--lonlat", "9,45,+100"][..], &["--crs", "EPSG:4326", "--eye", "9,45,+100"]] {
+        let output = place.run(&[&["draw", "hill.asc", "-o", "out.png"], flags].concat());
+        let said = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        let parts =
+            ["local system \"Site\"", "give --eye E,N", "between 500005.00,4000005.00 and 500395.00,4000395.00 metres"];
+        assert!(parts.iter().all(|part| said.contains(part)) && !said.contains("9,45"), "{said}");
+    }
+    // As it says: a place between them.
+    draw(&place, "hill.asc", &["--eye", "500200,4000100,+100", "--size", "64x48", "-o", "out.png"]);
+}
+
+#[test]
+fn a_place_off_the_map_is_told_with_the_system_of_the_dem() {
+    let place = Place::new();
+    let output = place.run(&["draw", &sample(), "-o", "out.png", "--lonlat", "147.5,0,500"]);
+    let said = stderr(&output);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    let parts =
+        ["\"WGS 84 / UTM zone 10N (EPSG:32610)\"", "between 536715.00,4180515.00 and 551685.00,4195485.00 metres"];
+    assert!(parts.iter().all(|part| said.contains(part)), "{said}");
+}
+
+#[test]
+fn longitude_and_latitude_of_another_body_are_its_own() {
+    let place = Place::new();
+    let mut text = String::from("ncols 40\nnrows 40\nxllcorner -134\nyllcorner 18\ncellsize 0.02\n");
+    for (r, c) in (0..40).flat_map(|r| (0..40).map(move |c| (r, c))) {
+        let hill = (-(f64::from(c - 20).powi(2) + f64::from(r - 10).powi(2)) / 30.0).exp();
+        text += &format!("{} ", -2000.0 + 3000.0 * hill);
+    }
+    fs::write(place.path("mars.asc"), text).expect("mars.asc");
+    let sphere = "DATUM[\"Mars\",SPHEROID[\"Mars\",3396190,0]],PRIMEM[\"Reference meridian\",0]";
+    let globe = format!("GEOGCS[\"Mars\",{sphere},UNIT[\"degree\",0.0174532925199433]]");
+    fs::write(place.path("mars.prj"), globe).expect("mars.prj");
+    let flags = ["--lonlat", "-133.6,18.1,+2000", "--azimuth", "0", "--size", "96x64", "-o", "out.png"];
+    let view = view(&place, "mars.asc", &flags);
+    let at = numbers(&view["lonlat"]);
+    assert!((at[0] + 133.6).abs() < 1e-7 && (at[1] - 18.1).abs() < 1e-7, "{at:?}");
+    // Land 30 km away, of which it would be said how far the Earth's curve lowers it.
+    let said = draw(&place, "mars.asc", &flags).stdout;
+    assert!(!String::from_utf8_lossy(&said).contains("Earth"));
+    let output = place.run(&["draw", "mars.asc", "-o", "out.png", "--crs", "EPSG:4326", "--eye", "-133.6,18.1,9000"]);
+    let said = stderr(&output);
+    assert!(output.status.code() == Some(2) && said.contains("the DEM, which lies in \"Mars"), "{said}");
+}
+
+/// A grid of 60 x 40 samples with a high hill in the west and a low one in the east, on a map whose axes run so.
+fn two_hills(place: &Place, name: &str, epsg: u32, south_west: bool) {
+    let (columns, rows, cell) = (60, 40, 30.0);
+    let hill =
+        |c: usize, r: usize, at: [f64; 2]| (-((c as f64 - at[0]).powi(2) + (r as f64 - at[1]).powi(2)) / 40.0).exp();
+    let height =
+        |c: usize, r: usize| (100.0 + 300.0 * hill(c, r, [20.0, 12.0]) + 150.0 * hill(c, r, [42.0, 10.0])) as f32;
+    let [east, north] = [-703_000.0, -1_058_000.0];
+    let (size, transform, heights): (_, _, Vec<f32>) = match south_west {
+        true => {
+            let heights = (0..columns).flat_map(|c| (0..rows).map(move |r| height(c, r))).collect();
+            ((rows, columns), [-north, cell, 0.0, -east, 0.0, -cell], heights)
+        }
+        false => {
+            let heights = (0..rows).flat_map(|r| (0..columns).map(move |c| height(c, r))).collect();
+            ((columns, rows), [east, cell, 0.0, north, 0.0, -cell], heights)
+        }
+    };
+    let driver = DriverManager::get_driver_by_name("GTiff").expect("a driver");
+    let mut file = driver.create_with_band_type::<f32, _>(place.path(name), size.0, size.1, 1).expect("a file");
+    file.set_geo_transform(&transform).expect("a place");
+    file.set_spatial_ref(&SpatialRef::from_epsg(epsg).expect("a system")).expect("a system");
+    let mut buffer = gdal::raster::Buffer::new(size, heights);
+    file.rasterband(1).expect("a band").write((0, 0), size, &mut buffer).expect("heights");
+    file.close().expect("a file");
+}
+
+#[test]
+fn axes_south_and_west_draw_the_same_picture_and_not_its_mirror_image() {
+    let place = Place::new();
+    two_hills(&place, "south-west.tif", 5513, true);
+    two_hills(&place, "east-north.tif", 5514, false);
+    let eye = "--lonlat 15.0144,49.9927,+80 --azimuth 0 --fov 90 --size 160x90 -o out.png --mask mask.png";
+    let eye: Vec<_> = eye.split(' ').collect();
+    let mask = |dem: &str, flags: &[&str]| {
+        let view = view(&place, dem, flags);
+        (fs::read(place.path("mask.png")).expect("a mask"), view)
+    };
+    let (truth, _) = mask("east-north.tif", &eye);
+    let (ours, view) = mask("south-west.tif", &eye);
+    assert!(ours == truth && truth.len() > 200, "the same from the same place");
+    assert_eq!(view["axes"], serde_json::json!([[0.0, -1.0], [-1.0, 0.0]]));
+    // The printed flags are in the file's own coordinates.
+    let file = numbers(&view["file"]["eye"]);
+    assert!(file[0] > 1_050_000.0 && file[1] > 690_000.0 && file[1] < 710_000.0, "{file:?}");
+    let flags: Vec<_> = view["flags"].as_str().expect("flags").split(' ').collect();
+    let (again, _) = mask("south-west.tif", &[&flags[..], &["-o", "out.png", "--mask", "mask.png"]].concat());
+    assert!(again == truth, "{flags:?}");
+    // Left is left: turned back, the picture is another.
+    let mut turned = eye.clone();
+    turned[3] = "180";
+    assert!(mask("south-west.tif", &turned).0 != truth);
+}
+
 /// Ink of a mask, as (x, y).
 fn ink(path: &Path) -> (u32, u32, Vec<bool>) {
     let mask = image::open(path).expect("a mask").to_luma8();

@@ -73,8 +73,8 @@ impl Transform for Plain {
         Some(if to.is_geographic() { place / 1e5 } else { place * 1e5 })
     }
 
-    fn lonlat(&self) -> Result<Crs> {
-        Ok(Crs::new("globe".into(), "globe".into(), None, Unit::Angle(1_f64.to_radians())))
+    fn lonlat(&self, _: &Crs) -> Result<Option<Crs>> {
+        Ok(Some(Crs::new("globe".into(), "globe".into(), None, Unit::Angle(1_f64.to_radians()))))
     }
 }
 

@@ -26,9 +26,13 @@ pub struct TerrainArguments {
     /// Metres between samples, for a DEM that does not say where it lies (an image)
     #[arg(long, value_name = "M", value_parser = values::metres, allow_hyphen_values = true, help_heading = "Surface")]
     cell: Option<f64>,
-    /// Resample to square cells of so many metres, cubic [default: only what is not north-up in a map projection]
+    /// Resample to square cells of so many metres, cubic [default: only what is not north-up in a map that is true]
     #[arg(long, value_name = "M", value_parser = values::metres, allow_hyphen_values = true, help_heading = "Surface")]
     resample: Option<f64>,
+    /// Leave a map in metres as it is where they are off those on the ground by over 1 % (shear, unequal scale) [default:
+    /// warp it to UTM]
+    #[arg(long, help_heading = "Surface")]
+    no_warp: bool,
     /// Fill voids up to 100 samples from data
     #[arg(long, help_heading = "Surface")]
     fill_voids: bool,
@@ -59,6 +63,7 @@ impl TerrainArguments {
             band: self.band.map(usize::from),
             cell: self.cell,
             resample: self.resample,
+            warp: !self.no_warp,
             fill_voids: self.fill_voids,
             elevation_unit: self.elevation_unit,
             nodata: self.nodata.clone().unwrap_or_default(),

@@ -22,9 +22,12 @@ pub struct ViewReport {
     size: [u32; 2],
     projection: &'static str,
     page: Page,
-    /// Name and number of the CRS whose coordinates, times `metres_per_unit`, are the world's.
+    /// Name and number of the CRS whose coordinates, times `axes` and `metres_per_unit`, are the world's.
     crs: String,
     crs_wkt: String,
+    /// Rows of the matrix that turns the CRS's own axes to east and north; absent where they run so.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    axes: Option<[[f64; 2]; 2]>,
     metres_per_unit: Option<f64>,
     file: FileReport,
     exaggeration: f64,
@@ -76,6 +79,7 @@ impl ViewReport {
             },
             crs: world.label(),
             crs_wkt: world.wkt().to_owned(),
+            axes: (*world != world.as_defined()).then(|| world.axes().transpose().to_cols_array_2d()),
             metres_per_unit: world.metres_per_unit(),
             file: FileReport { eye: view.file.to_array(), crs: file.label(), crs_wkt: file.wkt().to_owned() },
             exaggeration,

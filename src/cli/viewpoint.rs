@@ -8,7 +8,7 @@ use super::choices;
 use super::norths::Norths;
 use super::talk::Talk;
 use super::values::{self, Height, LookAt, Size, Standpoint};
-use crate::dem::{Crs, Georeference, North};
+use crate::dem::{Crs, Dem, Georeference, North};
 use crate::error::{Error, Result, Setting};
 use crate::surface::{Level, Surface};
 use crate::view::{Camera, Fixed, choose, direction};
@@ -21,6 +21,8 @@ const DEGREE_DECIMALS: i32 = 8;
 const LONLAT_DECIMALS: i32 = 9;
 /// Decimals of other printed coordinates.
 const METRE_DECIMALS: i32 = 3;
+/// Longitude and latitude on Earth, in the register of EPSG.
+const WGS84: u32 = 4326;
 /// By how much an eye that is printed with them may be off, and a little more for what f32 rounds: metres.
 const ROUNDED: f64 = 0.001;
 
@@ -31,7 +33,7 @@ pub struct ViewArguments {
     /// Eye: easting, northing in the CRS of the DEM; exaggerated height in metres, or +H above the ground
     #[arg(long, value_name = "E,N,Z|E,N,+H", value_parser = values::eye, allow_hyphen_values = true, group = "standpoint")]
     eye: Option<Standpoint>,
-    /// Eye: longitude, latitude in degrees (WGS 84); exaggerated height in metres, or +H above the ground
+    /// Eye: longitude, latitude in degrees (WGS 84; elsewhere than on Earth those of the DEM); exaggerated height in metres, or +H above the ground
     #[arg(long, value_name = "LON,LAT,Z|+H", value_parser = values::lonlat, allow_hyphen_values = true, group = "standpoint")]
     lonlat: Option<Standpoint>,
     /// What the middle of the page shows: easting, northing in the CRS of the DEM; exaggerated metres [default: ground]
@@ -70,8 +72,10 @@ pub struct View {
     pub norths: Norths,
     /// The eye's map place in units of the file's CRS.
     pub file: DVec2,
-    /// Degrees of longitude and latitude, where the DEM's CRS is known.
+    /// Degrees of longitude and latitude, where the DEM's CRS is of a globe.
     pub lonlat: Option<DVec2>,
+    /// Whether that is the Earth.
+    on_earth: bool,
 }
 
 impl ViewArguments {
@@ -125,7 +129,7 @@ impl ViewArguments {
     /// [`Error::Setting`] for a place that the DEM's map does not have, or without ground where a height above it is asked.
     pub fn view(&self, surface: &Surface, level: Level) -> Result<View> {
         let georeference = surface.dem().georeference();
-        let place = self.standpoint(georeference)?;
+        let place = self.standpoint(surface.dem())?;
         let eye = match (place, self.eye.or(self.lonlat)) {
             (Some((world, _)), Some(standpoint)) => {
                 let setting = if self.eye.is_some() { Setting::Eye } else { Setting::LonLat };
@@ -147,8 +151,9 @@ impl ViewArguments {
         let azimuth = self.azimuth.unwrap_or_else(|| norths.counted(camera.azimuth));
         camera.azimuth = norths.in_world(azimuth);
         let lonlat = georeference.lonlat(camera.eye.truncate())?;
+        let on_earth = georeference.globe()?.is_some_and(|globe| globe.epsg() == Some(WGS84));
         surface.dem().check()?;
-        Ok(View { camera, azimuth, norths, file, lonlat })
+        Ok(View { camera, azimuth, norths, file, lonlat, on_earth })
     }
 
     /// What azimuths are counted from: people who think in degrees know no grid.
@@ -182,23 +187,25 @@ impl ViewArguments {
     }
 
     /// The eye's place in the world and in the file.
-    fn standpoint(&self, georeference: &Georeference) -> Result<Option<(DVec2, DVec2)>> {
+    fn standpoint(&self, dem: &Dem) -> Result<Option<(DVec2, DVec2)>> {
+        let georeference = dem.georeference();
         if let Some(eye) = self.eye {
             let crs = self.crs.map(Crs::from_epsg).transpose()?;
-            let world = world(georeference, crs.as_ref(), eye.place, Setting::Eye)?;
+            let world = world(dem, crs.as_ref(), eye.place, Setting::Eye)?;
             return match crs {
                 None => Ok(Some((world, eye.place))),
                 Some(_) => settled(georeference, world).map(Some),
             };
         }
         let Some(eye) = self.lonlat else { return Ok(None) };
-        let world = world(georeference, Some(&Crs::lonlat()?), eye.place, Setting::LonLat)?;
+        let globe = georeference.globe()?.ok_or_else(|| no_globe(dem, Setting::LonLat))?;
+        let world = world(dem, Some(&globe), eye.place, Setting::LonLat)?;
         settled(georeference, world).map(Some)
     }
 
     fn towards(&self, surface: &Surface, level: Level, look_at: LookAt) -> Result<DVec3> {
         let crs = self.crs.map(Crs::from_epsg).transpose()?;
-        let place = world(surface.dem().georeference(), crs.as_ref(), look_at.place, Setting::LookAt)?;
+        let place = world(surface.dem(), crs.as_ref(), look_at.place, Setting::LookAt)?;
         let height = look_at.height.map_or(Height::AboveGround(0.0), Height::Absolute);
         above(surface, level, place, height, Setting::LookAt)
     }
@@ -244,21 +251,59 @@ impl View {
 
     /// Whether the DEM's CRS says where on Earth it lies.
     pub fn is_on_earth(&self) -> bool {
-        self.lonlat.is_some()
+        self.on_earth && self.lonlat.is_some()
     }
 }
 
 /// World place of one given in `crs`, else in the file's own.
-fn world(georeference: &Georeference, crs: Option<&Crs>, place: DVec2, setting: Setting) -> Result<DVec2> {
-    georeference.world_place(crs.unwrap_or(georeference.file()), place).ok_or_else(|| {
-        if georeference.world().wkt().is_empty() {
-            let what = "the DEM names no coordinate system, so other coordinates mean nothing in it";
-            return Error::setting(setting, what, "give --eye E,N in the DEM's own coordinates, without --crs");
-        }
-        let given = crs.unwrap_or(georeference.file());
-        let what = format!("there is no place {},{} in {}, {}", place.x, place.y, given.label(), given.units());
-        Error::setting(setting, what, "check the order, x first, or name another system with --crs EPSG:N")
+fn world(dem: &Dem, crs: Option<&Crs>, place: DVec2, setting: Setting) -> Result<DVec2> {
+    let georeference = dem.georeference();
+    let given = crs.unwrap_or(georeference.file());
+    if given != georeference.file() && georeference.globe()?.is_none() {
+        return Err(no_globe(dem, setting));
+    }
+    georeference.world_place(given, place).ok_or_else(|| {
+        let Places { named, within } = Places::of(dem);
+        let what = format!(
+            "no place {},{} of {} is on the map of the DEM, which lies in {named}",
+            place.x,
+            place.y,
+            given.label()
+        );
+        Error::setting(setting, what, format!("check the order, x first, or give --eye E,N without --crs {within}"))
     })
+}
+
+/// The system of a DEM, and where in it the DEM lies, in words.
+struct Places {
+    named: String,
+    within: String,
+}
+
+impl Places {
+    fn of(dem: &Dem) -> Self {
+        let ([west, south, east, north], georeference) = (dem.extent(), dem.georeference());
+        let file = georeference.file();
+        let corner = |x, y| georeference.place_in(file, DVec2::new(x, y)).unwrap_or(DVec2::new(x, y));
+        let (one, other) = (corner(west, south), corner(east, north));
+        let [low, high] = [one.min(other), one.max(other)];
+        let decimals = if file.is_geographic() { 6 } else { 2 };
+        let pair = |place: DVec2| format!("{:.decimals$},{:.decimals$}", place.x, place.y);
+        Self {
+            named: if file.label().is_empty() { "no named system".to_owned() } else { format!("\"{}\"", file.label()) },
+            within: format!("between {} and {} {}", pair(low), pair(high), file.units()),
+        }
+    }
+}
+
+/// The error for a place of the globe where the DEM is on none.
+fn no_globe(dem: &Dem, setting: Setting) -> Error {
+    let Places { named, within } = Places::of(dem);
+    let what = match dem.georeference().file().label().is_empty() {
+        true => "the DEM names no coordinate system, so other coordinates mean nothing in it".to_owned(),
+        false => format!("the DEM lies in the local system {named}, which does not say where on the globe it is"),
+    };
+    Error::setting(setting, what, format!("give --eye E,N in the DEM's own coordinates, without --crs, {within}"))
 }
 
 /// A world place moved by less than a millimetre to where its coordinates in the file have few decimals, and these.

@@ -48,6 +48,7 @@ pub fn flag(setting: Setting) -> &'static str {
         Setting::Size => "--size",
         Setting::Sizes => "--sizes",
         Setting::Views => "--views",
+        Setting::Warp => "--no-warp",
         Setting::Wide => "--wide",
     }
 }

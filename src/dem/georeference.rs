@@ -56,15 +56,21 @@ impl Georeference {
         self.carried(&self.world, crs, world / self.world.metres_per_unit()?)
     }
 
-    /// Degrees of longitude and latitude (WGS 84) of a world place in metres; `None` where the system is unknown.
+    /// Longitude and latitude on the DEM's body: WGS 84 on Earth, the DEM's own ellipsoid elsewhere; `None` where the DEM
+    /// lies on no globe, or nobody says where.
+    ///
+    /// # Errors
+    /// Those of [`Transform::lonlat`].
+    pub fn globe(&self) -> Result<Option<Crs>> {
+        self.transform.as_ref().map_or(Ok(None), |transform| transform.lonlat(&self.world))
+    }
+
+    /// Degrees of longitude and latitude of a world place in metres, in [`Self::globe`]; `None` where there is none.
     ///
     /// # Errors
     /// Those of [`Transform::lonlat`].
     pub fn lonlat(&self, world: DVec2) -> Result<Option<DVec2>> {
-        match &self.transform {
-            Some(transform) if !self.world.wkt().is_empty() => Ok(self.place_in(&transform.lonlat()?, world)),
-            _ => Ok(None),
-        }
+        Ok(self.globe()?.and_then(|globe| self.place_in(&globe, world)))
     }
 
     /// The place in one system of a place in another; the same place where both are one, known or not.

@@ -2,7 +2,7 @@
 
 use std::fmt::Debug;
 
-use glam::DVec2;
+use glam::{DMat2, DVec2};
 
 use crate::error::Result;
 
@@ -10,13 +10,14 @@ use crate::error::Result;
 const METRE_EPSILON: f64 = 1e-9;
 
 /// A coordinate reference system: a name for people, a definition in the well-known text of OGC, and a unit. Coordinates
-/// stand x first, east or longitude.
+/// stand x first, east or longitude. Those of a map whose axes run elsewhere may be turned and flipped: see [`Crs::axes`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Crs {
     wkt: String,
     name: String,
     epsg: Option<u32>,
     unit: Unit,
+    axes: DMat2,
 }
 
 /// What one step of a coordinate is.
@@ -34,17 +35,34 @@ pub trait Transform: Debug + Send + Sync {
     /// or one of the two is unknown.
     fn place(&self, from: &Crs, to: &Crs, place: DVec2) -> Option<DVec2>;
 
-    /// Longitude and latitude in degrees, WGS 84.
+    /// Longitude and latitude on the body that `of` maps: degrees of WGS 84 on Earth, elsewhere those on the system's own
+    /// ellipsoid; `None` where `of` is of no globe.
     ///
     /// # Errors
     /// [`Error::Limit`](crate::error::Error::Limit) where it cannot be looked up.
-    fn lonlat(&self) -> Result<Crs>;
+    fn lonlat(&self, of: &Crs) -> Result<Option<Crs>>;
 }
 
 impl Crs {
     /// Of a definition, a name, its number in the register of EPSG and the unit of its coordinates.
     pub fn new(wkt: String, name: String, epsg: Option<u32>, unit: Unit) -> Self {
-        Self { wkt, name, epsg, unit }
+        Self { wkt, name, epsg, unit, axes: DMat2::IDENTITY }
+    }
+
+    /// The same with coordinates turned and flipped: `axes` holds 0, 1 and -1, each row and column one that is not 0.
+    pub fn with_axes(self, axes: DMat2) -> Self {
+        Self { axes, ..self }
+    }
+
+    /// What leads from the coordinates of the definition to these: one by default, another where the map's own axes run
+    /// west or south, so that x is east and y north.
+    pub fn axes(&self) -> DMat2 {
+        self.axes
+    }
+
+    /// The same with the coordinates of its definition.
+    pub fn as_defined(&self) -> Self {
+        self.clone().with_axes(DMat2::IDENTITY)
     }
 
     /// Of a place that nobody named: metres from somewhere.

@@ -98,6 +98,8 @@ settings! {
     Sizes = "sizes",
     /// The file of views.
     Views = "file of views",
+    /// Whether maps off the ground stay as they are.
+    Warp = "no warp",
     /// Whether away surface counts wherever it touches.
     Wide = "wide",
 }

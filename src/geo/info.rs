@@ -7,6 +7,9 @@ use super::{ReadOptions, Reading, Stage};
 use crate::dem::{Crs, History, convergence_in_words};
 use crate::error::{Message, Result, shown};
 
+/// What GDAL calls systems that nobody named.
+const UNNAMED: [&str; 3] = ["", "unknown", "unnamed"];
+
 /// What is known of a DEM after reading it whole. `Display` prints a few aligned lines, settings by their names.
 ///
 /// Size, extent, cell and range are those of the DEM as it is drawn; where its files are on another grid, `source` says so.
@@ -16,7 +19,7 @@ pub struct Info {
     pub paths: Vec<PathBuf>,
     /// GDAL's name of the format of the first.
     pub driver: String,
-    /// The files' own grid in words, where the DEM is warped from it.
+    /// The files' own grid in words, where the DEM is warped from it or its axes are turned.
     pub source: Option<String>,
     /// Samples from west to east.
     pub columns: usize,
@@ -26,8 +29,10 @@ pub struct Info {
     pub crs: Crs,
     /// West, south, east and north of the outermost sample centres, metres.
     pub extent: [f64; 4],
-    /// Degrees of longitude and latitude of the DEM's middle, where its system is known.
+    /// Degrees of longitude and latitude of the DEM's middle, where its system is of a globe.
     pub middle: Option<[f64; 2]>,
+    /// The system of `middle`.
+    pub globe: Option<Crs>,
     /// Degrees from true north clockwise to grid north of the files' system, at the middle of the DEM, where both are known.
     pub convergence: Option<f64>,
     /// Metres between columns and between rows.
@@ -61,6 +66,7 @@ pub fn info(paths: &[PathBuf], options: &ReadOptions, progress: &dyn Fn(Stage, f
     let [west, south, east, north] = dem.extent();
     let middle = glam::DVec2::new((west + east) / 2.0, (south + north) / 2.0);
     let lonlat = dem.georeference().lonlat(middle)?;
+    let globe = dem.georeference().globe()?;
     Ok(Info {
         paths: paths.to_owned(),
         driver,
@@ -70,6 +76,7 @@ pub fn info(paths: &[PathBuf], options: &ReadOptions, progress: &dyn Fn(Stage, f
         crs: dem.georeference().world().clone(),
         extent: dem.extent(),
         middle: lonlat.map(|place| place.to_array()),
+        globe,
         convergence: dem.georeference().bearings(middle)?.convergence(),
         cell: dem.cell().to_array(),
         range: survey.range.unwrap_or_default(),
@@ -104,8 +111,12 @@ impl Info {
         writeln!(f, "size       {} columns x {} rows = {} samples", self.columns, self.rows, self.columns * self.rows)?;
         writeln!(f, "crs        {crs}")?;
         writeln!(f, "extent     W {west:.2}  S {south:.2}  E {east:.2}  N {north:.2} m (outermost samples)")?;
-        if let Some([longitude, latitude]) = self.middle {
-            writeln!(f, "middle     longitude {longitude:.5}, latitude {latitude:.5} degrees (WGS 84)")?;
+        if let (Some([longitude, latitude]), Some(globe)) = (self.middle, &self.globe) {
+            writeln!(
+                f,
+                "middle     longitude {longitude:.5}, latitude {latitude:.5} degrees ({})",
+                name_of_globe(globe)
+            )?;
         }
         if let Some(apart) = self.convergence.and_then(convergence_in_words) {
             writeln!(f, "north      at the middle {apart}")?;
@@ -126,6 +137,11 @@ pub(super) fn name_of(crs: &Crs) -> String {
         label if label.is_empty() => "none".to_owned(),
         label => label,
     }
+}
+
+/// The name of longitude and latitude, or that they are on the DEM's own ellipsoid.
+fn name_of_globe(globe: &Crs) -> &str {
+    if UNNAMED.contains(&globe.name()) { "the DEM's own ellipsoid" } else { globe.name() }
 }
 
 /// With at most four decimals.

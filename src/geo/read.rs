@@ -22,8 +22,11 @@ pub struct ReadOptions {
     pub band: Option<usize>,
     /// Metres between samples of files that do not say where they lie. Default `None`: such files are refused.
     pub cell: Option<f64>,
-    /// Warp to square cells of so many metres. Default `None`: warp only what is not north-up in a map projection.
+    /// Warp to square cells of so many metres. Default `None`: warp only what is not north-up in a map that is true.
     pub resample: Option<f64>,
+    /// Warp maps whose metres are off those on the ground by more than a percent (shear, unequal scale) to the UTM zone of
+    /// their middle, where the outcome can be held. Default true.
+    pub warp: bool,
     /// Fill voids up to 100 samples from data. Default false: voids stay holes.
     pub fill_voids: bool,
     /// The unit of elevations, whatever the files say. Default `None`: the files' own, else metres.
@@ -47,6 +50,7 @@ impl Default for ReadOptions {
             band: None,
             cell: None,
             resample: None,
+            warp: true,
             fill_voids: false,
             elevation_unit: None,
             nodata: Nodata::default(),

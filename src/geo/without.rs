@@ -36,7 +36,7 @@ impl Reading {
         match *self {}
     }
 
-    /// The files' own grid in words, where the DEM is warped from it.
+    /// The files' own grid in words, where the DEM is warped from it or its axes are turned.
     pub fn warped_from(&self) -> Option<String> {
         match *self {}
     }

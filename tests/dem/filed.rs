@@ -231,6 +231,17 @@ fn what_must_be_held_is_refused_beyond_the_budget() {
 }
 
 #[test]
+fn axes_of_the_map_are_turned_in_the_file_too() {
+    let dir = folder();
+    // Southing and westing: rows for columns.
+    let transform = Some([1_055_147.0, 30.0, 0.0, 706_011.0, 0.0, -20.0]);
+    let path = Raster { transform, epsg: Some(5513), ..rough() }.write("GTiff", &dir.path().join("south.tif"));
+    let dems = both(slice::from_ref(&path), ReadOptions::default(), SMALL);
+    assert_eq!((dems[0].columns(), dems[0].rows()), (150, 200));
+    assert_eq!(difference(&dems), None);
+}
+
+#[test]
 fn info_of_a_filed_dem_says_the_same() {
     let dir = folder();
     let path = rough().write("GTiff", &dir.path().join("rough.tif"));

@@ -155,7 +155,8 @@ fn systems_and_places() {
         Case::new(
             "map metres are metres on the ground",
             &placed(at("web.tif"), [1e6, 30.0, 0.0, 6e6, 0.0, -30.0], Some(3857)),
-        ),
+        )
+        .with(&["--no-warp"]),
     ];
     let remedies: usize = cases.iter().map(|case| case.check(dir.path())).sum();
     assert!(remedies >= cases.len(), "{remedies}");
@@ -191,6 +192,7 @@ fn numbers_and_limits() {
         Case::new("samples at or below -32767", &marked).fill(&[("N", "-32768")]),
         Case::new("options for GDAL's drivers", &vrt(&at("options.vrt"), "", options)),
         Case::new("where they are warped", &degrees).with(&memory),
+        Case::new("where they are warped", &super::ground::mars(&at("mars.tif"))).with(&memory),
         Case {
             without: &["--fill-voids"],
             ..Case::new("where voids are filled", &void).with(&["--fill-voids", "--memory", "10B"])

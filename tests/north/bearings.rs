@@ -26,8 +26,8 @@ impl Transform for Map {
         place.is_finite().then_some(place)
     }
 
-    fn lonlat(&self) -> Result<Crs> {
-        Ok(Crs::new("globe".into(), "globe".into(), None, Unit::Angle(1_f64.to_radians())))
+    fn lonlat(&self, _: &Crs) -> Result<Option<Crs>> {
+        Ok(Some(Crs::new("globe".into(), "globe".into(), None, Unit::Angle(1_f64.to_radians()))))
     }
 }
 

@@ -1,17 +1,23 @@
-//! The rectangle that a crop means on the grid of the files: degrees run round the globe.
+//! The rectangle that a crop means on the grid of the files: degrees run round the globe, and axes may be turned.
 //!
 //! A crop of degrees whose west is beyond its east crosses the meridian where they begin anew: 179 to -179 is 179 to 181.
 
-use super::grid::Grid;
+use glam::DVec2;
+
+use super::grid::{Grid, span};
 use super::lie::ALIGNED_CELLS;
 use crate::error::{Error, Result, Setting};
 use crate::message;
 
-/// `crop` with its west below its east, in the units of `grid`. Fails where it is no rectangle there.
+/// `crop`, in the coordinates of the file, with its west below its east in those of `grid`. Fails where it is no rectangle there.
 pub(super) fn on(grid: &Grid, crop: Option<[f64; 4]>) -> Result<Option<[f64; 4]>> {
     let Some([west, south, east, north]) = crop else { return Ok(None) };
     match grid.crs.turn() {
-        _ if west < east => Ok(crop),
+        _ if west < east => {
+            let corners = [DVec2::new(west, south), DVec2::new(east, north)].map(|corner| grid.crs.axes() * corner);
+            let [low, high] = span(&corners);
+            Ok(Some([low.x, low.y, high.x, high.y]))
+        }
         Some(turn) if west <= turn && east + turn > west => Ok(Some([west, south, east + turn, north])),
         _ => {
             let what = format!("{west},{south},{east},{north} has its west beyond its east");

@@ -4,7 +4,8 @@
 //! system's register gives. Not handled: heights, epochs, datum grids that are not on the machine.
 
 use gdal::spatial_ref::{AxisMappingStrategy, CoordTransform, SpatialRef};
-use glam::DVec2;
+use gdal_sys::OGRAxisOrientation as Axis;
+use glam::{DMat2, DVec2};
 
 use super::register;
 use super::source::heard;
@@ -13,9 +14,10 @@ use crate::error::{Error, Result, Setting, plain};
 
 /// Longitude and latitude, in the register of EPSG.
 const WGS84: u32 = 4326;
-/// Metres from the middle of the Earth to its equator, and how much another ellipsoid of the Earth may differ.
+/// Metres from the middle of the Earth to its equator, and how much another ellipsoid of the Earth may differ: PROJ leads
+/// from no body to another, and knows them by this.
 const EARTH_RADIUS: f64 = 6_378_137.0;
-const EARTH_SHARE: f64 = 0.01;
+const EARTH_SHARE: f64 = 0.005;
 
 impl Crs {
     /// Longitude and latitude in degrees, WGS 84.
@@ -69,6 +71,42 @@ impl Crs {
         radius.is_none_or(|radius| (radius / EARTH_RADIUS - 1.0).abs() < EARTH_SHARE)
     }
 
+    /// Longitude and latitude on its own ellipsoid, without a change of datum; itself where it is such a system, `None`
+    /// where it is of no globe.
+    pub(super) fn geographic(&self) -> Option<Self> {
+        if self.is_geographic() {
+            return Some(self.clone());
+        }
+        let reference = self.reference().filter(|reference| !reference.is_local())?;
+        Self::of(heard(|| reference.geog_cs()).0.ok()?)
+    }
+
+    /// Metres from the middle of its body to the equator and to a pole.
+    pub(super) fn radii(&self) -> Option<[f64; 2]> {
+        let reference = self.reference()?;
+        let (radii, _) = heard(|| Some([reference.semi_major().ok()?, reference.semi_minor().ok()?]));
+        radii
+    }
+
+    /// How it is typed for GDAL's tools.
+    pub(super) fn typed(&self) -> String {
+        let words = || heard(|| self.reference()?.to_proj4().ok()).0;
+        match self.epsg() {
+            Some(code) => format!("EPSG:{code}"),
+            None => words().map_or("EPSG:CODE".into(), |words| format!("'{}'", words.trim())),
+        }
+    }
+
+    /// What its coordinates grow by east and north, as its definition says, where one of them grows west or south; `None`
+    /// for all others and for maps of a pole, whose axes both run north or both south.
+    pub(super) fn west_or_south(&self) -> Option<DMat2> {
+        let reference = self.reference()?;
+        let (axes, _) = heard(|| [0, 1].map(|axis| reference.axis_orientation("PROJCS", axis).ok()));
+        let [Some(x), Some(y)] = axes.map(|axis| axis.and_then(east_north)) else { return None };
+        let derivative = DMat2::from_cols(x, y).transpose();
+        (x.dot(y) == 0.0 && (x + y).min_element() < 0.0).then_some(derivative)
+    }
+
     /// `x` taken round the globe, where it is a longitude, to within half a turn of `middle`.
     pub(super) fn near(&self, x: f64, middle: f64) -> f64 {
         self.turn().map_or(x, |turn| x + turn * ((middle - x) / turn).round())
@@ -101,8 +139,11 @@ impl Transform for Proj {
         Way::between(from, to)?.place(place)
     }
 
-    fn lonlat(&self) -> Result<Crs> {
-        Crs::lonlat()
+    fn lonlat(&self, of: &Crs) -> Result<Option<Crs>> {
+        match of.geographic() {
+            Some(_) if of.is_of_earth() => Crs::lonlat().map(Some),
+            own => Ok(own),
+        }
     }
 }
 
@@ -113,30 +154,37 @@ pub(super) fn check_register() -> Result<()> {
 
 /// The way from the coordinates of one system to those of another.
 pub(super) struct Way {
-    /// Nothing where both are the same.
+    /// From the axes of the first to its definition, and from the definition of the second to its axes.
+    axes: [DMat2; 2],
+    /// Nothing where both have one definition.
     transform: Option<CoordTransform>,
 }
 
 impl Way {
     /// `None` where PROJ knows none, or one of the two is unknown.
     pub fn between(from: &Crs, to: &Crs) -> Option<Self> {
-        if from == to {
-            return Some(Self { transform: None });
+        let axes = [from.axes().transpose(), to.axes()];
+        if from.as_defined() == to.as_defined() {
+            return Some(Self { axes, transform: None });
         }
         let (from, to) = (from.reference()?, to.reference()?);
         let transform = heard(|| CoordTransform::new(&from, &to)).0.ok()?;
-        Some(Self { transform: Some(transform) })
+        Some(Self { axes, transform: Some(transform) })
     }
 
     /// Carries all places over; NaN where there is no such place.
     pub fn carry(&self, places: &mut [DVec2]) {
-        let Some(transform) = &self.transform else { return };
-        let (mut x, mut y): (Vec<_>, Vec<_>) = places.iter().map(|p| (p.x, p.y)).unzip();
-        // It fails as a whole where a single place fails, and marks those that do as infinite.
-        let _ = heard(|| transform.transform_coords(&mut x, &mut y, &mut []));
-        for (place, (x, y)) in places.iter_mut().zip(x.into_iter().zip(y)) {
-            *place = if x.is_finite() && y.is_finite() { DVec2::new(x, y) } else { DVec2::NAN };
+        let [back, on] = self.axes;
+        places.iter_mut().for_each(|place| *place = back * *place);
+        if let Some(transform) = &self.transform {
+            let (mut x, mut y): (Vec<_>, Vec<_>) = places.iter().map(|p| (p.x, p.y)).unzip();
+            // It fails as a whole where a single place fails, and marks those that do as infinite.
+            let _ = heard(|| transform.transform_coords(&mut x, &mut y, &mut []));
+            for (place, (x, y)) in places.iter_mut().zip(x.into_iter().zip(y)) {
+                *place = if x.is_finite() && y.is_finite() { DVec2::new(x, y) } else { DVec2::NAN };
+            }
         }
+        places.iter_mut().for_each(|place| *place = on * *place);
     }
 
     /// One place, `None` where there is no such place.
@@ -144,6 +192,17 @@ impl Way {
         let mut places = [place];
         self.carry(&mut places);
         places[0].is_finite().then_some(places[0])
+    }
+}
+
+/// Where an axis runs, east and north.
+fn east_north(axis: Axis::Type) -> Option<DVec2> {
+    match axis {
+        Axis::OAO_East => Some(DVec2::X),
+        Axis::OAO_North => Some(DVec2::Y),
+        Axis::OAO_West => Some(-DVec2::X),
+        Axis::OAO_South => Some(-DVec2::Y),
+        _ => None,
     }
 }
 

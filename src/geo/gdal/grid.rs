@@ -91,6 +91,15 @@ impl Grid {
         Self { to_crs: DAffine2::from_mat2_translation(matrix, west_north), ..self.clone() }
     }
 
+    /// The same samples with rows for columns, where rows run along columns and columns along rows; `None` elsewhere.
+    pub fn transposed(&self) -> Option<Self> {
+        let DMat2 { x_axis: along, y_axis: down } = self.to_crs.matrix2;
+        let drift = [along.x * self.columns as f64 / down.x, down.y * self.rows as f64 / along.y];
+        let to_crs = self.to_crs * DAffine2::from_mat2(DMat2::from_cols(DVec2::Y, DVec2::X));
+        let swapped = Self { crs: self.crs.clone(), to_crs, columns: self.rows, rows: self.columns };
+        drift.iter().all(|cells| cells.abs() <= STRAIGHT_CELLS).then_some(swapped)
+    }
+
     /// Whether rows run from west to east and columns from north to south.
     pub fn is_north_up(&self) -> bool {
         let m = self.to_crs.matrix2;
@@ -144,6 +153,15 @@ impl Grid {
     pub fn extent(&self) -> [f64; 4] {
         let (c, r) = ((self.columns - 1) as f64, (self.rows - 1) as f64);
         let corners = [[0.0, 0.0], [c, 0.0], [0.0, r], [c, r]].map(|[c, r]| self.sample(c, r));
+        let [low, high] = span(&corners);
+        [low.x, low.y, high.x, high.y]
+    }
+
+    /// The same in the coordinates of the file, whatever way they run there.
+    pub fn extent_in_file(&self) -> [f64; 4] {
+        let [west, south, east, north] = self.extent();
+        let corners =
+            [DVec2::new(west, south), DVec2::new(east, north)].map(|corner| self.crs.axes().transpose() * corner);
         let [low, high] = span(&corners);
         [low.x, low.y, high.x, high.y]
     }

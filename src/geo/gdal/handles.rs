@@ -50,6 +50,7 @@ pub(super) struct Handles {
     allow_remote: bool,
     /// Size of the raster and its files as they were first opened.
     size: [usize; 2],
+    transposed: bool,
     listed: Listed,
     /// What of its name is no file on the disk: the grid of a container, the member of an archive.
     inner: String,
@@ -90,10 +91,10 @@ impl Handles {
     pub fn new(first: Source, allow_remote: bool, opening: &mut Opening) -> Self {
         let (size, pool) = ([first.columns, first.rows], opening.pool.clone());
         let (file, listed) = (pool.add(), Listed::new(&first.dataset, &first.rasters, &mut opening.folders));
-        let (path, exact, band) = (first.path.clone(), first.exact.clone(), first.band);
+        let (path, exact, band, transposed) = (first.path.clone(), first.exact.clone(), first.band, first.transposed);
         let inner = first.rasters.first().map(inner).unwrap_or_default();
         pool.put(file, first);
-        Self { path, exact, band, allow_remote, size, listed, inner, file, pool }
+        Self { path, exact, band, allow_remote, size, transposed, listed, inner, file, pool }
     }
 
     /// The file as the user named it.
@@ -141,7 +142,7 @@ impl Handles {
         if [source.columns, source.rows] != self.size {
             return Err(source.error("has changed since it was opened", "run again when nothing writes to it"));
         }
-        Ok(Source { path: self.path.clone(), ..source })
+        Ok(Source { path: self.path.clone(), transposed: self.transposed, ..source })
     }
 }
 

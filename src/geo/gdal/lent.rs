@@ -10,6 +10,7 @@ use std::ptr::null_mut;
 
 use gdal::errors::GdalError;
 use gdal::{Dataset, DriverManager};
+use glam::DAffine2;
 
 use super::grid::Grid;
 use super::source::heard;
@@ -111,7 +112,8 @@ unsafe fn dataset(samples: *mut f32, count: usize, grid: &Grid) -> Result<Datase
         if class != gdal_sys::CPLErr::CE_None {
             return Err(GdalError::CplError { class, number: 0, msg: "no band can be added".into() });
         }
-        let ([x, y], m) = (grid.to_crs.translation.to_array(), grid.to_crs.matrix2);
+        let defined = DAffine2::from_mat2(grid.crs.axes().transpose()) * grid.to_crs;
+        let ([x, y], m) = (defined.translation.to_array(), defined.matrix2);
         dataset.set_geo_transform(&[x, m.x_axis.x, m.y_axis.x, y, m.x_axis.y, m.y_axis.y])?;
         if let Some(reference) = grid.crs.reference() {
             dataset.set_spatial_ref(&reference)?;

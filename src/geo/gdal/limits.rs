@@ -29,6 +29,16 @@ pub(super) enum Whole {
     Filled,
 }
 
+/// Whether a warp to `target` has room: within the limits, the budget and the memory that is free.
+pub(super) fn can_be_held(target: &Target, options: &ReadOptions) -> bool {
+    let (samples, read) = (target.grid.whole().samples(), target.window.samples());
+    let bytes = ((read + samples) * READ_BYTES).max(held_bytes(samples));
+    samples <= MAX_SAMPLES as u64
+        && held_bytes(samples) <= options.memory
+        && read <= MAX_READ
+        && available_memory().is_none_or(|available| bytes <= available)
+}
+
 /// Whether the samples of `target` are to be held. Fails where they can be neither held nor filed, or memory is short.
 pub(super) fn are_held(mosaic: &Mosaic, target: &Target, options: &ReadOptions) -> Result<bool> {
     let (grid, path) = (&target.grid, mosaic.path());
@@ -68,9 +78,8 @@ impl Whole {
 
     /// What to do first, so that the samples can stay in their files.
     fn remedy(&self, grid: &Grid) -> String {
-        let code = grid.crs.epsg().map_or("CODE".to_owned(), |code| code.to_string());
         match self {
-            Self::Warped => format!("warp it first: `gdalwarp -t_srs EPSG:{code} -r cubic IN OUT.tif`"),
+            Self::Warped => format!("warp it first: `gdalwarp -t_srs {} -r cubic IN OUT.tif`", grid.crs.typed()),
             Self::Apart(_) => "lay them together first: `gdalwarp -r cubic IN... OUT.tif`".into(),
             Self::Filled => "fill them first: `gdal_fillnodata.py IN OUT.tif`".into(),
         }

@@ -16,6 +16,7 @@ use super::crop;
 use super::crs::Way;
 use super::elevation::{Elevation, Reading};
 use super::grid::{Grid, span};
+use super::ground::upright;
 use super::handles::{Handles, Opening};
 use super::lie::Lie;
 use super::raster::Raster;
@@ -202,6 +203,11 @@ impl Placed {
             own.convert(format!("{member} is taken of the archive, its only raster"));
         }
         let grid = Grid::of(&source, options.cell, alone, &mut own)?;
+        let grid = upright(grid, base.as_ref().map(|(_, onto)| &onto.crs), &mut own);
+        let (grid, transposed) = grid.transposed().map_or((grid, false), |grid| (grid, true));
+        if transposed {
+            own.convert("rows are read for columns, north up");
+        }
         let elevation = Elevation::of(&source, &grid.crs, options, &mut own)?;
         let later = base.is_some();
         let (first, onto) = base.unwrap_or_else(|| (path, grid.north_up()));
@@ -211,10 +217,11 @@ impl Placed {
         }
         history.take(own, later.then_some(path));
         let (width, height) = source.band()?.block_size();
+        let stored = if transposed { [height, width] } else { [width, height] };
         let driver = source.dataset.driver();
         let (parallel, format) = (PARALLEL.contains(&driver.short_name().as_str()), driver.long_name());
-        let handles = Handles::new(source, options.allow_remote, opening);
-        Ok(Self { handles, elevation, grid, lie, stored: [width, height], parallel, format })
+        let handles = Handles::new(Source { transposed, ..source }, options.allow_remote, opening);
+        Ok(Self { handles, elevation, grid, lie, stored, parallel, format })
     }
 
     /// The only file a second time, a turn farther, where it runs round the globe and the crop crosses its outer edges.
@@ -324,20 +331,27 @@ fn numbers(
     Ok(raw)
 }
 
-/// One block of numbers, or the error for a damaged file.
+/// One block of numbers, or the error for a damaged file; where `source` is transposed, in its order.
 pub(super) fn block<T: GdalType + Copy>(
     source: &Source,
     band: &RasterBand,
     from: [usize; 2],
     size: [usize; 2],
 ) -> Result<Vec<T>> {
-    let (place, size) = ((from[0] as isize, from[1] as isize), (size[0], size[1]));
-    let (block, complaint) = heard(|| band.read_as::<T>(place, size, size, None));
+    let swapped = |[x, y]: [usize; 2]| if source.transposed { (y, x) } else { (x, y) };
+    let ((column, row), size) = (swapped(from), swapped(size));
+    let (block, complaint) = heard(|| band.read_as::<T>((column as isize, row as isize), size, size, None));
     match (block, complaint) {
+        (Ok(block), None) if source.transposed => Ok(transposed(&block.into_shape_and_vec().1, size.0)),
         (Ok(block), None) => Ok(block.into_shape_and_vec().1),
         // A driver that complains and goes on has made the numbers up.
         (_, words) => Err(source.unreadable(words.as_deref())),
     }
+}
+
+/// The columns of `block`, which has rows of `width`, one after another.
+fn transposed<T: Copy>(block: &[T], width: usize) -> Vec<T> {
+    (0..width).flat_map(|column| block.iter().skip(column).step_by(width).copied()).collect()
 }
 
 /// The samples of `source` that cubic convolution needs for all of `target`; `None` where they do not meet.

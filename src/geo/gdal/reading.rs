@@ -60,14 +60,14 @@ impl Reading {
         &self.mosaic.format
     }
 
-    /// The files' own grid in words, where the DEM is warped from it.
+    /// The files' own grid in words, where the DEM is warped from it or its axes are turned.
     pub fn warped_from(&self) -> Option<String> {
-        if !self.target.warps {
+        let files = &self.mosaic.grid;
+        if !self.target.warps && files.crs == files.crs.as_defined() {
             return None;
         }
-        let files = &self.mosaic.grid;
         let (cell, units) = (files.cell(), files.crs.units());
-        let [west, south, east, north] = files.extent();
+        let [west, south, east, north] = files.extent_in_file();
         Some(format!(
             "{} x {} samples, {}, cells of {:.6} x {:.6} {units}, W {west:.5} S {south:.5} E {east:.5} N {north:.5}",
             files.columns,
@@ -85,7 +85,7 @@ impl Reading {
     pub fn finish(self, progress: &dyn Fn(Stage, f64)) -> Result<Dem> {
         let Self { mosaic, target: Target { grid, window, warps }, mut history, options, held } = self;
         let label = mosaic.label();
-        let georeference = Georeference::new(mosaic.grid.crs.clone(), grid.crs.clone(), Arc::new(Proj));
+        let georeference = Georeference::new(mosaic.grid.crs.as_defined(), grid.crs.clone(), Arc::new(Proj));
         let part = Part::new(mosaic, window);
         let heights = match held {
             true => Some(hold(&part, warps.then_some(&grid), &options, &mut history, progress)?),

@@ -49,6 +49,8 @@ pub(super) struct Source {
     pub band: usize,
     /// It and all rasters that VRTs name, as GDAL calls them.
     pub rasters: Vec<(PathBuf, Place)>,
+    /// Whether blocks are read with rows for columns: then they are asked for so, too.
+    pub transposed: bool,
 }
 
 impl Source {
@@ -66,7 +68,8 @@ impl Source {
         let (opened, complaint) = vsi::open(&name, flags, drivers);
         let dataset = opened.ok_or_else(|| cannot_open(path, &name, &place, complaint))?;
         let (columns, rows) = dataset.raster_size();
-        let source = Self { path: path.to_owned(), exact, member, dataset, columns, rows, band, rasters };
+        let source =
+            Self { path: path.to_owned(), exact, member, dataset, columns, rows, band, rasters, transposed: false };
         source.check_band(&name)?;
         source.check_length()?;
         Ok(source)

@@ -1,9 +1,10 @@
 //! The grid that is drawn: north-up, in metres, and which samples of the files it takes.
 //!
-//! A projected north-up grid is taken as it is. Degrees, turned grids and grids to be resampled are warped: degrees to
-//! the UTM zone of the middle of what is drawn, polar stereographic near the poles, others in their own system; square
-//! cells, at whole multiples of their size, as many as fit into the largest rectangle inside the data. Not handled: DEMs
-//! so wide that one map cannot show them.
+//! A projected north-up grid is taken as it is, where its map is true to the ground within a percent. Degrees and maps that
+//! are not are warped to the map that is true around the middle of what is drawn (see `metric`), turned grids and grids to
+//! be resampled in their own system; square cells, at whole multiples of their size, as many as fit into the largest
+//! rectangle inside the data. A map so sheared that this leaves little is kept whole, with voids beside it. Not handled:
+//! DEMs so wide that one map cannot show them.
 
 use std::path::Path;
 
@@ -12,12 +13,14 @@ use glam::DVec2;
 use super::crop;
 use super::crs::Way;
 use super::grid::{Grid, span};
+use super::ground::{Ground, places};
 use super::inscribed::largest;
-use super::limits::{Whole, too_many};
+use super::limits::{Whole, can_be_held, too_many};
+use super::metric::{degrees, is_polar, metric};
 use super::mosaic::reach;
 use super::source::MIN_SIDE;
 use crate::dem::{Crs, History, MAX_SAMPLES, Window};
-use crate::error::{Error, Result, Setting};
+use crate::error::{Error, Message, Result, Setting};
 use crate::geo::ReadOptions;
 use crate::message;
 
@@ -25,14 +28,11 @@ use crate::message;
 const BORDER: f64 = 1.5;
 /// Samples along a side from which something is left when it is warped.
 const WARPED_SIDE: usize = 5;
-/// A map whose metres differ from those on the ground by more than this share gets a warning.
-const TRUE_SCALE: f64 = 0.01;
-/// Latitude where UTM ends in the north and in the south, degrees.
-const UTM_NORTH: f64 = 84.0;
-const UTM_SOUTH: f64 = -80.0;
 /// Widest and highest DEM in degrees that a zone of UTM shows within two percent of its true size.
 const WIDEST: f64 = 20.0;
 const HIGHEST: f64 = 30.0;
+/// Least share of a map off the ground that the rectangle inside its data must hold, for the rest to be left out.
+const INSIDE: f64 = 0.75;
 
 /// What is drawn of the files' grid.
 #[derive(Debug)]
@@ -45,6 +45,17 @@ pub(super) struct Target {
     pub warps: bool,
 }
 
+/// What is asked of the files' grid; `path` is the first file, for messages.
+struct Asked<'a> {
+    files: &'a Grid,
+    path: &'a Path,
+    /// The samples inside the crop.
+    window: Window,
+    /// In the coordinates of `files`.
+    crop: Option<[f64; 4]>,
+    options: &'a ReadOptions,
+}
+
 impl Target {
     /// For the grid of the files; `path` is the first, for messages. Fails when too little is left.
     pub fn of(files: &Grid, path: &Path, options: &ReadOptions, history: &mut History) -> Result<Self> {
@@ -54,72 +65,25 @@ impl Target {
             Some(crop) => files.window(crop).ok_or_else(|| outside(files, path))?,
         };
         check_sides(window.size, files, path)?;
-        let target = if files.is_north_up() && !files.crs.is_geographic() && options.resample.is_none() {
+        let asked = Asked { files, path, window, crop, options };
+        let off = Ground::of(files, window).filter(Ground::is_off);
+        let truer = off.as_ref().and_then(|off| asked.truer(off));
+        let warped = truer.as_ref().zip(off.as_ref()).filter(|_| options.warp);
+        let target = if files.crs.is_geographic() {
+            asked.onto(&asked.zone()?, None, history)?
+        } else if let Some(target) = warped.and_then(|(crs, off)| asked.held(crs, off, history)) {
+            target
+        } else if files.is_north_up() && options.resample.is_none() {
             Self { grid: files.part(window), window, warps: false }
         } else {
-            Self::warped(files, window, path, crop, options, history)?
+            asked.onto(&files.crs, None, history)?
         };
         check_sides([target.grid.columns, target.grid.rows], files, path)?;
-        if let Some(stretch) = target.stretch().filter(|stretch| (stretch - 1.0).abs() > TRUE_SCALE) {
-            let wrong = if stretch > 1.0 { "too flat" } else { "too steep" };
-            history.assume(format!(
-                "map metres are metres on the ground (this projection shows them {stretch:.2} x as long here, so slopes \
-                 are drawn {wrong}; for true ones warp to UTM: `gdalwarp -t_srs EPSG:{} -r cubic IN OUT.tif`)",
-                target.middle_epsg().unwrap_or(3857)
-            ));
+        if let Some(off) = Ground::of(&target.grid, target.grid.whole()).filter(Ground::is_off) {
+            let truer = truer.filter(|truer| *truer != target.grid.crs);
+            history.assume(off_the_ground(&off, truer.as_ref(), options));
         }
         Ok(target)
-    }
-
-    /// How long a metre on the ground is on the map, at the middle; `None` where the place on the globe is unknown.
-    fn stretch(&self) -> Option<f64> {
-        let middle = self.grid.centre(self.grid.whole());
-        let mut places = [middle, middle + DVec2::X * self.grid.cell().x];
-        let ground = Crs::from_epsg(self.middle_epsg()?).ok()?;
-        let length = self.grid.cell().x * self.grid.crs.metres_per_unit()?;
-        Way::between(&self.grid.crs, &ground)?.carry(&mut places);
-        Some(length / (places[1] - places[0]).length()).filter(|stretch| stretch.is_finite())
-    }
-
-    /// EPSG code of the map in metres that is true around the middle.
-    fn middle_epsg(&self) -> Option<u32> {
-        let middle = Way::between(&self.grid.crs, &Crs::lonlat().ok()?)?.place(self.grid.centre(self.grid.whole()))?;
-        Some(metric_epsg(middle))
-    }
-
-    fn warped(
-        files: &Grid,
-        window: Window,
-        path: &Path,
-        crop: Option<[f64; 4]>,
-        options: &ReadOptions,
-        history: &mut History,
-    ) -> Result<Self> {
-        let crs = if files.crs.is_geographic() { zone(files, window, path)? } else { files.crs.clone() };
-        let way = Way::between(&files.crs, &crs).ok_or_else(|| lost(path))?;
-        let back = Way::between(&crs, &files.crs).ok_or_else(|| lost(path))?;
-        let unit = crs.metres_per_unit().ok_or_else(|| lost(path))?;
-        let cell = match options.resample {
-            Some(metres) => metres / unit,
-            None => cell_like(files, window, &way).ok_or_else(|| lost(path))?,
-        };
-        let all = lattice_around(files, window, &way, &crs, cell).ok_or_else(|| lost(path))?;
-        let region = Region { files, crop, back };
-        let inside =
-            |at: &[[usize; 2]]| region.holds(at.iter().map(|[c, r]| all.sample(*c as f64, *r as f64)).collect());
-        check_extent(&all, cell * unit, path)?;
-        let part = largest(all.columns, all.rows, inside).ok_or_else(|| too_small(files, path, cell * unit, &crs))?;
-        let grid = all.part(part);
-        let window = reach(&grid, files).ok_or_else(|| lost(path))?;
-        history.convert(format!(
-            "warped from {} to {}, cubic, {} x {} square cells of {} m, the largest rectangle inside the data",
-            turned(files),
-            if files.crs == crs { "north-up".to_owned() } else { crs.label() },
-            grid.columns,
-            grid.rows,
-            rounded(cell * unit, 6),
-        ));
-        Ok(Self { grid, window, warps: true })
     }
 
     /// Cell size in metres at which no more than `fit` samples are left.
@@ -128,6 +92,117 @@ impl Target {
         let samples = self.grid.columns as f64 * self.grid.rows as f64;
         // A percent more, for rows and columns are whole.
         rounded_up((cell.x * cell.y * samples / fit as f64).sqrt() * 1.01)
+    }
+}
+
+impl Asked<'_> {
+    /// The map around the middle, where it is truer to the ground than that of the files, which is `off` it.
+    fn truer(&self, off: &Ground) -> Option<Crs> {
+        let truer = metric(&self.files.crs, self.files.centre(self.window))?;
+        let mut places = places(self.files, self.window).to_vec();
+        Way::between(&self.files.crs, &truer)?.carry(&mut places);
+        places.retain(|place| place.is_finite());
+        (Ground::at(&truer, &places)?.off() < off.off()).then_some(truer)
+    }
+
+    /// Warped from a map `off` the ground to `crs`; `None` where the outcome cannot be held.
+    fn held(&self, crs: &Crs, off: &Ground, history: &mut History) -> Option<Target> {
+        let mut own = History::default();
+        let target = self.onto(crs, Some(off), &mut own).ok()?;
+        let held = can_be_held(&target, self.options);
+        if held {
+            history.take(own, None);
+        }
+        held.then_some(target)
+    }
+
+    /// Warped to `crs`, from a map that may be `off` the ground.
+    fn onto(&self, crs: &Crs, off: Option<&Ground>, history: &mut History) -> Result<Target> {
+        let Self { files, path, window, crop, .. } = *self;
+        let way = Way::between(&files.crs, crs).ok_or_else(|| lost(path))?;
+        let back = Way::between(crs, &files.crs).ok_or_else(|| lost(path))?;
+        let unit = crs.metres_per_unit().ok_or_else(|| lost(path))?;
+        let area = cell_area(files, window, &way).ok_or_else(|| lost(path))?;
+        let cell = match self.options.resample {
+            Some(metres) => metres / unit,
+            None if files.crs == *crs => area.sqrt(),
+            None => rounded(area.sqrt(), 3),
+        };
+        let all = lattice_around(files, window, &way, crs, cell).ok_or_else(|| lost(path))?;
+        let region = Region { files, crop, back };
+        let inside =
+            |at: &[[usize; 2]]| region.holds(at.iter().map(|[c, r]| all.sample(*c as f64, *r as f64)).collect());
+        check_extent(&all, cell * unit, path)?;
+        let part = largest(all.columns, all.rows, inside).ok_or_else(|| too_small(files, path, cell * unit, crs))?;
+        let [across, down] = window.size.map(|samples| (samples as f64 - 2.0 * BORDER).max(1.0));
+        let share = part.samples() as f64 * cell * cell / (area * across * down);
+        let (part, kept) = match off {
+            Some(_) if share < INSIDE => (all.whole(), "all of the data, voids beside them"),
+            _ => (part, "the largest rectangle inside the data"),
+        };
+        let grid = all.part(part);
+        let window = reach(&grid, files).ok_or_else(|| lost(path))?;
+        history.convert(format!(
+            "warped from {} to {}, cubic, {} x {} square cells of {} m, {kept}",
+            off.map_or_else(
+                || turned(files),
+                |off| format!("a map off the ground ({}; {})", files.crs.label(), off.words())
+            ),
+            if files.crs == *crs { "north-up".to_owned() } else { crs.label() },
+            grid.columns,
+            grid.rows,
+            rounded(cell * unit, 6),
+        ));
+        Ok(Target { grid, window, warps: true })
+    }
+
+    /// The system in metres for degrees. Fails where they span too much of the globe for one.
+    fn zone(&self) -> Result<Crs> {
+        let Self { files, path, window, .. } = *self;
+        let part = files.part(window);
+        let [west, south, east, north] = part.extent();
+        let per_unit = 360.0 / files.crs.turn().unwrap_or(360.0);
+        let [width, height] = [(east - west) * per_unit, (north - south) * per_unit];
+        let middle = files.centre(window);
+        let polar = is_polar(degrees(&files.crs, middle).ok_or_else(|| lost(path))?.y);
+        if height > HIGHEST || (width > WIDEST && !polar) {
+            return Err(Error::input(
+                path,
+                format!("spans {width:.0} x {height:.0} degrees, too much of the globe for one map in metres"),
+                message![
+                    format!("take at most {WIDEST} x {HIGHEST} degrees, for instance `"),
+                    Setting::Crop.at(middle_part(files, &part, per_unit)),
+                    "`"
+                ],
+            ));
+        }
+        metric(&files.crs, middle).ok_or_else(|| lost(path))
+    }
+}
+
+/// What is said of a map that is drawn though it is `off` the ground; `truer` is one that would be better.
+fn off_the_ground(off: &Ground, truer: Option<&Crs>, options: &ReadOptions) -> Message {
+    let [least, greatest] = off.scale();
+    let wrong = match (least > 1.0, greatest < 1.0) {
+        (true, _) => "too flat",
+        (_, true) => "too steep",
+        _ => "wrong",
+    };
+    let what =
+        format!("map metres are metres on the ground (this map is off it: {}, slopes are drawn {wrong}; ", off.words());
+    let first = |crs: &Crs| format!("warp it first: `gdalwarp -t_srs {} -r cubic IN OUT.tif`)", crs.typed());
+    match truer {
+        None => message![what, "take a smaller part with ", Setting::Crop, ")"],
+        Some(crs) if options.warp => message![
+            what,
+            "it cannot be warped here; take a part with ",
+            Setting::Crop,
+            ", allow more with ",
+            Setting::Memory,
+            ", or ",
+            first(crs)
+        ],
+        Some(crs) => message![what, "leave out ", Setting::Warp, ", or ", first(crs)],
     }
 }
 
@@ -157,30 +232,6 @@ impl Region<'_> {
     }
 }
 
-/// The system in metres for a window of degrees. Fails where it spans too much of the globe for one.
-fn zone(files: &Grid, window: Window, path: &Path) -> Result<Crs> {
-    let part = files.part(window);
-    let [west, south, east, north] = part.extent();
-    let degrees = 360.0 / files.crs.turn().unwrap_or(360.0);
-    let [width, height] = [(east - west) * degrees, (north - south) * degrees];
-    let lonlat = Crs::lonlat()?;
-    let middle = Way::between(&files.crs, &lonlat).and_then(|way| way.place(files.centre(window)));
-    let middle = middle.ok_or_else(|| lost(path))?;
-    let polar = middle.y > UTM_NORTH || middle.y < UTM_SOUTH;
-    if height > HIGHEST || (width > WIDEST && !polar) {
-        return Err(Error::input(
-            path,
-            format!("spans {width:.0} x {height:.0} degrees, too much of the globe for one map in metres"),
-            message![
-                format!("take at most {WIDEST} x {HIGHEST} degrees, for instance `"),
-                Setting::Crop.at(middle_part(files, &part, degrees)),
-                "`"
-            ],
-        ));
-    }
-    Crs::from_epsg(metric_epsg(middle))
-}
-
 /// A crop in the middle of `part` that one map shows, in the units of the files.
 fn middle_part(files: &Grid, part: &Grid, degrees: f64) -> String {
     let ([west, south, east, north], centre) = (part.extent(), files.centre(files.whole()));
@@ -192,26 +243,13 @@ fn middle_part(files: &Grid, part: &Grid, degrees: f64) -> String {
     format!("{},{},{},{}", round(west), round(low.y), round(west + high.x - low.x), round(high.y))
 }
 
-/// EPSG code of the UTM zone (WGS 84) of a place in degrees, beyond UTM of polar stereographic.
-fn metric_epsg(DVec2 { x: longitude, y: latitude }: DVec2) -> u32 {
-    if latitude > UTM_NORTH {
-        return 3413;
-    }
-    if latitude < UTM_SOUTH {
-        return 3031;
-    }
-    let zone = ((longitude + 180.0).rem_euclid(360.0) / 6.0).floor().clamp(0.0, 59.0) as u32 + 1;
-    if latitude < 0.0 { 32700 + zone } else { 32600 + zone }
-}
-
-/// Side of a square as large as the cell in the middle of `window`, to three digits where the system changes.
-fn cell_like(files: &Grid, window: Window, way: &Way) -> Option<f64> {
+/// Size of the cell in the middle of `window`, squares of the unit that `way` leads to.
+fn cell_area(files: &Grid, window: Window, way: &Way) -> Option<f64> {
     let middle = files.to_crs.inverse().transform_point2(files.centre(window));
     let mut corners = [DVec2::ZERO, DVec2::X, DVec2::Y].map(|step| files.to_crs.transform_point2(middle + step));
     way.carry(&mut corners);
     let area = (corners[1] - corners[0]).perp_dot(corners[2] - corners[0]).abs();
-    let side = if files.crs.is_geographic() { rounded(area.sqrt(), 3) } else { area.sqrt() };
-    (side.is_finite() && side > 0.0).then_some(side)
+    (area.is_finite() && area > 0.0).then_some(area)
 }
 
 /// All places at whole multiples of `cell` around a window of the files.
@@ -281,15 +319,15 @@ fn too_small(files: &Grid, path: &Path, metres: f64, crs: &Crs) -> Error {
             Setting::Resample.with_value(),
             format!(
                 ", more of the DEM, or warp it yourself with voids beside it: \
-                 `gdalwarp -t_srs EPSG:{} -r cubic -dstnodata -32768 IN OUT.tif`",
-                crs.epsg().map_or("CODE".to_owned(), |code| code.to_string())
+                 `gdalwarp -t_srs {} -r cubic -dstnodata -32768 IN OUT.tif`",
+                crs.typed()
             )
         ],
     )
 }
 
 fn outside(files: &Grid, path: &Path) -> Error {
-    let ([west, south, east, north], units) = (files.extent(), files.crs.units());
+    let ([west, south, east, north], units) = (files.extent_in_file(), files.crs.units());
     Error::input(
         path,
         message!["no sample lies inside ", Setting::Crop],
@@ -317,17 +355,6 @@ fn scale(value: f64, digits: i32) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn zones_and_poles() {
-        let zone = |x, y| metric_epsg(DVec2::new(x, y));
-        assert_eq!(zone(-119.53, 37.7), 32611);
-        assert_eq!(zone(174.0, -41.0), 32760);
-        assert_eq!(zone(180.0, 10.0), 32601);
-        assert_eq!(zone(241.0, 37.0), 32611);
-        assert_eq!(zone(0.0, 85.0), 3413);
-        assert_eq!(zone(0.0, -85.0), 3031);
-    }
 
     #[test]
     fn digits() {
