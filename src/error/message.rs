@@ -48,6 +48,8 @@ settings! {
     Cache = "cache",
     /// Metres between samples of files that do not say.
     Cell = "cell",
+    /// The file whose grid is drawn.
+    CellOf = "cell of",
     /// The part that is taken.
     Crop = "crop",
     /// The coordinate system of places that are given.
@@ -84,6 +86,8 @@ settings! {
     Methods = "methods",
     /// Numbers that are no data.
     Nodata = "nodata",
+    /// Which files lie on top.
+    Order = "order",
     /// The file or folder that is written.
     Output = "output",
     /// Metres of the cells that are resampled to.

@@ -13,8 +13,8 @@ use super::crop;
 use super::crs::Way;
 use super::grid::{Grid, span};
 use super::inscribed::largest;
+use super::layer::reach;
 use super::limits::{Whole, too_many};
-use super::mosaic::reach;
 use super::source::MIN_SIDE;
 use crate::dem::{Crs, History, MAX_SAMPLES, Window};
 use crate::error::{Error, Result, Setting};
@@ -193,7 +193,7 @@ fn middle_part(files: &Grid, part: &Grid, degrees: f64) -> String {
 }
 
 /// EPSG code of the UTM zone (WGS 84) of a place in degrees, beyond UTM of polar stereographic.
-fn metric_epsg(DVec2 { x: longitude, y: latitude }: DVec2) -> u32 {
+pub(super) fn metric_epsg(DVec2 { x: longitude, y: latitude }: DVec2) -> u32 {
     if latitude > UTM_NORTH {
         return 3413;
     }
@@ -298,7 +298,7 @@ fn outside(files: &Grid, path: &Path) -> Error {
 }
 
 /// To so many significant digits.
-fn rounded(value: f64, digits: i32) -> f64 {
+pub(super) fn rounded(value: f64, digits: i32) -> f64 {
     scale(value, digits).map_or(value, |scale| (value * scale).round() / scale)
 }
 
