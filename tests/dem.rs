@@ -4,6 +4,7 @@ mod archives;
 mod converted;
 mod filed;
 mod large;
+mod layers;
 mod mosaics;
 mod opened;
 mod process;

@@ -30,6 +30,7 @@ mod name;
 mod outside;
 mod part;
 mod pictures;
+mod pinholes;
 mod quiet;
 mod raster;
 mod reading;
