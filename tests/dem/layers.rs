@@ -116,7 +116,8 @@ fn fine_land_lies_in_coarse_whatever_the_order() {
     let dem = together(&[&wide, &near], &options);
     assert_eq!((dem.cell(), dem.columns()), (DVec2::splat(10.0), 892), "up to the outermost samples of the wide one");
     assert_eq!(dem.voids(), 0);
-    assert!((height_in_the_middle(&dem) - 488.75).abs() < FINE_METRES, "{}", height_in_the_middle(&dem));
+    let middle = height_in_the_middle(&dem);
+    assert!((middle - hummocks(MIDDLE)).abs() < FINE_METRES, "{middle} for {}", hummocks(MIDDLE));
     let said = words(dem.history().converted());
     assert_eq!(said, ["near.tif on wide.tif, cells of 10 m, seams blended over 360 m"]);
     let mut fine = 0;
@@ -128,15 +129,16 @@ fn fine_land_lies_in_coarse_whatever_the_order() {
         } else if inward(p) < 0.0 {
             let smooth = (p.z - relief(p.truncate() - MIDDLE)).abs();
             let away = (p.truncate() - MIDDLE).length();
-            assert!(away < 3500.0 || smooth < ENLARGED_METRES, "{p}: {smooth} m off");
+            assert!(away < 4200.0 || smooth < ENLARGED_METRES, "{p}: {smooth} m off");
         }
     }
     assert_eq!(fine, 128 * 128);
     let back = together(&[&near, &wide], &options);
     assert!(places(&dem).eq(places(&back)), "the other way round");
     let given = ReadOptions { order: Order::Given, ..options };
-    let covered = height_in_the_middle(&together(&[&near, &wide], &given));
-    assert!((covered - 488.75).abs() > 1.0, "{covered}: the wide one, named last, lies on top");
+    let covered = together(&[&near, &wide], &given);
+    let inner = places(&covered).filter(|p| inward(*p) > 500.0).map(|p| (p.z - hummocks(p.truncate())).abs());
+    assert!(inner.fold(0.0, f64::max) > 10.0, "the wide one, named last, lies on top");
     assert!(places(&dem).eq(places(&together(&[&wide, &near], &given))), "and here the near one is the last");
 }
 
@@ -196,15 +198,15 @@ fn where_the_finest_does_not_fit_the_crop_that_is_named_draws_it() {
     let dir = folder();
     let [wide, near] = wide_and_near(&dir);
     let globe = degrees(&dir.path().join("globe.tif"), WIDE, 90.0, hummocks);
-    // 88 000 samples: 10 000 of the wide file, not all 40 000 of the near one with those around it.
+    // 43 000 samples: the 10 000 of the wide file, not all 40 000 of the near one with those around it.
     let memory = 1 << 19;
     for files in [[&wide, &near], [&globe, &near], [&near, &globe]] {
         let small = ReadOptions { memory, ..Default::default() };
         let dem = together(&files, &small);
-        assert!((80.0..100.0).contains(&dem.cell().x), "{files:?}: {:?}", dem.cell());
+        assert!((70.0..100.0).contains(&dem.cell().x), "{files:?}: {:?}", dem.cell());
         let said = words(dem.history().assumed()).join("\n");
         assert!(said.contains("(all in the 10 m of near.tif do not fit: use --crop "), "{said}");
-        assert!(said.contains("cells of 90") || said.contains("cells of 89") || said.contains("cells of 75"), "{said}");
+        assert!(said.contains("cells of 90 m ") || said.contains("cells of 75.7 m "), "{said}");
         let crop = said.split("--crop ").nth(1).and_then(|rest| rest.split(' ').next()).unwrap();
         let edges: Vec<f64> = crop.split(',').map(|edge| edge.parse().unwrap()).collect();
         let dem = together(&files, &ReadOptions { crop: edges.try_into().ok(), ..small });
@@ -235,7 +237,7 @@ fn files_of_several_systems_go_straight_to_the_finest() {
         assert!((8.0..10.5).contains(&dem.cell().x), "{files:?}: {:?}", dem.cell());
         assert_eq!(dem.georeference().file().epsg(), Some(if degrees_first { LONLAT } else { ZONE }));
         assert_eq!(dem.georeference().world().epsg(), Some(ZONE));
-        let inner = |p: &DVec3| (p.truncate() - MIDDLE).abs().max_element() < 3000.0;
+        let inner = |p: &DVec3| (p.truncate() - MIDDLE).abs().max_element() < 2500.0;
         let worst = places(&dem).filter(inner).map(|p| (p.z - plane(p.truncate())).abs()).fold(0.0, f64::max);
         assert!(worst < PLANE_METRES, "{files:?}: {worst} m off");
     }
