@@ -177,6 +177,19 @@ fn a_seam_grows_smoothly_from_coarse_to_fine() {
 }
 
 #[test]
+fn a_seam_is_as_wide_as_the_land_beneath_is_coarse() {
+    let dir = folder();
+    let [wide, near] = wide_and_near(&dir);
+    let between = square(&dir.path().join("between.tif"), 2100.0, 30.0, plane);
+    let dem = together(&[&between, &near, &wide], &ReadOptions::default());
+    let said = words(dem.history().converted());
+    assert_eq!(said, ["near.tif on between.tif on wide.tif, cells of 10 m, seams blended over 120 to 360 m"]);
+    let fine = places(&dem).filter(|p| inward(*p) > 120.0);
+    let worst = fine.map(|p| (p.z - hummocks(p.truncate())).abs()).fold(0.0, f64::max);
+    assert!(worst < 1e-3, "{worst} m off");
+}
+
+#[test]
 fn the_grid_of_a_file_is_drawn_where_it_is_asked_for() {
     let dir = folder();
     let [wide, near] = wide_and_near(&dir);
@@ -211,7 +224,8 @@ fn where_the_finest_does_not_fit_the_crop_that_is_named_draws_it() {
         let edges: Vec<f64> = crop.split(',').map(|edge| edge.parse().unwrap()).collect();
         let dem = together(&files, &ReadOptions { crop: edges.try_into().ok(), ..small });
         assert_eq!(dem.cell(), DVec2::splat(10.0), "{files:?}: {crop}");
-        assert!(dem.columns() > 150, "{files:?}: {crop} is most of what fits, {}", dem.columns());
+        let share = (dem.columns() * dem.rows()) as f64 * 12.125 / memory as f64;
+        assert!((0.85..1.0).contains(&share), "{files:?}: {crop} is about all that fits, {share}");
         let memory = said.split("--memory ").nth(1).and_then(|rest| rest.split("MiB").next()).unwrap();
         let more = ReadOptions { memory: memory.parse::<u64>().unwrap() << 20, ..Default::default() };
         assert_eq!(together(&files, &more).cell(), DVec2::splat(10.0), "{files:?}: {memory} MiB");

@@ -102,33 +102,42 @@ fn warn(layers: &Layers, finest: &Layer, drawn: &Layer, options: &ReadOptions, h
     history.assume(message![clause, ")"]);
 }
 
-/// A crop around the finest layer, or as much of it as fits, in units of the first file; one that was tried.
+/// A crop around the finest layer, with as much land around it as fits or as much of it, in units of the first file; one
+/// that was tried.
 fn crop_to_fit(layers: &Layers, finest: &Layer, options: &ReadOptions) -> Option<String> {
-    let [west, south, east, north] = finest.grid.extent();
-    let [w, s, e, n] = layers.crop_on(&finest.grid, options.crop).ok()?.unwrap_or([west, south, east, north]);
-    let (low, high) = (DVec2::new(w.max(west), s.max(south)), DVec2::new(e.min(east), n.min(north)));
-    let half = (high - low) / 2.0;
-    let file = finest.first_grid();
-    let (mut middle, mut share) = (low + half, 1.0);
+    let all = layers.around(finest).ok()?.extent();
+    let [low, high] = corners(layers.crop_on(&finest.grid, options.crop).ok()?.unwrap_or(all));
+    let [own_low, own_high] = corners(finest.grid.extent());
+    let (own_low, own_high) = (own_low.max(low), own_high.min(high));
+    let (mut middle, half) = ((own_low + own_high) / 2.0, (own_high - own_low) / 2.0);
+    let mut share = (most(options.memory) / finest.grid.whole().samples() as f64).sqrt();
+    if share < 1.0 {
+        // The middle of several files may be between them.
+        let (file, within) = (finest.first_grid(), half * (1.0 - share));
+        middle = file.centre(file.whole()).clamp(middle - within, middle + within);
+    }
     for _ in 0..TRIALS {
-        let [low_part, high_part] = [middle - half * share, middle + half * share];
-        let part = [low_part.x, low_part.y, high_part.x, high_part.y];
+        let [low, high] = [(middle - half * share).max(low), (middle + half * share).min(high)];
+        let part = [low.x, low.y, high.x, high.y];
         let crop = carried(part, &finest.grid.crs, &layers.first().grid.crs)?.map(|edge| rounded(edge, DIGITS));
         let trial = ReadOptions { crop: Some(crop), ..options.clone() };
         share *= match on(layers, finest, &trial, &mut History::default()) {
             Ok(target) if fits(&target, options) => return Some(crop.map(|edge| edge.to_string()).join(",")),
-            Ok(target) => shrinking(target.grid.whole().samples(), options.memory),
+            // A little less, for a rectangle of another map is larger.
+            Ok(target) => (0.98 * (most(options.memory) / target.grid.whole().samples() as f64).sqrt()).min(0.98),
             Err(_) => 0.5,
         };
-        // The middle of several files may be between them.
-        let inner = half * (1.0 - share);
-        middle = file.centre(file.whole()).clamp(low + half - inner, low + half + inner);
     }
     None
 }
 
-/// Share of each side at which so many samples fit, at most; a little less, for a rectangle of another map is larger.
-fn shrinking(samples: u64, memory: u64) -> f64 {
-    let most = (memory as f64 / held_bytes(1 << 10) as f64 * 1024.0).min(MAX_SAMPLES as f64);
-    (0.98 * (most / samples as f64).sqrt()).min(0.9)
+/// Samples that fit into so many bytes, and may be held.
+fn most(memory: u64) -> f64 {
+    let bytes = held_bytes(1 << 10) as f64 / 1024.0;
+    (memory as f64 / bytes).min(MAX_SAMPLES as f64)
+}
+
+/// South-west and north-east.
+fn corners([west, south, east, north]: [f64; 4]) -> [DVec2; 2] {
+    [DVec2::new(west, south), DVec2::new(east, north)]
 }

@@ -122,14 +122,18 @@ fn taken(part: &Part, warped: Option<&Grid>, progress: &dyn Fn(Stage, f64)) -> R
 /// All samples of `parts` of several layers, from the bottom to the top, on `grid`.
 fn laid(parts: &[Part], grid: &Grid, history: &mut History, progress: &dyn Fn(Stage, f64)) -> Result<Raster> {
     let [bottom, ..] = parts else { return Err(between(grid)) };
-    let (raster, seam) = seams::lay(parts, grid, progress)?;
+    let (raster, seams) = seams::lay(parts, grid, progress)?;
     let names: Vec<_> = parts.iter().rev().take(NAMED).map(|part| part.layer().name()).collect();
     let more = match parts.len() - names.len() {
         0 => String::new(),
         more => format!(" and {more} more grids, the lowest of {}", bottom.layer().name()),
     };
     let cell = rounded(grid.cell().x * grid.crs.metres_per_unit().unwrap_or(1.0), 6);
-    let seam = seam.map_or(String::new(), |seam| format!(", seams blended over {} m", rounded(seam, 3)));
+    let seam = match seams.map(|metres| metres.map(|metres| rounded(metres, 3))) {
+        None => String::new(),
+        Some([least, most]) if least == most => format!(", seams blended over {most} m"),
+        Some([least, most]) => format!(", seams blended over {least} to {most} m"),
+    };
     history.convert(format!("{}{more}, cells of {cell} m{seam}", names.join(" on ")));
     Ok(raster)
 }

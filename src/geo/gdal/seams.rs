@@ -28,8 +28,8 @@ struct Laid {
     raster: Raster,
     /// Metres of the cells of the layer that shows at each sample, 0 where none does.
     shown: Vec<f32>,
-    /// Metres over which the widest seam is blended.
-    seam: Option<f64>,
+    /// Metres over which seams are blended: least and most.
+    seams: Option<[f64; 2]>,
 }
 
 /// A layer on some samples of the grid, NaN at voids.
@@ -40,12 +40,12 @@ struct Upper {
     cell: f64,
 }
 
-/// All samples of `parts`, from the bottom to the top, on `grid`, and the metres over which the widest seam is blended.
-/// `progress` hears the share of each part.
-pub(super) fn lay(parts: &[Part], grid: &Grid, progress: &dyn Fn(Stage, f64)) -> Result<(Raster, Option<f64>)> {
+/// All samples of `parts`, from the bottom to the top, on `grid`, and the metres over which seams are blended, least
+/// and most. `progress` hears the share of each part.
+pub(super) fn lay(parts: &[Part], grid: &Grid, progress: &dyn Fn(Stage, f64)) -> Result<(Raster, Option<[f64; 2]>)> {
     let raster = Raster::void(grid.clone())?;
     let shown = vec![0.0; raster.metres.len()];
-    let mut laid = Laid { raster, shown, seam: None };
+    let mut laid = Laid { raster, shown, seams: None };
     for (i, part) in parts.iter().enumerate() {
         let share = |stage, done: f64| progress(stage, (i as f64 + done) / parts.len() as f64);
         let own = part.raster(&|done| share(Stage::Read, done))?;
@@ -54,7 +54,7 @@ pub(super) fn lay(parts: &[Part], grid: &Grid, progress: &dyn Fn(Stage, f64)) ->
             laid.cover(Upper { window, metres, cell });
         }
     }
-    Ok((laid.raster, laid.seam))
+    Ok((laid.raster, laid.seams))
 }
 
 /// Samples of a layer on those of `grid`: the window that they cover, with some voids around them.
@@ -129,7 +129,8 @@ impl Laid {
             let both = |(weight, within): (&mut f32, f32)| *weight = 1.0 - (1.0 - *weight) * smooth(within);
             weights.par_iter_mut().zip(within).for_each(both);
         }
-        self.seam = Some(self.seam.map_or(seam, |widest| widest.max(seam)));
+        let [least, most] = self.seams.unwrap_or([seam; 2]);
+        self.seams = Some([least.min(seam), most.max(seam)]);
         Some(weights)
     }
 }
