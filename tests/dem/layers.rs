@@ -138,7 +138,7 @@ fn fine_land_lies_in_coarse_whatever_the_order() {
     let given = ReadOptions { order: Order::Given, ..options };
     let covered = together(&[&near, &wide], &given);
     let inner = places(&covered).filter(|p| inward(*p) > 500.0).map(|p| (p.z - hummocks(p.truncate())).abs());
-    assert!(inner.fold(0.0, f64::max) > 10.0, "the wide one, named last, lies on top");
+    assert!(inner.fold(0.0, f64::max) > 1.0, "the wide one, named last, lies on top");
     assert!(places(&dem).eq(places(&together(&[&wide, &near], &given))), "and here the near one is the last");
 }
 
