@@ -5,6 +5,7 @@ mod converted;
 mod filed;
 mod ground;
 mod large;
+mod layers;
 mod mosaics;
 mod opened;
 mod process;

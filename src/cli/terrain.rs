@@ -7,12 +7,12 @@ use super::values;
 use super::words::told;
 use crate::dem::Dem;
 use crate::error::Result;
-use crate::geo::{ElevationUnit, Encoding, Nodata, ReadOptions, Reading, Stage};
+use crate::geo::{ElevationUnit, Encoding, Nodata, Order, ReadOptions, Reading, Stage};
 
 /// Which files, and what of them.
 #[derive(Debug, clap::Args)]
 pub struct TerrainArguments {
-    /// The DEM: any raster; several are laid together, the last on top
+    /// The DEM: any raster; several are laid together, the finest on top, of those on one grid the last
     #[arg(required = true, value_name = "DEM")]
     pub dems: Vec<PathBuf>,
 
@@ -26,6 +26,12 @@ pub struct TerrainArguments {
     /// Metres between samples, for a DEM that does not say where it lies (an image)
     #[arg(long, value_name = "M", value_parser = values::metres, allow_hyphen_values = true, help_heading = "Surface")]
     cell: Option<f64>,
+    /// Which of several files lie on top where their grids differ: the finest, or the last of those given
+    #[arg(long, value_name = "finest|given", value_parser = values::order, default_value_t = Order::default(), help_heading = "Surface")]
+    order: Order,
+    /// The file, one of the DEM, whose cells are drawn [default: the finest whose samples fit --memory]
+    #[arg(long, value_name = "FILE", help_heading = "Surface")]
+    cell_of: Option<PathBuf>,
     /// Resample to square cells of so many metres, cubic [default: only what is not north-up in a map that is true]
     #[arg(long, value_name = "M", value_parser = values::metres, allow_hyphen_values = true, help_heading = "Surface")]
     resample: Option<f64>,
@@ -62,6 +68,8 @@ impl TerrainArguments {
             exaggeration,
             band: self.band.map(usize::from),
             cell: self.cell,
+            order: self.order,
+            cell_of: self.cell_of.clone(),
             resample: self.resample,
             warp: !self.no_warp,
             fill_voids: self.fill_voids,

@@ -7,7 +7,7 @@ use std::ops::RangeInclusive;
 use glam::DVec2;
 
 use crate::dem::LARGEST_SIDE as MOST_SAMPLES;
-use crate::geo::{ElevationUnit, Encoding, Nodata};
+use crate::geo::{ElevationUnit, Encoding, Nodata, Order};
 use crate::gpu::AdapterChoice;
 use crate::measure::compare::LEAST_TRUTH_LEVEL;
 use crate::plan::pieces::LARGEST_PAGE;
@@ -147,6 +147,12 @@ pub fn encoding(text: &str) -> Result<Encoding, String> {
     let known = Encoding::ALL;
     let found = known.into_iter().find(|encoding| encoding.name() == text);
     found.ok_or_else(|| format!("want {}", known.map(Encoding::name).join(", ")))
+}
+
+/// `finest` or `given`.
+pub fn order(text: &str) -> Result<Order, String> {
+    let found = Order::ALL.into_iter().find(|order| order.to_string() == text);
+    found.ok_or_else(|| format!("want {}", Order::ALL.map(|order| order.to_string()).join(" or ")))
 }
 
 /// `E0,N0,E1,N1`, west before east and south before north.

@@ -48,6 +48,8 @@ settings! {
     Cache = "cache",
     /// Metres between samples of files that do not say.
     Cell = "cell",
+    /// The file whose grid is drawn.
+    CellOf = "cell of",
     /// The part that is taken.
     Crop = "crop",
     /// The coordinate system of places that are given.
@@ -86,6 +88,8 @@ settings! {
     Nodata = "nodata",
     /// What azimuths are counted from.
     North = "north",
+    /// Which files lie on top.
+    Order = "order",
     /// The file or folder that is written.
     Output = "output",
     /// Metres of the cells that are resampled to.

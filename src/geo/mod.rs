@@ -18,7 +18,7 @@ pub use elevation_unit::ElevationUnit;
 pub use encoding::Encoding;
 pub use info::{Info, info};
 pub use nodata::Nodata;
-pub use read::{ReadOptions, Stage, read, read_all};
+pub use read::{Order, ReadOptions, Stage, read, read_all};
 #[cfg(not(feature = "gdal"))]
 pub use without::{Reading, available, write};
 

@@ -3,6 +3,7 @@
 //! Cost: one pass over the samples that the drawn part needs, and the warp where there is one; nothing yet where they
 //! stay in their files.
 
+use std::fmt::{self, Display, Formatter};
 use std::path::{Path, PathBuf};
 
 use super::{ElevationUnit, Encoding, Nodata, Reading};
@@ -22,6 +23,10 @@ pub struct ReadOptions {
     pub band: Option<usize>,
     /// Metres between samples of files that do not say where they lie. Default `None`: such files are refused.
     pub cell: Option<f64>,
+    /// How files on several grids lie on one another. Default: the finest on top.
+    pub order: Order,
+    /// The file whose grid is drawn. Default `None`: that of the finest file whose samples fit.
+    pub cell_of: Option<PathBuf>,
     /// Warp to square cells of so many metres. Default `None`: warp only what is not north-up in a map that is true.
     pub resample: Option<f64>,
     /// Warp maps whose metres are off those on the ground by more than a percent (shear, unequal scale) to the UTM zone of
@@ -42,6 +47,31 @@ pub struct ReadOptions {
     pub memory: u64,
 }
 
+/// How files on several grids lie on one another. Of those whose samples fall on one grid the last is on top anyway.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Order {
+    /// The finest on top, the last of those with like cells.
+    #[default]
+    FinestOnTop,
+    /// As they are given, the last on top.
+    Given,
+}
+
+impl Order {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::FinestOnTop, Self::Given];
+}
+
+/// `finest` or `given`.
+impl Display for Order {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::FinestOnTop => "finest",
+            Self::Given => "given",
+        })
+    }
+}
+
 impl Default for ReadOptions {
     fn default() -> Self {
         Self {
@@ -49,6 +79,8 @@ impl Default for ReadOptions {
             exaggeration: 1.0,
             band: None,
             cell: None,
+            order: Order::default(),
+            cell_of: None,
             resample: None,
             warp: true,
             fill_voids: false,
@@ -87,8 +119,9 @@ pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Dem> {
 ///
 /// Sample (c, r) lies in the middle of its pixel. Scale, offset and unit of the band are applied, then the exaggeration.
 /// Voids are the declared nodata value and those of the options, masked and transparent samples, numbers that are not finite, and marks for no
-/// data that the file forgot to declare: at or below -32767, above 100 000 m. Of files that overlap the last wins; those
-/// on another grid than the first are warped to it. Degrees and turned grids are warped to square cells in metres.
+/// data that the file forgot to declare: at or below -32767, above 100 000 m. Of files that overlap on one grid the last
+/// wins. Files on several grids are warped, cubic, to that of the finest whose samples fit; the finest lies on top, and
+/// seams are blended over four cells of the coarser. Degrees and turned grids are warped to square cells in metres.
 /// What was converted and what had to be assumed stands in [`Dem::history`]. A path may name one grid of a container as
 /// `NETCDF:file:grid`; `.gz`, `.zip` and `.tar` are read through. `progress` hears what is being done and the share done, 0 to 1.
 ///

@@ -9,7 +9,6 @@ use hachure::geo::{ReadOptions, read_all};
 
 use super::{Raster, TRANSFORM, folder, hill};
 use crate::common::words;
-use crate::tolerances::PLANE_METRES;
 
 fn together(paths: &[PathBuf]) -> Dem {
     read_all(paths, &ReadOptions::default(), &|_, _| ()).unwrap()
@@ -59,44 +58,33 @@ fn each_file_keeps_its_own_unit_band_and_marks() {
 }
 
 #[test]
-fn other_grids_and_systems_are_warped_to_the_first() {
+fn like_grids_and_systems_lie_as_given() {
     let dir = folder();
-    let plane = |p: DVec2| 500.0 + 0.05 * (p.x - 5e5) - 0.03 * (p.y - 42e5);
-    let raster = |columns: usize, rows: usize, transform: [f64; 6]| {
-        let [x, dx, _, y, _, dy] = transform;
-        let place = |i: usize| DVec2::new(x + ((i % columns) as f64 + 0.5) * dx, y + ((i / columns) as f64 + 0.5) * dy);
-        let values = (0..columns * rows).map(|i| plane(place(i)) as f32).collect();
-        Raster { transform: Some(transform), ..Raster::new(columns, values) }
+    let raster = |transform: [f64; 6], height: f32, name: &str| {
+        Raster { transform: Some(transform), ..Raster::new(50, vec![height; 2000]) }
+            .write("GTiff", &dir.path().join(name))
     };
-    let first = raster(50, 40, TRANSFORM).write("GTiff", &dir.path().join("first.tif"));
-    // Half a cell off, and of another size.
-    let beside = raster(80, 60, [501_007.0, 17.0, 0.0, 4_200_003.0, 0.0, -17.0]);
-    let beside = beside.write("GTiff", &dir.path().join("beside.tif"));
-    let dem = together(&[first.clone(), beside.clone()]);
-    assert_eq!((dem.cell(), dem.position(0, 0).x), (DVec2::new(30.0, 20.0), 500_015.0), "the grid is the first's");
-    // The second ends at 502 358.5 m east and 4 198 991.5 m north, in the middle of its outermost samples.
-    assert_eq!((dem.columns(), dem.rows()), (79, 50), "no row or column beyond the data");
-    let mut seen = 0;
-    for (c, r) in (0..dem.rows()).flat_map(|r| (0..dem.columns()).map(move |c| (c, r))).filter(|(c, _)| *c < 76) {
-        let Some(_) = dem.height(c, r) else { continue };
-        let p = dem.position(c, r);
-        // At its border cubic convolution leans on fewer samples.
-        let inside = p.x < 501_000.0 || (p.x > 501_040.0 && p.x < 502_300.0 && p.y < 4_199_960.0 && p.y > 4_199_030.0);
-        assert!(!inside || (p.z - plane(p.truncate())).abs() < PLANE_METRES, "{c}, {r}: {p}, {}", plane(p.truncate()));
-        seen += usize::from(p.x > 501_040.0);
+    let first = raster(TRANSFORM, 500.0, "first.tif");
+    // Half a cell off, of like cells: one on the other, in the grid of the first.
+    let [x, dx, _, y, _, dy] = TRANSFORM;
+    let shifted = raster([x + 615.0, dx, 0.0, y - 310.0, 0.0, dy], 7.0, "shifted.tif");
+    for (paths, above) in [([&first, &shifted], 7.0), ([&shifted, &first], 500.0)] {
+        let dem = together(&paths.map(PathBuf::clone));
+        assert_eq!(dem.cell(), DVec2::new(30.0, 20.0));
+        let [lower, upper] = paths.map(|path| path.file_name().unwrap().display().to_string());
+        let said = words(dem.history().converted());
+        assert!(said[0].starts_with(&format!("{upper} on {lower}, cells of 30 m, seams blended over ")), "{said:?}");
+        // In the middle of what they share, over four cells from the border of either.
+        let place = DVec2::new(x + 1060.0, y - 550.0);
+        let cell = |i: usize| (place[i] - dem.position(0, 0)[i]).abs() / dem.cell()[i];
+        let height = dem.height(cell(0).round() as usize, cell(1).round() as usize);
+        assert_eq!(height, Some(above), "{said:?}");
     }
-    assert!(seen > 800, "{seen} samples of the second file");
-    let warped =
-        |dem: &Dem| words(dem.history().converted()).iter().any(|c| c.contains("warped to the grid of the first"));
-    assert!(warped(&dem), "{:?}", dem.history());
     // The same system under its old name falls on the same samples: no warp.
-    let dem = together(&[
-        first.clone(),
-        Raster { transform: moved(50.0, 0.0), ..raster(50, 40, TRANSFORM) }
-            .write("GTiff", &dir.path().join("next.tif")),
-    ]);
-    assert!(!warped(&dem) && dem.columns() == 100);
-    // The neighbouring zone, over the first: heights of the first's plane seen from there are not known, places are.
+    let next = Raster { transform: moved(50.0, 0.0), ..Raster::new(50, vec![500.0f32; 2000]) };
+    let dem = together(&[first.clone(), next.write("GTiff", &dir.path().join("next.tif"))]);
+    assert!(dem.columns() == 100 && words(dem.history().converted()) == ["2 files laid together: 100 x 40 samples"]);
+    // The neighbouring zone, over the first: places are known.
     let flat = Raster {
         epsg: Some(32611),
         transform: Some([-30_000.0, 30.0, 0.0, 4_221_000.0, 0.0, -30.0]),

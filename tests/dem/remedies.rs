@@ -199,7 +199,7 @@ fn numbers_and_limits() {
         },
         Case {
             without: &["beside.tif"],
-            ..Case::new("warped to the grid of the first file", &tif).with(&["beside.tif", "--memory", "1KiB"])
+            ..Case::new("is laid between the samples of others", &tif).with(&["beside.tif", "--memory", "1KiB"])
         },
     ];
     assert!(beside.is_file());

@@ -8,7 +8,7 @@
 use super::choice::has_word;
 use super::elevation::{Elevation, Reading};
 use super::glance::windows;
-use super::mosaic::block;
+use super::layer::block;
 use super::said::Said;
 use super::source::Source;
 use crate::dem::{History, Window};

@@ -1,13 +1,13 @@
 //! Whether the samples of a DEM are held in memory or stay in their files.
 //!
-//! What fits the budget is held. Larger DEMs stay in their files, unless GDAL must have all samples at once: where they
-//! are warped (a warp of parts gives other bits than one of the whole) or voids are filled (from a hundred samples
-//! away). These are refused.
+//! What fits the budget is held. Larger DEMs stay in their files, unless all samples are needed at once: where they are
+//! warped (a warp of parts gives other bits than one of the whole), where files of several grids are laid together, or
+//! where voids are filled (from a hundred samples away). These are refused.
 
 use std::path::{Path, PathBuf};
 
 use super::grid::Grid;
-use super::mosaic::Mosaic;
+use super::layers::Layers;
 use super::target::Target;
 use crate::dem::{LARGEST_SIDE, MAX_SAMPLES, held_bytes, mebibytes};
 use crate::error::{Error, Message, Result, Setting, shown};
@@ -18,13 +18,15 @@ use crate::message;
 const MAX_READ: u64 = 1 << 28;
 /// Bytes a sample of the files at work.
 const READ_BYTES: u64 = 4;
+/// Bytes a sample of the DEM at work while layers are blended, see `seams`.
+const SEAM_BYTES: u64 = 20;
 
 /// Why GDAL must have all samples at once.
 pub(super) enum Whole {
     /// The files' grid is warped to metres.
     Warped,
-    /// This file is warped to the grid of the first.
-    Apart(PathBuf),
+    /// This file lies between the samples of others.
+    Layers(PathBuf),
     /// Voids are filled.
     Filled,
 }
@@ -40,14 +42,18 @@ pub(super) fn can_be_held(target: &Target, options: &ReadOptions) -> bool {
 }
 
 /// Whether the samples of `target` are to be held. Fails where they can be neither held nor filed, or memory is short.
-pub(super) fn are_held(mosaic: &Mosaic, target: &Target, options: &ReadOptions) -> Result<bool> {
-    let (grid, path) = (&target.grid, mosaic.path());
+pub(super) fn are_held(layers: &Layers, target: &Target, options: &ReadOptions) -> Result<bool> {
+    let (grid, path) = (&target.grid, layers.first().path());
     let samples = grid.columns as u64 * grid.rows as u64;
-    mosaic.warped_parts(target.window).try_for_each(|(path, read)| check_read(path, read, samples))?;
-    let why = match mosaic.apart() {
+    let laid = laid(layers, grid);
+    laid.iter().try_for_each(|(path, read)| check_read(path, *read, samples))?;
+    let why = match layers.all() {
+        [coarsest, _, ..] => {
+            let between = laid.first().map_or(coarsest.path(), |(path, _)| path);
+            Some(Whole::Layers(between.to_owned()))
+        }
         _ if target.warps => Some(Whole::Warped),
-        Some(apart) => Some(Whole::Apart(apart.to_owned())),
-        None => options.fill_voids.then_some(Whole::Filled),
+        _ => options.fill_voids.then_some(Whole::Filled),
     };
     if samples > MAX_SAMPLES as u64 || held_bytes(samples) > options.memory {
         return match why {
@@ -58,6 +64,11 @@ pub(super) fn are_held(mosaic: &Mosaic, target: &Target, options: &ReadOptions) 
             None => check_longest(path, grid, target.metres_to_fit(MAX_SAMPLES as u64)).map(|()| false),
         };
     }
+    if layers.all().len() > 1 {
+        let read = laid.iter().map(|(_, read)| *read).max().unwrap_or(0);
+        check_memory(path, read * READ_BYTES + samples * SEAM_BYTES, available_memory())?;
+        return Ok(true);
+    }
     let work = if target.warps { target.window.samples() } else { 0 };
     if target.warps {
         check_read(path, work, 0)?;
@@ -66,12 +77,25 @@ pub(super) fn are_held(mosaic: &Mosaic, target: &Target, options: &ReadOptions) 
     Ok(true)
 }
 
+/// Samples to be read of each layer, where there are several, that lies between the samples of `grid`.
+fn laid<'a>(layers: &'a Layers, grid: &Grid) -> Vec<(&'a Path, u64)> {
+    if layers.all().len() == 1 {
+        return Vec::new();
+    }
+    let needed = layers.all().iter().zip(layers.needed(grid));
+    let between = needed.filter_map(|(layer, needed)| match needed {
+        Some((window, false)) => Some((layer.path(), window.samples())),
+        _ => None,
+    });
+    between.collect()
+}
+
 impl Whole {
     /// The reason, after `fit` or `must be held`.
     fn reason(&self) -> String {
         match self {
             Self::Warped => "where they are warped".into(),
-            Self::Apart(path) => format!("where {} is warped to the grid of the first file", shown(path)),
+            Self::Layers(path) => format!("where {} is laid between the samples of others", shown(path)),
             Self::Filled => "where voids are filled".into(),
         }
     }
@@ -80,7 +104,9 @@ impl Whole {
     fn remedy(&self, grid: &Grid) -> String {
         match self {
             Self::Warped => format!("warp it first: `gdalwarp -t_srs {} -r cubic IN OUT.tif`", grid.crs.typed()),
-            Self::Apart(_) => "lay them together first: `gdalwarp -r cubic IN... OUT.tif`".into(),
+            Self::Layers(_) => {
+                format!("lay them together first: `gdalwarp -t_srs {} -r cubic IN... OUT.tif`", grid.crs.typed())
+            }
             Self::Filled => "fill them first: `gdal_fillnodata.py IN OUT.tif`".into(),
         }
     }

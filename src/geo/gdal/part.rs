@@ -1,4 +1,4 @@
-//! A window of a mosaic as a DEM asks for it: read tile by tile, the files' numbers tallied as they come.
+//! A window of a layer as a DEM asks for it: read tile by tile, the files' numbers tallied as they come.
 
 use std::collections::HashSet;
 use std::fmt::{self, Debug, Formatter};
@@ -7,7 +7,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use xxhash_rust::xxh3::Xxh3;
 
 use super::assumed::{assumed, units};
-use super::mosaic::Mosaic;
+use super::layer::Layer;
 use super::raster::Raster;
 use super::tally::{Tallies, merge};
 use crate::dem::tiling::gather;
@@ -15,9 +15,9 @@ use crate::dem::{Tiles, Tiling, Window};
 use crate::error::{Error, Message, Result, Setting};
 use crate::message;
 
-/// Some samples of a mosaic.
+/// Some samples of a layer.
 pub(super) struct Part {
-    mosaic: Mosaic,
+    layer: Layer,
     window: Window,
     counted: Mutex<Counted>,
 }
@@ -30,37 +30,44 @@ struct Counted {
 }
 
 impl Part {
-    /// `window` of `mosaic`, nothing read yet.
-    pub fn new(mosaic: Mosaic, window: Window) -> Self {
-        Self { mosaic, window, counted: Mutex::default() }
+    /// `window` of `layer`, nothing read yet.
+    pub fn new(layer: Layer, window: Window) -> Self {
+        Self { layer, window, counted: Mutex::default() }
     }
 
     /// All samples. `progress` hears the share done.
     pub fn raster(&self, progress: &dyn Fn(f64)) -> Result<Raster> {
-        if self.mosaic.apart().is_some() {
-            let (raster, tallies) = self.mosaic.read(self.window, progress)?;
-            self.counted().add([0, 0], tallies);
-            return Ok(raster);
-        }
         let whole = Window { first: [0, 0], ..self.window };
         let tiles = self.tiling().tiles(whole);
         let metres = gather(whole, &tiles, self.is_parallel(), |tile| self.read(tile), progress)?;
-        Ok(Raster { grid: self.mosaic.grid.part(self.window), metres })
+        Ok(Raster { grid: self.layer.grid.part(self.window), metres })
+    }
+
+    /// The layer that it is of.
+    pub fn layer(&self) -> &Layer {
+        &self.layer
+    }
+
+    /// What has to be assumed of the numbers of all `parts` that were read.
+    pub fn assumed_of(parts: &[Self]) -> Vec<Message> {
+        let counted: Vec<_> = parts.iter().map(Self::counted).collect();
+        let files = parts.iter().zip(&counted).flat_map(|(part, counted)| part.layer.tallied(&counted.tallies));
+        assumed(&files.collect::<Vec<_>>(), parts.iter().any(|part| part.layer.is_of_several()))
     }
 
     /// The error for files without any elevation among `samples`; a unit that would make elevations of their numbers is
     /// named.
     pub fn void(&self, samples: u64) -> Error {
-        let inside = if self.window == self.mosaic.grid.whole() { "" } else { " inside the crop" };
+        let inside = if self.window == self.layer.grid.whole() { "" } else { " inside the crop" };
         let what = format!("holds no elevation{inside}, all {samples} samples are void");
-        match units(&self.mosaic.tallied(&self.counted().tallies)) {
+        match units(&self.layer.tallied(&self.counted().tallies)) {
             Some(units) => Error::input(
-                self.mosaic.path(),
+                self.layer.path(),
                 format!("{what} or above 100000 m"),
                 message!["if the heights are in another unit, add ", units],
             ),
             None => Error::input(
-                self.mosaic.path(),
+                self.layer.path(),
                 what,
                 message![
                     "check the band and its nodata value with `gdalinfo -stats`, choose another ",
@@ -83,16 +90,16 @@ impl Tiles for Part {
     }
 
     fn tiling(&self) -> Tiling {
-        self.mosaic.tiling(self.window)
+        self.layer.tiling(self.window)
     }
 
     fn is_parallel(&self) -> bool {
-        self.mosaic.is_parallel()
+        self.layer.is_parallel()
     }
 
     fn read(&self, window: Window) -> Result<Vec<f32>> {
         let first = [0, 1].map(|i| self.window.first[i] + window.first[i]);
-        let (raster, tallies) = self.mosaic.read(Window { first, ..window }, &|_| ())?;
+        let (raster, tallies) = self.layer.read(Window { first, ..window }, &|_| ())?;
         self.counted().add(window.first, tallies);
         Ok(raster.metres)
     }
@@ -101,11 +108,11 @@ impl Tiles for Part {
     fn stamp(&self) -> Option<u128> {
         let mut hash = Xxh3::new();
         hash.update(format!("{:?}", self.window).as_bytes());
-        self.mosaic.hash(&mut hash).map(|()| hash.digest128())
+        self.layer.hash(&mut hash).map(|()| hash.digest128())
     }
 
     fn check(&self) -> Result<()> {
-        self.mosaic.check()
+        self.layer.check()
     }
 
     fn marks(&self) -> usize {
@@ -113,7 +120,7 @@ impl Tiles for Part {
     }
 
     fn assumed(&self) -> Vec<Message> {
-        assumed(&self.mosaic.tallied(&self.counted().tallies), self.mosaic.is_of_several())
+        Self::assumed_of(std::slice::from_ref(self))
     }
 
     fn all_void(&self) -> Error {
@@ -132,6 +139,6 @@ impl Counted {
 
 impl Debug for Part {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Part").field("path", &self.mosaic.path()).field("window", &self.window).finish_non_exhaustive()
+        f.debug_struct("Part").field("path", &self.layer.path()).field("window", &self.window).finish_non_exhaustive()
     }
 }

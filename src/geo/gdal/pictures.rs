@@ -9,7 +9,7 @@ use gdal::raster::{ColorInterpretation, GdalDataType, RasterBand};
 
 use super::elevation::EARTH;
 use super::glance::windows;
-use super::mosaic::block;
+use super::layer::block;
 use super::source::Source;
 use crate::dem::Window;
 use crate::error::{Result, Setting};

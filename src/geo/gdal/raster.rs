@@ -12,9 +12,9 @@ use crate::message;
 
 /// Farthest that GDAL fills from a sample with data, in samples: its own default.
 pub const FILL_REACH: u32 = 100;
-/// Farthest, in cells, that the warper's quick way of placing samples may miss the exact one.
-const WARP_CELLS: &str = "0.01";
-/// From this many samples a sample on, nothing is smoothed when warping.
+/// Farthest, in cells of the finer of two grids, that the warper's quick way of placing samples may miss the exact one.
+const WARP_CELLS: f64 = 0.01;
+/// From this many samples a sample on, nothing is smoothed when warping; from its inverse on, samples are enlarged.
 const DENSE: f64 = 2.0 / 3.0;
 /// Memory of the warper beside the rasters, MiB.
 const WARP_MEMORY: &str = "32";
@@ -47,9 +47,15 @@ impl Raster {
     pub fn lay(&mut self, from: &Self, progress: &dyn Fn(f64)) -> Result<()> {
         let threads = "NUM_THREADS=ALL_CPUS";
         // GDAL's own estimate takes turned grids for smaller ones and blurs them.
-        let [x, y] = shrink(&from.grid, &self.grid);
+        let density = density(&from.grid, &self.grid);
+        let [x, y] = density.map(|ratio| if ratio < DENSE { ratio } else { 1.0 });
         let (x, y) = (format!("XSCALE={x}"), format!("YSCALE={y}"));
-        let quick = ["-et", WARP_CELLS, "-wm", WARP_MEMORY, "-wo", threads];
+        // It takes cells of `from`.
+        let finer = density
+            .into_iter()
+            .fold(1.0, |finest: f64, ratio| if ratio > 1.0 / DENSE { finest.max(ratio) } else { finest });
+        let cells = (WARP_CELLS / finer).to_string();
+        let quick = ["-et", &cells, "-wm", WARP_MEMORY, "-wo", threads];
         let words = [&["-r", "cubic", "-novshift", "-wo", &x, "-wo", &y], &quick[..]].concat();
         let from_samples =
             Lent::reading(&from.metres, &from.grid).map_err(|words| out_of_memory(&from.grid, &words))?;
@@ -65,18 +71,15 @@ impl Raster {
     }
 }
 
-/// Samples of `onto` a sample of `from`, along its rows and down its columns, in the middle of `from`; 1 where they are
-/// about as dense or denser, for there is nothing to smooth away.
-fn shrink(from: &Grid, onto: &Grid) -> [f64; 2] {
+/// Samples of `onto` a sample of `from`, along its rows and down its columns, in the middle of `from`.
+fn density(from: &Grid, onto: &Grid) -> [f64; 2] {
     let middle = DVec2::new(from.columns as f64, from.rows as f64) / 2.0;
     let mut places = [DVec2::ZERO, DVec2::X, DVec2::Y].map(|step| from.to_crs.transform_point2(middle + step));
     if let Some(way) = Way::between(&from.crs, &onto.crs) {
         way.carry(&mut places);
     }
     onto.pixels(&mut places);
-    [places[1], places[2]]
-        .map(|place| (place - places[0]).length())
-        .map(|ratio| if ratio < DENSE { ratio } else { 1.0 })
+    [places[1], places[2]].map(|place| (place - places[0]).length())
 }
 
 /// What else can fail in memory.

@@ -10,14 +10,13 @@ use std::path::Path;
 
 use glam::DVec2;
 
-use super::crop;
 use super::crs::Way;
 use super::grid::{Grid, span};
 use super::ground::{Ground, places};
 use super::inscribed::largest;
+use super::layer::reach;
 use super::limits::{Whole, can_be_held, too_many};
 use super::metric::{degrees, is_polar, metric};
-use super::mosaic::reach;
 use super::source::MIN_SIDE;
 use crate::dem::{Crs, History, MAX_SAMPLES, Window};
 use crate::error::{Error, Message, Result, Setting};
@@ -57,9 +56,15 @@ struct Asked<'a> {
 }
 
 impl Target {
-    /// For the grid of the files; `path` is the first, for messages. Fails when too little is left.
-    pub fn of(files: &Grid, path: &Path, options: &ReadOptions, history: &mut History) -> Result<Self> {
-        let crop = crop::on(files, options.crop)?;
+    /// For the grid of the files; `path` is the first, for messages; `crop` is in the coordinates of `files`. Fails when
+    /// too little is left.
+    pub fn of(
+        files: &Grid,
+        path: &Path,
+        crop: Option<[f64; 4]>,
+        options: &ReadOptions,
+        history: &mut History,
+    ) -> Result<Self> {
         let window = match crop {
             None => files.whole(),
             Some(crop) => files.window(crop).ok_or_else(|| outside(files, path))?,
@@ -336,7 +341,7 @@ fn outside(files: &Grid, path: &Path) -> Error {
 }
 
 /// To so many significant digits.
-fn rounded(value: f64, digits: i32) -> f64 {
+pub(super) fn rounded(value: f64, digits: i32) -> f64 {
     scale(value, digits).map_or(value, |scale| (value * scale).round() / scale)
 }
 

@@ -1,18 +1,17 @@
-//! Several rasters as one grid: that of the first, run on over the others.
+//! Rasters whose samples fall on one grid: that of the first, run on over the others.
 //!
 //! Each file's numbers become metres by its own rules, voids marked, before anything is laid over anything: a tile in
-//! feet may stand beside one in metres, and a void covers nothing. Of files that overlap the last wins. A file whose
-//! samples fall on those of the first is copied; another is warped, by cubic convolution. Only what a window needs is
-//! read, on the thread that asks; several may ask at once.
+//! feet may stand beside one in metres, and a void covers nothing. Of files that overlap the last wins. Samples are
+//! copied. Only what a window needs is read, on the thread that asks; several may ask at once. Not handled: files on
+//! other grids, which are [`Layers`](super::layers::Layers) of their own.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use gdal::raster::{GdalType, RasterBand};
 use glam::DVec2;
 use xxhash_rust::xxh3::Xxh3;
 
 use super::assumed::Tallied;
-use super::crop;
 use super::crs::Way;
 use super::elevation::{Elevation, Reading};
 use super::grid::{Grid, span};
@@ -23,7 +22,7 @@ use super::raster::Raster;
 use super::source::{Source, heard};
 use super::tally::{Tallies, Tally};
 use crate::dem::{Crs, History, Tiling, Window};
-use crate::error::{Error, Result, shown};
+use crate::error::{Result, shown};
 use crate::geo::{Encoding, ReadOptions};
 
 /// Samples read at once: 8 MiB of f64.
@@ -35,20 +34,28 @@ const PARALLEL: [&str; 3] = ["GTiff", "COG", "VRT"];
 const MARGIN: usize = 3;
 
 /// Files on one grid.
-pub(super) struct Mosaic {
+pub(super) struct Layer {
     /// North-up wherever that takes no resampling.
     pub grid: Grid,
+    /// Side of a square as large as a cell, metres on the ground.
+    pub cell: f64,
     /// The format of the first file, in GDAL's words.
     pub format: String,
+    /// Whether it is all that there is of more than one file, or stands among other layers: messages name files then.
+    several: bool,
     sources: Vec<Placed>,
 }
 
-/// A file and where it lies in the mosaic.
-struct Placed {
+/// A file and where it lies in the layer.
+pub(super) struct Placed {
     handles: Handles,
     elevation: Elevation,
-    grid: Grid,
-    lie: Lie,
+    /// Its own grid.
+    pub grid: Grid,
+    /// First column and row in the layer.
+    first: [i64; 2],
+    /// Whether rows and columns are read backwards.
+    flip: [bool; 2],
     /// Columns and rows of the blocks in which the file stores its samples.
     stored: [usize; 2],
     /// Whether several threads gain by reading it at once.
@@ -57,51 +64,24 @@ struct Placed {
     format: String,
 }
 
-impl Mosaic {
-    /// Opens `paths`, at least one, and checks all that can be checked without reading samples.
-    pub fn open(paths: &[PathBuf], options: &ReadOptions, history: &mut History) -> Result<Self> {
-        let mut sources: Vec<Placed> = Vec::with_capacity(paths.len());
-        let mut opening = Opening::default();
-        for path in paths {
-            let base = sources.first().map(|first| (first.handles.path(), first.grid.north_up()));
-            let placed = Placed::open(path, options, base, paths.len() == 1, &mut opening, history)?;
-            sources.push(placed);
-        }
-        if let [path] = paths {
-            let twin = Placed::beside_itself(path, options, &sources[0], &mut opening)?;
-            sources.extend(twin);
-        }
-        let Some(first) = sources.first() else {
-            let none = Error::input(Path::new("DEM"), "no file is named", "name at least one raster");
-            return Err(none);
-        };
-        let base = first.grid.north_up();
-        if base.to_crs != first.grid.to_crs {
-            history.convert("rows and columns are read backwards, north up");
-        }
-        let lies = sources.iter().map(|placed| placed.lie.bounds(&placed.grid));
+impl Layer {
+    /// Of `files`, at least one, each with its lie to the first's grid, north up. `several`: whether messages name them.
+    pub fn of(files: Vec<(Placed, Lie)>, cell: f64, several: bool) -> Option<Self> {
+        let (first, _) = files.first()?;
+        let (base, format) = (first.grid.north_up(), first.format.clone());
+        let lies = files.iter().map(|(placed, lie)| lie.bounds(&placed.grid));
         let (low, end) = lies.fold(([0; 2], [0; 2]), |(low, end), (first, last)| {
             ([0, 1].map(|i| first[i].min(low[i])), [0, 1].map(|i| last[i].max(end[i])))
         });
-        sources.iter_mut().for_each(|placed| placed.lie = placed.lie.moved(low));
+        let sources = files.into_iter().map(|(placed, lie)| placed.at(lie, low)).collect();
         let to_crs = base.to_crs * glam::DAffine2::from_translation(DVec2::new(low[0] as f64, low[1] as f64));
         let [columns, rows] = [0, 1].map(|i| (end[i] - low[i]) as usize);
-        if paths.len() > 1 {
-            history.convert(format!("{} files laid together: {columns} x {rows} samples", sources.len()));
-        }
-        let format = sources[0].format.clone();
-        Ok(Self { grid: Grid { to_crs, columns, rows, ..base }, format, sources })
+        Some(Self { grid: Grid { to_crs, columns, rows, ..base }, cell, format, several, sources })
     }
 
     /// The first file, for messages.
     pub fn path(&self) -> &Path {
         self.sources[0].handles.path()
-    }
-
-    /// A file whose samples lie between those of the mosaic, so that it must be warped as a whole.
-    pub fn apart(&self) -> Option<&Path> {
-        let apart = self.sources.iter().find(|placed| matches!(placed.lie, Lie::Apart { .. }));
-        apart.map(|placed| placed.handles.path())
     }
 
     /// Whether several threads gain by reading at once.
@@ -111,18 +91,19 @@ impl Mosaic {
 
     /// The tiles in which a window is best read: about those of the first file.
     pub fn tiling(&self, window: Window) -> Tiling {
-        let Placed { lie, grid, stored, .. } = &self.sources[0];
-        let (first, _) = lie.bounds(grid);
+        let Placed { first, stored, .. } = &self.sources[0];
         Tiling::of(*stored, [0, 1].map(|i| window.first[i] as i64 - first[i]), window.size)
     }
 
-    /// What it was opened from, in a few words.
-    pub fn label(&self) -> String {
-        let first = shown(self.path());
-        match self.sources.len() {
-            1 => first,
-            more => format!("{first} and {} more", more - 1),
-        }
+    /// Its files by their names alone, in a few words.
+    pub fn name(&self) -> String {
+        let path = self.path();
+        and_more(&shown(path.file_name().map_or(path, Path::new)), self.sources.len())
+    }
+
+    /// How many files it is of.
+    pub fn files_named(&self) -> usize {
+        self.sources.len()
     }
 
     /// Every file on the disk that it is made of.
@@ -139,20 +120,11 @@ impl Mosaic {
     /// part is not on the disk.
     pub fn hash(&self, hash: &mut Xxh3) -> Option<()> {
         hash.update(format!("{:?}", self.grid).as_bytes());
-        for Placed { handles, elevation, lie, grid, .. } in &self.sources {
-            hash.update(format!("{elevation:?} {lie:?} {grid:?}\n").as_bytes());
+        for Placed { handles, elevation, first, flip, grid, .. } in &self.sources {
+            hash.update(format!("{elevation:?} {first:?} {flip:?} {grid:?}\n").as_bytes());
             handles.hash(hash)?;
         }
         Some(())
-    }
-
-    /// Samples to be read of each file that is warped, for `window` of the mosaic.
-    pub fn warped_parts(&self, window: Window) -> impl Iterator<Item = (&Path, u64)> {
-        let target = self.grid.part(window);
-        self.sources.iter().filter(|placed| matches!(placed.lie, Lie::Apart { .. })).map(move |placed| {
-            let samples = reach(&target, &placed.grid).map_or(0, Window::samples);
-            (placed.handles.path(), samples)
-        })
     }
 
     /// Reads the samples of `window`, with a tally of the files' numbers. `progress` hears the share done.
@@ -180,81 +152,69 @@ impl Mosaic {
         tallies.iter().filter_map(of).collect()
     }
 
-    /// Whether there is more than one file.
+    /// Whether messages name files, for there are several.
     pub fn is_of_several(&self) -> bool {
-        self.sources.len() > 1
+        self.several
+    }
+
+    /// The grid of the first file.
+    pub fn first_grid(&self) -> &Grid {
+        &self.sources[0].grid
     }
 }
 
 impl Placed {
-    /// `base` is the first file and the grid that it lays; the first itself has none before it.
-    fn open(
+    /// Opens a file and checks all that can be checked without reading samples. `alone`: whether it is the only one. `like`: a system
+    /// whose axes are turned to east and north; others of its definition are turned as they are.
+    pub fn open(
         path: &Path,
         options: &ReadOptions,
-        base: Option<(&Path, Grid)>,
         alone: bool,
+        like: Option<&Crs>,
         opening: &mut Opening,
         history: &mut History,
     ) -> Result<Self> {
-        let mut own = History::default();
         let source = Source::open(path, options.band.unwrap_or(1), options.allow_remote)?;
-        let source = source.with_chosen_band(options, &mut own)?;
+        let source = source.with_chosen_band(options, history)?;
         if let Some(member) = &source.member {
-            own.convert(format!("{member} is taken of the archive, its only raster"));
+            history.convert(format!("{member} is taken of the archive, its only raster"));
         }
-        let grid = Grid::of(&source, options.cell, alone, &mut own)?;
-        let grid = upright(grid, base.as_ref().map(|(_, onto)| &onto.crs), &mut own);
+        let grid = upright(Grid::of(&source, options.cell, alone, history)?, like, history);
         let (grid, transposed) = grid.transposed().map_or((grid, false), |grid| (grid, true));
         if transposed {
-            own.convert("rows are read for columns, north up");
+            history.convert("rows are read for columns, north up");
         }
-        let elevation = Elevation::of(&source, &grid.crs, options, &mut own)?;
-        let later = base.is_some();
-        let (first, onto) = base.unwrap_or_else(|| (path, grid.north_up()));
-        let lie = Lie::of(&grid, &onto).ok_or_else(|| no_way([(path, &grid), (first, &onto)]))?;
-        if matches!(lie, Lie::Apart { .. }) {
-            own.convert("warped to the grid of the first file, cubic");
-        }
-        history.take(own, later.then_some(path));
+        let elevation = Elevation::of(&source, &grid.crs, options, history)?;
         let (width, height) = source.band()?.block_size();
         let stored = if transposed { [height, width] } else { [width, height] };
         let driver = source.dataset.driver();
         let (parallel, format) = (PARALLEL.contains(&driver.short_name().as_str()), driver.long_name());
         let handles = Handles::new(Source { transposed, ..source }, options.allow_remote, opening);
-        Ok(Self { handles, elevation, grid, lie, stored, parallel, format })
+        let (first, flip) = ([0; 2], [false; 2]);
+        Ok(Self { handles, elevation, grid, first, flip, stored, parallel, format })
     }
 
-    /// The only file a second time, a turn farther, where it runs round the globe and the crop crosses its outer edges.
-    fn beside_itself(path: &Path, options: &ReadOptions, first: &Self, opening: &mut Opening) -> Result<Option<Self>> {
-        let (grid, flipped) = (first.grid.north_up(), first.lie.bounds(&first.grid));
-        let crop = crop::on(&grid, options.crop)?;
-        let Some(columns) = crop::round_the_globe(&grid, crop) else { return Ok(None) };
-        let mut twin = Self::open(path, options, Some((path, grid)), true, opening, &mut History::default())?;
-        twin.lie = first.lie.moved([flipped.0[0] - columns, 0]);
-        Ok(Some(twin))
+    /// The file as it was named.
+    pub fn path(&self) -> &Path {
+        self.handles.path()
     }
 
-    /// Lays what falls into `window` of the mosaic over `raster`, which holds just that, and counts it in `tally`.
+    /// The same, lying so to a grid whose first column and row become `low`.
+    fn at(self, lie: Lie, low: [i64; 2]) -> Self {
+        let flip = if let Lie::Aligned { flip, .. } = lie { flip } else { self.flip };
+        let (first, _) = lie.moved(low).bounds(&self.grid);
+        Self { first, flip, ..self }
+    }
+
+    /// Lays what falls into `window` of the layer over `raster`, which holds just that, and counts it in `tally`.
     fn read(&self, window: Window, raster: &mut Raster, tally: &mut Tally, progress: &dyn Fn(f64)) -> Result<()> {
-        match self.lie {
-            Lie::Aligned { first, flip } => {
-                let first = [0, 1].map(|i| first[i] - window.first[i] as i64);
-                let (own, there) = ([self.grid.columns, self.grid.rows], window.size);
-                if (0..2).any(|i| first[i] >= there[i] as i64 || first[i] + own[i] as i64 <= 0) {
-                    // Not even opened: there may be thousands of files.
-                    return Ok(());
-                }
-                self.handles.read(|source| self.copy(source, first, flip, raster, tally, progress))
-            }
-            Lie::Apart { .. } => {
-                let Some(part) = reach(&raster.grid, &self.grid) else { return Ok(()) };
-                let mut own = Raster::void(self.grid.part(part))?;
-                let first = part.first.map(|first| -(first as i64));
-                let share = |done: f64| progress(done / 2.0);
-                self.handles.read(|source| self.copy(source, first, [false; 2], &mut own, tally, &share))?;
-                raster.lay(&own, &|done| progress((1.0 + done) / 2.0))
-            }
+        let first = [0, 1].map(|i| self.first[i] - window.first[i] as i64);
+        let (own, there) = ([self.grid.columns, self.grid.rows], window.size);
+        if (0..2).any(|i| first[i] >= there[i] as i64 || first[i] + own[i] as i64 <= 0) {
+            // Not even opened: there may be thousands of files.
+            return Ok(());
         }
+        self.handles.read(|source| self.copy(source, first, raster, tally, progress))
     }
 
     /// Copies the samples, as metres, to where `raster` has them: the file's first column and row, after flipping, at
@@ -263,7 +223,6 @@ impl Placed {
         &self,
         source: &Source,
         first: [i64; 2],
-        flip: [bool; 2],
         raster: &mut Raster,
         tally: &mut Tally,
         progress: &dyn Fn(f64),
@@ -285,10 +244,10 @@ impl Placed {
             // The first sample of the block in the file, counted backwards where flipped.
             let from = [0, 1].map(|i| {
                 let offset = (at[i] as i64 - first[i]) as usize;
-                if flip[i] { own[i] - offset - size[i] } else { offset }
+                if self.flip[i] { own[i] - offset - size[i] } else { offset }
             });
             let mut raw = numbers(source, &band, mask.as_ref(), self.elevation.picture(), from, size)?;
-            turn(&mut raw, size[0], flip);
+            turn(&mut raw, size[0], self.flip);
             for (row, raw) in raw.chunks_exact(size[0]).enumerate() {
                 let place = (at[1] + row) * there[0] + at[0];
                 self.cover(&mut raster.metres[place..place + size[0]], raw, tally);
@@ -396,28 +355,7 @@ fn turn(raw: &mut [f64], width: usize, [along, down]: [bool; 2]) {
     }
 }
 
-/// The error for two files, each with its grid, between whose systems no way is known: it is about the one that names
-/// none, else about the first.
-fn no_way([one, other]: [(&Path, &Grid); 2]) -> Error {
-    let nameless = |(_, grid): (&Path, &Grid)| grid.crs.wkt().is_empty();
-    let [(path, grid), (beside, base)] = if nameless(other) && !nameless(one) { [other, one] } else { [one, other] };
-    let name = |crs: &Crs| match crs.label() {
-        label if label.is_empty() => "no named coordinate system".to_owned(),
-        label if ["unknown", "unnamed"].contains(&label.to_lowercase().as_str()) => "an unnamed system".to_owned(),
-        label => label,
-    };
-    let what = format!(
-        "lies in {}, and no way from there to {}, that of {}, is known",
-        name(&grid.crs),
-        name(&base.crs),
-        shown(beside)
-    );
-    let code = base.crs.epsg().map_or("CODE".to_owned(), |code| code.to_string());
-    let remedy = match grid.crs.wkt().is_empty() {
-        true => {
-            format!("draw it alone, or where it is in that too, say so: `gdal_translate -a_srs EPSG:{code} IN OUT.tif`")
-        }
-        false => "draw each alone".to_owned(),
-    };
-    Error::input(path, what, remedy)
+/// A name, and how many more there are of so many in all.
+pub(super) fn and_more(first: &str, all: usize) -> String {
+    if all > 1 { format!("{first} and {} more", all - 1) } else { first.to_owned() }
 }

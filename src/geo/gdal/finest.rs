@@ -1,0 +1,145 @@
+//! Which grid is drawn of layers on several: that of the finest one that meets the crop and whose samples fit.
+//!
+//! The grid of that layer runs on over all others before it is cut or warped, so that what holds for one file holds for
+//! all together. Where the finest does not fit, the next one is drawn, with a warning that says which part would be drawn
+//! in the finest: that part is tried before it is named.
+
+use glam::DVec2;
+
+use super::layer::Layer;
+use super::layers::{AS_FINE, Layers, carried};
+use super::target::{Target, rounded};
+use crate::dem::{History, MAX_SAMPLES, held_bytes, mebibytes};
+use crate::error::{Error, Result, Setting};
+use crate::geo::ReadOptions;
+use crate::message;
+
+/// Parts that are tried, each smaller than the one before.
+const TRIALS: usize = 12;
+/// Digits of a crop: centimetres of a northing, a tenth of a metre in degrees.
+const DIGITS: i32 = 9;
+
+/// What is drawn of `layers`. Fails when too little is left.
+pub(super) fn target(layers: &Layers, options: &ReadOptions, history: &mut History) -> Result<Target> {
+    if let [only] = layers.all() {
+        let crop = layers.crop_on(&only.grid, options.crop)?;
+        return Target::of(&only.grid, only.path(), crop, options, history);
+    }
+    let candidates = candidates(layers, options)?;
+    let Some((coarsest, finer)) = candidates.split_last() else {
+        return on(layers, layers.first(), options, history);
+    };
+    for layer in finer {
+        let mut own = History::default();
+        match on(layers, layer, options, &mut own) {
+            Ok(target) if fits(&target, options) => {
+                history.take(own, None);
+                warn(layers, candidates[0], layer, options, history);
+                return Ok(target);
+            }
+            Ok(_) | Err(Error::Limit { .. }) => {}
+            Err(error) => return Err(error),
+        }
+    }
+    let target = on(layers, coarsest, options, history)?;
+    warn(layers, candidates[0], coarsest, options, history);
+    Ok(target)
+}
+
+/// The layers whose grids may be drawn, from the finest on; of like ones the first.
+fn candidates<'a>(layers: &'a Layers, options: &ReadOptions) -> Result<Vec<&'a Layer>> {
+    if let Some(chosen) = layers.chosen() {
+        return Ok(vec![chosen]);
+    }
+    let mut found: Vec<&Layer> = Vec::new();
+    for layer in layers.all() {
+        let met = layers.crop_on(&layer.grid, options.crop)?.is_none_or(|crop| layer.grid.window(crop).is_some());
+        if met && found.iter().all(|other| (other.cell / layer.cell - 1.0).abs() > AS_FINE) {
+            found.push(layer);
+        }
+    }
+    found.sort_by(|a, b| a.cell.total_cmp(&b.cell));
+    // Where the size of cells is given there is nothing to choose.
+    if options.resample.is_some() {
+        found.truncate(1);
+    }
+    Ok(found)
+}
+
+/// What is drawn in the grid of `base`.
+fn on(layers: &Layers, base: &Layer, options: &ReadOptions, history: &mut History) -> Result<Target> {
+    let around = layers.around(base)?;
+    let crop = layers.crop_on(&around, options.crop)?;
+    Target::of(&around, base.path(), crop, options, history)
+}
+
+/// Whether the samples can be held.
+fn fits(target: &Target, options: &ReadOptions) -> bool {
+    let samples = target.grid.whole().samples();
+    samples <= MAX_SAMPLES as u64 && held_bytes(samples) <= options.memory
+}
+
+/// Warns where `drawn` is coarser than the `finest`, and says how the finest would be drawn.
+fn warn(layers: &Layers, finest: &Layer, drawn: &Layer, options: &ReadOptions, history: &mut History) {
+    if finest.cell >= drawn.cell {
+        return;
+    }
+    let [fine, coarse] = [finest, drawn].map(|layer| rounded(layer.cell, 3));
+    let mut ways = Vec::new();
+    if let Some(crop) = crop_to_fit(layers, finest, options) {
+        ways.push(message!["use ", Setting::Crop.at(crop), " for a part in these"]);
+    }
+    let all = on(layers, finest, options, &mut History::default()).ok();
+    let samples = all.map(|target| target.grid.whole().samples()).filter(|samples| *samples <= MAX_SAMPLES as u64);
+    if let Some(samples) = samples {
+        ways.push(message!["give ", mebibytes(held_bytes(samples).div_ceil(1 << 20)), " for all in these"]);
+    }
+    let what = format!("cells of {coarse} m are fine enough (all in the {fine} m of {} do not fit", finest.name());
+    let mut clause = message![what];
+    for (i, way) in ways.into_iter().enumerate() {
+        clause.push(if i == 0 { ": " } else { ", or " });
+        clause.push(way);
+    }
+    history.assume(message![clause, ")"]);
+}
+
+/// A crop around the finest layer, with as much land around it as fits or as much of it, in units of the first file; one
+/// that was tried.
+fn crop_to_fit(layers: &Layers, finest: &Layer, options: &ReadOptions) -> Option<String> {
+    let all = layers.around(finest).ok()?.extent();
+    let [low, high] = corners(layers.crop_on(&finest.grid, options.crop).ok()?.unwrap_or(all));
+    let [own_low, own_high] = corners(finest.grid.extent());
+    let (own_low, own_high) = (own_low.max(low), own_high.min(high));
+    let (mut middle, half) = ((own_low + own_high) / 2.0, (own_high - own_low) / 2.0);
+    let mut share = (most(options.memory) / finest.grid.whole().samples() as f64).sqrt();
+    if share < 1.0 {
+        // The middle of several files may be between them.
+        let (file, within) = (finest.first_grid(), half * (1.0 - share));
+        middle = file.centre(file.whole()).clamp(middle - within, middle + within);
+    }
+    for _ in 0..TRIALS {
+        let [low, high] = [(middle - half * share).max(low), (middle + half * share).min(high)];
+        let part = [low.x, low.y, high.x, high.y];
+        let crop =
+            carried(part, &finest.grid.crs, &layers.first().grid.crs.as_defined())?.map(|edge| rounded(edge, DIGITS));
+        let trial = ReadOptions { crop: Some(crop), ..options.clone() };
+        share *= match on(layers, finest, &trial, &mut History::default()) {
+            Ok(target) if fits(&target, options) => return Some(crop.map(|edge| edge.to_string()).join(",")),
+            // A little less, for a rectangle of another map is larger.
+            Ok(target) => (0.98 * (most(options.memory) / target.grid.whole().samples() as f64).sqrt()).min(0.98),
+            Err(_) => 0.5,
+        };
+    }
+    None
+}
+
+/// Samples that fit into so many bytes, and may be held.
+fn most(memory: u64) -> f64 {
+    let bytes = held_bytes(1 << 10) as f64 / 1024.0;
+    (memory as f64 / bytes).min(MAX_SAMPLES as f64)
+}
+
+/// South-west and north-east.
+fn corners([west, south, east, north]: [f64; 4]) -> [DVec2; 2] {
+    [DVec2::new(west, south), DVec2::new(east, north)]
+}
