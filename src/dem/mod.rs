@@ -4,11 +4,13 @@
 mod bands;
 pub(crate) mod filed;
 pub mod fractal;
+pub mod generalise;
 mod georeference;
 mod held;
 mod history;
 mod overviews;
 mod samples;
+pub mod smoothest;
 mod survey;
 mod systems;
 mod tiles;
