@@ -3,7 +3,7 @@
 //! Method: `facets`. A plane is fitted to every 4 x 4 blocks of a fifth of the scale each (facet model: Haralick,
 //! Watson 1981), and a sample gets the mean of the sixteen planes about it, each weighted by how near it is and by a
 //! power of its variance, so that planes on one side of a crest win over those across it (Kuwahara et al. 1976;
-//! Papari, Petkov, Campisi 2007). That is done twice: what stands out of the first surface by more than [`STANDS_OUT`]
+//! Papari, Petkov, Campisi 2007). That is done twice: what stands out of the first surface by more than a twenty-fifth
 //! of the scale is cut to that, and the second surface, of smoother weights, is that of the rest.
 //!
 //! Planes stay planes, crests keep their height: a roof all of it, the top of a cone loses a tenth of the scale. Blocks
