@@ -22,9 +22,9 @@ fn roof(x: f64, _: f64) -> f64 {
     400.0 + (90.0 - 0.45 * (x - MIDDLE).abs()).max(0.0)
 }
 
-/// A cone of slopes of 100 % and 110 m.
+/// A cone of slopes of 50 % and 100 m.
 fn cone(x: f64, y: f64) -> f64 {
-    400.0 + (110.0 - (x - MIDDLE).hypot(y - MIDDLE)).max(0.0)
+    400.0 + (100.0 - 0.5 * (x - MIDDLE).hypot(y - MIDDLE)).max(0.0)
 }
 
 /// Land with noise of 0.3 m and trees of 3 to 10 m, 2 to 4 m wide, on 3 % of it.

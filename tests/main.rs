@@ -56,6 +56,7 @@ mod seen;
 mod shell;
 mod silhouettes;
 mod smoothest;
+mod stepless;
 mod times;
 mod tolerances;
 mod trial;
