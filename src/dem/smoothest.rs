@@ -28,8 +28,8 @@ use levels::Level;
 pub const HALO: usize = 192;
 
 /// Sweeps on the samples, on blocks of 2 x 2, on blocks of 4 x 4. Each reaches two of them, a finer level starts from the
-/// blocks around, and the guess reaches as far as contours are looked for: 32 + 3 + 40 + 6 + 48 + 3 + 41 samples.
-const SWEEPS: [usize; 3] = [16, 10, 6];
+/// blocks around, and the guess reaches as far as contours are looked for: 40 + 3 + 56 + 6 + 48 + 3 + 33 samples.
+const SWEEPS: [usize; 3] = [20, 14, 6];
 
 /// Replaces `heights` (metres, row-major, NaN at voids) of a window by those of the smoothest surface that lies within
 /// `half` (metres, same shape; 0: exact, stays as it is) of each. `window` counts in samples of the DEM; `parallel` says
