@@ -28,7 +28,7 @@ use levels::Level;
 pub const HALO: usize = 192;
 
 /// Sweeps on the samples, on blocks of 2 x 2, on blocks of 4 x 4.
-const SWEEPS: [usize; 3] = [20, 14, 6];
+const SWEEPS: [usize; 3] = [24, 14, 6];
 
 const _: () = assert!(reach() <= HALO);
 
