@@ -175,6 +175,14 @@ fn a_window_with_its_halo_has_the_bits_of_the_whole() {
 }
 
 #[test]
+fn what_is_not_finite_is_a_void() {
+    let rough = with_voids(51);
+    let infinite: Vec<f32> = rough.iter().map(|height| if height.is_nan() { f32::INFINITY } else { *height }).collect();
+    let [rough, infinite] = [rough, infinite].map(|heights| smooth(&heights, 12.0));
+    assert!(rough.iter().zip(&infinite).all(|(a, b)| a == b || a.is_nan() && b.is_nan()));
+}
+
+#[test]
 fn tiles_and_threads_change_no_bit_and_voids_stay() {
     // Longer than a tile.
     let (columns, rows) = (700, 300);

@@ -149,6 +149,16 @@ fn the_number_of_threads_changes_no_bit() {
     }
 }
 
+#[test]
+fn what_is_not_finite_is_a_void() {
+    let mut scene = Scene::mixed([90, 80], 1.0, 41);
+    let smooth = scene.smooth(true);
+    for (i, height) in scene.heights.iter_mut().enumerate().filter(|(_, height)| height.is_nan()) {
+        *height = [f32::INFINITY, f32::NEG_INFINITY, f32::NAN][i % 3];
+    }
+    assert_eq!(bits(&scene.smooth(true)), bits(&smooth));
+}
+
 /// The largest distance of a surface from what was rounded, as a share of the step, `border` samples from the border.
 fn off(scene: &Scene, surface: &[f32], step: f64, border: usize, height: impl Fn(usize, usize) -> f64) -> f64 {
     let inside = |at: usize, end: usize| at >= border && at + border < end;

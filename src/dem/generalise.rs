@@ -42,7 +42,8 @@ pub fn halo(metres: f64, cell: DVec2) -> usize {
 }
 
 /// Smooths `heights` (metres, row-major, NaN at voids) of a window at a scale of `metres`. `window` counts in samples of
-/// the DEM, `cell` is metres between columns and rows; `parallel` says whether all cores may be used.
+/// the DEM, `cell` is metres between columns and rows; `parallel` says whether all cores may be used. What is not finite is a
+/// void, and NaN afterwards where the scale changes anything.
 ///
 /// # Panics
 /// When heights and window are not of one shape.

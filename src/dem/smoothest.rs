@@ -46,7 +46,7 @@ const fn reach() -> usize {
 
 /// Replaces `heights` (metres, row-major, NaN at voids) of a window by those of the smoothest surface that lies within
 /// `half` (metres, same shape; 0: exact, stays as it is) of each. `window` counts in samples of the DEM; `parallel` says
-/// whether all cores may be used.
+/// whether all cores may be used. What is not finite is a void, and NaN afterwards.
 ///
 /// # Panics
 /// When the three are not of one shape.
@@ -55,6 +55,7 @@ pub fn smoothest(heights: &mut [f32], half: &[f32], window: Window, parallel: bo
     if half.iter().all(|half| *half == 0.0) {
         return;
     }
+    heights.iter_mut().filter(|height| height.is_infinite()).for_each(|height| *height = f32::NAN);
     let surface = surface(heights, half, window, parallel);
     for ((height, half), smooth) in heights.iter_mut().zip(half).zip(surface) {
         *height = inside(smooth, *height, *half);

@@ -77,7 +77,7 @@ impl Facets {
         let middle = sides.map(|side| (side as f64 - 1.0) / 2.0);
         for (r, row) in heights.chunks_exact(window.size[0]).enumerate() {
             let (block, south) = place(r + window.first[1], first[1], sides[1]);
-            for (c, height) in row.iter().enumerate().filter(|(_, height)| !height.is_nan()) {
+            for (c, height) in row.iter().enumerate().filter(|(_, height)| height.is_finite()) {
                 let (column, east) = place(c + window.first[0], first[0], sides[0]);
                 let sum = &mut sums[block * blocks[0] + column];
                 *sum = *sum + Sums::of(east as f64 - middle[0], south as f64 - middle[1], f64::from(*height));
@@ -103,7 +103,7 @@ impl Facets {
             for (c, height) in row.iter().enumerate() {
                 let (column, east) = place(c + self.window.first[0], self.first[0], self.sides[0]);
                 let smooth = self.mean([column, block], [east, south], [&near[0][east], &near[1][south]], &weights);
-                surface.push(smooth.filter(|_| !height.is_nan()).unwrap_or(*height));
+                surface.push(smooth.filter(|_| height.is_finite()).unwrap_or(*height));
             }
         }
         surface
