@@ -317,3 +317,34 @@ pub const SEAM_SLOPE: f64 = 1.95;
 ///
 /// Example: 100 000 facets of the wide file alone may be 130 000.
 pub const MIXED_FACETS: f64 = 1.3;
+
+/// How far the smoothest surface within the steps of a plane may lie from it, as a share of a step, away from the DEM's
+/// border: there half a step is left open.
+///
+/// Example: a plane rounded to whole metres comes back to 10 cm.
+pub const PLANE_OF_STEPS: f64 = 0.1;
+
+/// Least and most ink of hills without their steps, as a share of that of the hills before they were rounded.
+///
+/// Example: of 900 px at least 720 and at most 1 125.
+pub const STEPLESS_INK: [f64; 2] = [0.8, 1.25];
+
+/// Least F, within a pixel, of the ink of the one against that of the other.
+///
+/// Example: 900 px each, of which 135 lie elsewhere.
+pub const STEPLESS_F: f64 = 0.85;
+
+/// Least share of its height that a crest keeps when heights are generalised.
+///
+/// Example: of a roof of 100 m at least 98 m.
+pub const CREST: f64 = 0.98;
+
+/// Most of the energy of noise and trees that may be left, as a share of it.
+///
+/// Example: trees and noise of 1 m, root mean square, leave 0.14 m.
+pub const NOISE_LEFT: f64 = 0.02;
+
+/// How far a generalised plane may lie from itself, m: heights of 1 000 m are stored to 0.00006 m.
+///
+/// Example: a plane at 1 000 m comes back to 1 mm.
+pub const PLANE_M: f64 = 1e-3;

@@ -4,12 +4,14 @@
 mod bands;
 pub(crate) mod filed;
 pub mod fractal;
+pub mod generalise;
 mod georeference;
 mod held;
 mod history;
 mod north;
 mod overviews;
 mod samples;
+pub mod smoothest;
 mod survey;
 mod systems;
 mod tiles;
