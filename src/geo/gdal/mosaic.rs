@@ -30,6 +30,8 @@ const BLOCK_SAMPLES: usize = 1 << 20;
 /// Formats whose blocks are unpacked one by one and cost time: there, threads gain by reading at once. Others are read
 /// as fast by one thread, or only in the order in which they are written.
 const PARALLEL: [&str; 3] = ["GTiff", "COG", "VRT"];
+/// Columns and rows of a float file that tell whether its numbers are multiples of a step at all.
+const FIRST_SAMPLES: [usize; 2] = [512, 16];
 /// Samples around a window that cubic convolution reaches, and one more.
 const MARGIN: usize = 3;
 
@@ -170,6 +172,44 @@ impl Mosaic {
         Ok((raster, tallies))
     }
 
+    /// Reads the samples of `window` that the file at this place has, as if it were alone.
+    pub fn read_of(&self, place: usize, window: Window) -> Result<(Raster, Tally)> {
+        let (mut raster, placed) = (Raster::void(self.grid.part(window))?, &self.sources[place]);
+        let mut tally = Tally::new(&placed.elevation);
+        placed.read(window, &mut raster, &mut tally, &|_| ())?;
+        Ok((raster, tally))
+    }
+
+    /// Whether the files' numbers may be multiples of a step, by their type and, where that leaves it open, by the first
+    /// samples of each in `window`.
+    pub fn may_have_steps(&self, window: Window) -> Result<bool> {
+        if self.sources.iter().any(|placed| placed.elevation.is_whole()) {
+            return Ok(true);
+        }
+        for place in self.meeting(window) {
+            let Window { first, size } = self.shared(place, window);
+            let size = [0, 1].map(|i| size[i].min(FIRST_SAMPLES[i]));
+            if self.read_of(place, Window { first, size })?.1.grain.may_have() {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    /// The places of the files that have samples in `window`, or voids.
+    pub fn meeting(&self, window: Window) -> impl Iterator<Item = usize> {
+        (0..self.sources.len()).filter(move |place| self.shared(*place, window).samples() > 0)
+    }
+
+    /// What the file at this place and `window` share.
+    fn shared(&self, place: usize, window: Window) -> Window {
+        let placed = &self.sources[place];
+        let (first, end) = placed.lie.bounds(&placed.grid);
+        let first = [0, 1].map(|i| (first[i].max(0) as usize).max(window.first[i]));
+        let end = [0, 1].map(|i| (end[i].max(0) as usize).min(window.first[i] + window.size[i]));
+        Window { first, size: [0, 1].map(|i| end[i].saturating_sub(first[i])) }
+    }
+
     /// The files of which numbers are tallied, each with its rules and its tally.
     pub fn tallied<'a>(&'a self, tallies: &'a Tallies) -> Vec<Tallied<'a>> {
         let of = |(i, tally): (&usize, &'a Tally)| {
@@ -179,9 +219,14 @@ impl Mosaic {
         tallies.iter().filter_map(of).collect()
     }
 
+    /// How many files it is made of.
+    pub fn count(&self) -> usize {
+        self.sources.len()
+    }
+
     /// Whether there is more than one file.
     pub fn is_of_several(&self) -> bool {
-        self.sources.len() > 1
+        self.count() > 1
     }
 }
 

@@ -1,25 +1,35 @@
-//! A window of a mosaic as a DEM asks for it: read tile by tile, the files' numbers tallied as they come.
+//! A window of a mosaic as a DEM asks for it: read tile by tile, the files' numbers tallied as they come, and what they show
+//! of steps.
 
 use std::collections::HashSet;
 use std::fmt::{self, Debug, Formatter};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
 use xxhash_rust::xxh3::Xxh3;
 
 use super::assumed::{assumed, units};
 use super::mosaic::Mosaic;
 use super::raster::Raster;
+use super::smoothing::{self, Smoothing};
+use super::steps::Steps;
 use super::tally::{Tallies, merge};
+use super::water::WaterBuilder;
+use crate::cache::{Cache, Hearing};
 use crate::dem::tiling::gather;
 use crate::dem::{Tiles, Tiling, Window};
 use crate::error::{Error, Message, Result, Setting};
 use crate::message;
 
+/// Most samples that are looked at together: 64 MiB.
+const BAND: usize = 1 << 24;
+
 /// Some samples of a mosaic.
 pub(super) struct Part {
     mosaic: Mosaic,
     window: Window,
+    keep_steps: bool,
     counted: Mutex<Counted>,
+    smoothing: OnceLock<Option<Smoothing>>,
 }
 
 /// The numbers of the windows read so far.
@@ -30,22 +40,115 @@ struct Counted {
 }
 
 impl Part {
-    /// `window` of `mosaic`, nothing read yet.
-    pub fn new(mosaic: Mosaic, window: Window) -> Self {
-        Self { mosaic, window, counted: Mutex::default() }
+    /// `window` of `mosaic`, nothing read yet. `keep_steps`: heights stay as the files have them.
+    pub fn new(mosaic: Mosaic, window: Window, keep_steps: bool) -> Self {
+        Self { mosaic, window, keep_steps, counted: Mutex::default(), smoothing: OnceLock::new() }
     }
 
-    /// All samples. `progress` hears the share done.
+    /// All samples, the smoothest within their steps. `progress` hears the share done.
     pub fn raster(&self, progress: &dyn Fn(f64)) -> Result<Raster> {
         if self.mosaic.apart().is_some() {
             let (raster, tallies) = self.mosaic.read(self.window, progress)?;
             self.counted().add([0, 0], tallies);
             return Ok(raster);
         }
-        let whole = Window { first: [0, 0], ..self.window };
+        let whole = self.whole();
         let tiles = self.tiling().tiles(whole);
-        let metres = gather(whole, &tiles, self.is_parallel(), |tile| self.read(tile), progress)?;
+        let mut metres = gather(whole, &tiles, self.is_parallel(), |tile| self.read(tile), progress)?;
+        let steps = if self.keep_steps { None } else { self.steps_of(&self.counted().tallies) };
+        let found = steps.map(|steps| {
+            let mut water = WaterBuilder::new(whole.size[0]);
+            water.take(&metres);
+            Smoothing { steps, water: water.finish() }
+        });
+        if let Some(smoothing) = self.smoothing.get_or_init(|| found) {
+            smoothing.smooth(self, &mut metres, whole, true)?;
+        }
         Ok(Raster { grid: self.mosaic.grid.part(self.window), metres })
+    }
+
+    /// Finds the steps of samples that stay in their files, in the cache or in a look at all of them.
+    pub fn look(&self, cache: &Cache, progress: &dyn Fn(f64)) -> Result<()> {
+        if self.keep_steps || !self.mosaic.may_have_steps(self.window)? {
+            return Ok(());
+        }
+        let found = match self.stamp() {
+            None => self.looked(progress)?,
+            Some(stamp) => {
+                let key = smoothing::key(stamp, self.mosaic.label());
+                // What was kept and is damaged is made anew, without a word: it takes no longer than the first time.
+                cache.get(&key, Hearing { warn: &|_| (), progress }, smoothing::recall, |sheet, progress| {
+                    let found = self.looked(progress)?;
+                    sheet.into_iter().for_each(|sheet| smoothing::keep(found.as_ref(), sheet));
+                    Ok(found)
+                })?
+            }
+        };
+        self.smoothing.get_or_init(|| found);
+        Ok(())
+    }
+
+    /// What is known of steps after [`Self::raster`] or [`Self::look`], where there are any.
+    pub fn smoothing(&self) -> Option<&Smoothing> {
+        self.smoothing.get()?.as_ref()
+    }
+
+    /// Half the step of each sample of `window`, by the file that gives it, metres.
+    pub fn halves(&self, steps: &Steps, window: Window) -> Result<Vec<f32>> {
+        let mut halves = vec![0.0; window.samples() as usize];
+        let window = self.in_mosaic(window);
+        for place in self.mosaic.meeting(window) {
+            let (raster, _) = self.mosaic.read_of(place, window)?;
+            let given = halves.iter_mut().zip(raster.metres).filter(|(_, metres)| !metres.is_nan());
+            given.for_each(|(half, _)| *half = steps.half(place));
+        }
+        Ok(halves)
+    }
+
+    /// A look at all samples, band by band, that ends as soon as no file can have a step.
+    fn looked(&self, progress: &dyn Fn(f64)) -> Result<Option<Smoothing>> {
+        let [columns, rows] = self.window.size;
+        let (mut water, tallies) = (WaterBuilder::new(columns), Mutex::<Tallies>::default());
+        let mut from = 0;
+        while from < rows {
+            let tile = self.tiling().tile([0, from]);
+            let most = (BAND / columns).max(1);
+            let height = (tile.first[1] + tile.size[1] - from).min(most);
+            let band = Window { first: [0, from], size: [columns, height] };
+            let cut = |tile: Window| Window { first: [tile.first[0], from], size: [tile.size[0], height] };
+            let tiles: Vec<_> = self.tiling().tiles(band).into_iter().map(cut).collect();
+            let load = |tile| {
+                let (raster, of_tile) = self.mosaic.read(self.in_mosaic(tile), &|_| ())?;
+                merge(&mut tallies.lock().unwrap_or_else(PoisonError::into_inner), of_tile);
+                Ok(raster.metres)
+            };
+            water.take(&gather(band, &tiles, self.is_parallel(), load, &|_| ())?);
+            let tallies = tallies.lock().unwrap_or_else(PoisonError::into_inner);
+            if tallies.len() == self.mosaic.count() && !tallies.values().any(|tally| tally.grain.may_have()) {
+                return Ok(None);
+            }
+            from += height;
+            progress(from as f64 / rows as f64);
+        }
+        // What was read of files that changed meanwhile is of neither state.
+        self.mosaic.check()?;
+        let steps = self.steps_of(&tallies.into_inner().unwrap_or_else(PoisonError::into_inner));
+        Ok(steps.map(|steps| Smoothing { steps, water: water.finish() }))
+    }
+
+    fn steps_of(&self, tallies: &Tallies) -> Option<Steps> {
+        let tallied = self.mosaic.tallied(tallies);
+        Steps::of(self.mosaic.count(), tallies.keys().copied().zip(&tallied))
+    }
+
+    /// All samples, counted as windows are.
+    fn whole(&self) -> Window {
+        Window { first: [0, 0], ..self.window }
+    }
+
+    /// Where a window lies in the mosaic.
+    fn in_mosaic(&self, window: Window) -> Window {
+        Window { first: [0, 1].map(|i| self.window.first[i] + window.first[i]), ..window }
     }
 
     /// The error for files without any elevation among `samples`; a unit that would make elevations of their numbers is
@@ -91,8 +194,7 @@ impl Tiles for Part {
     }
 
     fn read(&self, window: Window) -> Result<Vec<f32>> {
-        let first = [0, 1].map(|i| self.window.first[i] + window.first[i]);
-        let (raster, tallies) = self.mosaic.read(Window { first, ..window }, &|_| ())?;
+        let (raster, tallies) = self.mosaic.read(self.in_mosaic(window), &|_| ())?;
         self.counted().add(window.first, tallies);
         Ok(raster.metres)
     }

@@ -1,7 +1,7 @@
 //! The whole way from files to metres.
 //!
-//! Cost: one pass over the samples that the drawn part needs, and the warp where there is one; nothing yet where they
-//! stay in their files. Memory of a held DEM at most 12 1/8 bytes a sample: the rasters under way are gone before normals
+//! Cost: one pass over the samples that the drawn part needs, and the warp where there is one; where they stay in their files
+//! nothing yet, or a look for steps. Memory of a held DEM at most 12 1/8 bytes a sample: the rasters under way are gone before normals
 //! are computed.
 
 use std::path::{Path, PathBuf};
@@ -13,8 +13,11 @@ use super::limits::are_held;
 use super::mosaic::Mosaic;
 use super::part::Part;
 use super::raster::{FILL_REACH, Raster};
+use super::smoothing::{Smoothed, Smoothing};
 use super::target::Target;
 use crate::dem::filed::exaggerate;
+use crate::dem::focal::Worked;
+use crate::dem::scale::Scale;
 use crate::dem::{Dem, Georeference, History, Tiles};
 use crate::error::{Error, Message, Result, Setting};
 use crate::geo::info::name_of;
@@ -23,6 +26,8 @@ use crate::message;
 
 /// Largest exaggeration: above it the highest mountain stands higher than the Earth is wide.
 const MAX_EXAGGERATION: f64 = 1000.0;
+/// Largest scale of smoothing, in cells.
+const MOST_CELLS: f64 = 64.0;
 /// Sound cell sizes, metres: from a millimetre to a thousand kilometres.
 const CELLS: std::ops::RangeInclusive<f64> = 1e-3..=1e6;
 
@@ -46,6 +51,7 @@ impl Reading {
         let mosaic = Mosaic::open(paths, options, &mut history)?;
         let target = Target::of(&mosaic.grid, mosaic.path(), options, &mut history)?;
         let held = are_held(&mosaic, &target, options)?;
+        options.generalise.map_or(Ok(()), |metres| check_scale(metres, &target.grid))?;
         Ok(Self { mosaic, target, history, options: options.clone(), held })
     }
 
@@ -86,23 +92,25 @@ impl Reading {
         let Self { mosaic, target: Target { grid, window, warps }, mut history, options, held } = self;
         let label = mosaic.label();
         let georeference = Georeference::new(mosaic.grid.crs.clone(), grid.crs.clone(), Arc::new(Proj));
-        let part = Part::new(mosaic, window);
-        let heights = match held {
-            true => Some(hold(&part, warps.then_some(&grid), &options, &mut history, progress)?),
-            false => None,
-        };
+        let part = Arc::new(Part::new(mosaic, window, options.keep_steps));
         let metres = grid.crs.metres_per_unit().unwrap_or(1.0);
+        let (cell, origin) = (grid.cell() * metres, grid.sample(0.0, 0.0) * metres);
+        let scale = options.generalise.map(|metres| Scale { metres, cell });
+        let dem = match held {
+            true => {
+                let heights = hold(&part, warps.then_some(&grid), scale, &options, &mut history, progress)?;
+                Dem::from_heights(grid.columns, cell, origin, heights)
+            }
+            false => {
+                part.look(&options.cache, &|done| progress(Stage::Look, done))?;
+                tell(&part, scale, &mut history);
+                let budget = usize::try_from(options.memory).unwrap_or(usize::MAX);
+                Dem::from_tiles(filed(&part, scale, budget), cell, origin, options.exaggeration, budget)
+            }
+        };
         if metres != 1.0 {
             history.convert(format!("coordinates x {metres} to metres ({})", grid.crs.units()));
         }
-        let (cell, origin) = (grid.cell() * metres, grid.sample(0.0, 0.0) * metres);
-        let dem = match heights {
-            Some(heights) => Dem::from_heights(grid.columns, cell, origin, heights),
-            None => {
-                let budget = usize::try_from(options.memory).unwrap_or(usize::MAX);
-                Dem::from_tiles(Arc::new(part), cell, origin, options.exaggeration, budget)
-            }
-        };
         Ok(dem.with_source(georeference, history).with_label(label))
     }
 }
@@ -112,12 +120,14 @@ impl Reading {
 fn hold(
     part: &Part,
     warped: Option<&Grid>,
+    scale: Option<Scale>,
     options: &ReadOptions,
     history: &mut History,
     progress: &dyn Fn(Stage, f64),
 ) -> Result<Vec<f32>> {
     let mut raster = part.raster(&|done| progress(Stage::Read, done))?;
     part.assumed().into_iter().for_each(|clause| history.assume(clause));
+    tell(part, scale, history);
     if let Some(grid) = warped {
         let mut onto = Raster::void(grid.clone())?;
         onto.lay(&raster, &|done| progress(Stage::Warp, done))?;
@@ -128,12 +138,36 @@ fn hold(
         raster.fill(&|done| progress(Stage::Fill, done))?;
         history.convert(filled(before, raster.voids()));
     }
-    let mut metres = raster.metres;
+    let (whole, mut metres) = (raster.grid.whole(), raster.metres);
     if metres.iter().all(|height| height.is_nan()) {
         return Err(part.void(metres.len() as u64));
     }
+    scale.iter().for_each(|scale| scale.smooth(&mut metres, whole, true));
     exaggerate(&mut metres, options.exaggeration);
     Ok(metres)
+}
+
+/// The samples of `part` as they are read from its files and worked on.
+fn filed(part: &Arc<Part>, scale: Option<Scale>, budget: usize) -> Arc<dyn Tiles> {
+    let mut tiles: Arc<dyn Tiles> = part.clone();
+    if let Some(smoothing) = part.smoothing().cloned() {
+        tiles = Arc::new(Worked::new(tiles, Smoothed { part: part.clone(), smoothing }, budget));
+    }
+    if let Some(scale) = scale {
+        tiles = Arc::new(Worked::new(tiles, scale, budget));
+    }
+    tiles
+}
+
+/// What is smoothed, in words.
+fn tell(part: &Part, scale: Option<Scale>, history: &mut History) {
+    if let Some(Smoothing { steps, .. }) = part.smoothing() {
+        history.convert(steps.words());
+        history.smooth(steps.metres().to_vec());
+    }
+    if let Some(Scale { metres, .. }) = scale {
+        history.convert(message![format!("smoothed at a scale of {metres} m ("), Setting::Generalise, ")"]);
+    }
 }
 
 /// What filling did, in words.
@@ -141,6 +175,24 @@ fn filled(before: usize, after: usize) -> Message {
     let filled = format!("{} voids filled from up to {FILL_REACH} samples away (", before - after);
     let left = if after > 0 { format!(", {after} farther away stay holes") } else { String::new() };
     message![filled, Setting::FillVoids, ")", left]
+}
+
+/// A scale that is more than a cell, and not so many that the work grows without end.
+fn check_scale(metres: f64, grid: &Grid) -> Result<()> {
+    let cell = grid.cell() * grid.crs.metres_per_unit().unwrap_or(1.0);
+    let [least, most] = [cell.max_element(), cell.min_element() * MOST_CELLS];
+    if (least..=most).contains(&metres) {
+        return Ok(());
+    }
+    let (least, most) = ((least * 1e3).ceil() / 1e3, (most * 1e3).floor() / 1e3);
+    let what = format!("{metres} m is no scale to smooth cells of {} x {} m at", cell.x, cell.y);
+    let remedy = match metres < least {
+        true => message![format!("give {least} to {most} metres, or leave it out: nothing is finer than a cell")],
+        false => {
+            message![format!("give {least} to {most} metres, or larger cells with "), Setting::Resample.at(metres)]
+        }
+    };
+    Err(Error::setting(Setting::Generalise, what, remedy))
 }
 
 fn check_options(options: &ReadOptions) -> Result<()> {
