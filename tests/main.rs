@@ -54,6 +54,7 @@ mod seams;
 mod seen;
 mod shell;
 mod silhouettes;
+mod steps;
 mod times;
 mod tolerances;
 mod trial;

@@ -7,7 +7,7 @@
 //! terraces at its shores ([`WIDER`]). The floor of a rounded hollow is not, whatever step and slope: next to one with the
 //! section of a parabola lies a terrace of a fifth of its width at least. Widths are measured along rows alone, where the
 //! next terrace is the next run. Beyond the DEM and in voids nothing is known, that is no evidence of either kind. The sea, at
-//! exactly 0, is held to the same; where none of its rows ends at a shore it is believed.
+//! exactly 0, may have more of its shore below; where none of its rows ends at a shore it is believed.
 //!
 //! Cost: some nanoseconds a sample, more where runs are short. Memory: 16 bytes a run of the regions that are open at a row,
 //! and 8 a run of water. Not handled: lakes as wide as the DEM, water that no one made level, rivers: they fall, and the
@@ -19,6 +19,8 @@ use crate::dem::Window;
 const LEAST: u64 = 64;
 /// One in so many edges of its shore may lead down.
 const OUTLETS: u64 = 16;
+/// The same of the sea: mud and noise lie below 0 along its shores. On a slope it is every other one.
+const MUD: u64 = 4;
 /// How many times as wide as the next terrace a row of water is.
 const WIDER: u32 = 8;
 /// No region, no run.
@@ -186,8 +188,9 @@ impl WaterBuilder {
 
 impl Region {
     fn is_water(&self) -> bool {
-        let level = self.samples >= LEAST && self.down * OUTLETS <= self.shore;
-        let wide = if self.ends == 0 { self.height == 0.0 } else { 2 * self.steep >= self.ends };
+        let is_sea = self.height == 0.0;
+        let level = self.samples >= LEAST && self.down * if is_sea { MUD } else { OUTLETS } <= self.shore;
+        let wide = if self.ends == 0 { is_sea } else { 2 * self.steep >= self.ends };
         level && wide
     }
 }
@@ -347,14 +350,14 @@ mod tests {
 
     #[test]
     fn lakes_are_water_to_their_last_sample() {
-        // A bowl cut into the slope holds a lake with an island and an outlet.
-        let land = |x: f64, y: f64| slope(x, y).min(470.0 + (x * x + y * y) / 90.0);
+        // A bowl holds a lake with an island and an outlet.
+        let bowl = |x: f64, y: f64| 480.0 + ((x * x + y * y).sqrt() - 30.0).max(0.0) * 0.7;
         let island = |x: f64, y: f64| (x - 9.0).abs() < 5.0 && (y + 4.0).abs() < 5.0;
-        let outlet = |x: f64, y: f64| (x - 1.0).abs() < 1.0 && y > 0.0;
-        let lake = |x: f64, y: f64| match land(x, y) {
+        let outlet = |x: f64, y: f64| x == 1.0 && y > 30.0;
+        let lake = |x: f64, y: f64| match bowl(x, y) {
             _ if island(x, y) => 490.0,
-            _ if outlet(x, y) => 480.0 - (y - 20.0).max(0.0) / 9.0,
-            height => height.max(480.0),
+            _ if outlet(x, y) => 480.0 - (y - 30.0) / 9.0,
+            height => height,
         };
         let water = water_of(lake);
         let expected: Vec<_> = (0..SIDE * SIDE)
@@ -383,6 +386,9 @@ mod tests {
         assert_eq!(count(&water_of(coast)), 130 * SIDE);
         assert_eq!(count(&water_of(|x, y| coast(x, y) + 5.0)), 0, "a plain may be a slope");
         assert_eq!(count(&water_of(|_, y| y * 0.1)), 0, "a slope through 0");
+        // Mud along the coast.
+        let mud = |x: f64, y: f64| if y == 30.0 && x % 8.0 == 0.0 { -1.0 } else { coast(x, y) };
+        assert_eq!(count(&water_of(mud)), 130 * SIDE);
         let shore = |x: f64, _: f64| if x < 30.0 { 0.0 } else { (x - 29.0) * 0.7 };
         assert_eq!(count(&water_of(shore)), 130 * SIDE);
     }
