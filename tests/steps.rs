@@ -18,6 +18,7 @@ use hachure::geo::{ReadOptions, Stage, read, read_all};
 use hachure::plan::{Border, Detail, Method, Plan};
 use hachure::surface::Surface;
 use tempfile::TempDir;
+use xxhash_rust::xxh3::xxh3_64;
 
 use crate::common::{gpu, words};
 use crate::frames::Planned;
@@ -25,6 +26,8 @@ use crate::scenes::look;
 
 /// Less memory than any tile: samples stay in their file.
 const FILED: u64 = 1 << 11;
+/// Less than the largest DEM here needs, and enough for its tiles.
+const TILES: u64 = 12 << 20;
 const UTM: u32 = 32632;
 /// What says that a sample has no elevation.
 const VOID: f64 = -9999.0;
@@ -94,9 +97,9 @@ fn options(memory: u64) -> ReadOptions {
     ReadOptions { memory, ..Default::default() }
 }
 
-/// The same files held and filed.
-fn both(paths: &[PathBuf], options: &ReadOptions) -> [Dem; 2] {
-    let dems = [1 << 30, FILED]
+/// The same files held, and filed within `memory`.
+fn both(paths: &[PathBuf], options: &ReadOptions, memory: u64) -> [Dem; 2] {
+    let dems = [1 << 30, memory]
         .map(|memory| read_all(paths, &ReadOptions { memory, ..options.clone() }, &|_, _| ()).expect("a DEM"));
     assert_eq!([dems[0].is_filed(), dems[1].is_filed()], [false, true]);
     dems
@@ -161,8 +164,8 @@ fn stairs_are_smoothed_within_half_a_step_and_water_stays_flat() {
 fn samples_that_stay_in_their_files_are_the_held_ones() {
     let dir = folder();
     // Several tiles with their halos.
-    let path = whole_metres(&dir, [1100, 1000]);
-    let [held, filed] = both(slice::from_ref(&path), &ReadOptions { exaggeration: 1.5, ..Default::default() });
+    let path = whole_metres(&dir, [1090, 1080]);
+    let [held, filed] = both(slice::from_ref(&path), &ReadOptions { exaggeration: 1.5, ..Default::default() }, TILES);
     assert!(bits(&held) == bits(&filed), "other heights");
     assert_eq!(words(held.history().converted()), words(filed.history().converted()));
     assert_eq!((held.range(), held.voids(), held.patches()), (filed.range(), filed.voids(), filed.patches()));
@@ -183,34 +186,52 @@ fn samples_that_stay_in_their_files_are_the_held_ones() {
 }
 
 #[test]
-fn a_look_for_steps_is_taken_once_and_kept() {
+fn what_is_found_and_smoothed_is_kept() {
     let dir = folder();
     let cache = Cache::in_folder(dir.path().join("cache"));
-    let looks = |path: &Path| {
-        let looks = Cell::new(0);
-        let options = ReadOptions { cache: cache.clone(), ..options(FILED) };
-        let heard = |stage, _| looks.set(looks.get() + u32::from(stage == Stage::Look));
+    // Which work was done, and the heights.
+    let read = |path: &Path, memory: u64| {
+        let stages = Cell::new((false, false));
+        let options = ReadOptions { cache: cache.clone(), ..options(memory) };
+        let heard = |stage, _| {
+            let (look, smooth) = stages.get();
+            stages.set((look || stage == Stage::Look, smooth || stage == Stage::Smooth));
+        };
         let dem = read_all(&[path.to_owned()], &options, &heard).expect("a DEM");
-        (looks.get() > 0, bits(&dem))
+        (stages.get(), bits(&dem))
     };
-    let kept = || -> Vec<PathBuf> {
-        let files = fs::read_dir(dir.path().join("cache")).map(|files| files.map(|file| file.expect("a file").path()));
-        files.map_or_else(|_| Vec::new(), |files| files.collect())
+    let kept = |kind: &str| -> Vec<PathBuf> {
+        let Ok(files) = fs::read_dir(dir.path().join("cache")) else { return Vec::new() };
+        let files = files.map(|file| file.expect("a file").path());
+        files.filter(|file| file.file_name().is_some_and(|name| name.to_string_lossy().starts_with(kind))).collect()
     };
     let float = written(dir.path().join("float.tif"), [256, 256], metres(0.0, 0.0), |c, r| land(c, r) as f32);
-    assert!(!looks(&float).0 && kept().is_empty(), "a look for nothing");
+    assert_eq!(read(&float, FILED).0, (false, false), "a look for nothing");
+    assert!(kept("").is_empty());
 
     let path = whole_metres(&dir, [256, 256]);
-    let (looked, first) = looks(&path);
-    let [file] = &kept()[..] else { panic!("{:?}", kept()) };
-    assert!(looked && file.file_name().is_some_and(|name| name.to_string_lossy().starts_with("steps-")));
-    let whole = fs::read(file).expect("a file");
-    assert!(looks(&path) == (false, first.clone()), "a second look, or other heights");
-    let mut damaged = whole.clone();
-    damaged[40] ^= 1;
-    fs::write(file, damaged).expect("a file");
-    assert!(looks(&path) == (true, first), "damage goes unnoticed");
-    assert!(fs::read(file).expect("a file") == whole);
+    let (done, first) = read(&path, FILED);
+    assert!(done == (true, true) && first == read(&path, 1 << 30).1);
+    let files = ["steps-", "smooth-"].map(|kind| kept(kind).pop().expect("a file"));
+    let whole = files.each_ref().map(|file| fs::read(file).expect("a file"));
+    assert!(read(&path, FILED) == ((false, false), first.clone()), "a second look, or other heights");
+    // A byte of the steps; of the hashes of smooth tiles; of a tile, which shows when it is read.
+    let hashes = 256 * 256 * 4 + 3;
+    for (k, byte, expected) in [(0, 40, (true, false)), (1, hashes, (false, true)), (1, 5001, (false, false))] {
+        let mut damaged = whole[k].clone();
+        damaged[byte] ^= 1;
+        fs::write(&files[k], damaged).expect("a file");
+        assert!(read(&path, FILED) == (expected, first.clone()), "damage goes unnoticed");
+        assert!((fs::read(&files[k]).expect("a file") == whole[k]) == (expected != (false, false)));
+    }
+    // What is kept is what is read: other heights that prove themselves are taken.
+    let (mut other, tile) = (whole[1].clone(), 256 * 256 * 4);
+    other[..4].copy_from_slice(&777.0_f32.to_le_bytes());
+    let hash = xxh3_64(&other[..tile]).to_le_bytes();
+    other[tile..tile + 8].copy_from_slice(&hash);
+    other[tile + 8..tile + 16].copy_from_slice(&xxh3_64(&hash).to_le_bytes());
+    fs::write(&files[1], other).expect("a file");
+    assert_eq!(read(&path, FILED).1[0], 777.0_f32.to_bits(), "what is kept is not read");
 }
 
 #[test]
@@ -238,7 +259,7 @@ fn each_file_has_its_own_step() {
         0.0 => land(c, r),
         step => stepped(step)(c, r),
     };
-    let [held, filed] = both(&paths, &ReadOptions::default());
+    let [held, filed] = both(&paths, &ReadOptions::default(), FILED);
     assert_eq!(beyond(&held, |c, r| step(c, r) / 2.0, numbers), None);
     assert!(beyond(&held, |c, r| step(c, r) / 5.0, numbers).is_some(), "nothing was smoothed");
     assert!(bits(&held) == bits(&filed));
@@ -274,7 +295,7 @@ fn generalised_heights_are_the_same_from_files_and_from_memory() {
         _ => rough(c, r),
     });
     let smoothed = |metres| ReadOptions { generalise: Some(metres), exaggeration: 2.0, ..Default::default() };
-    let [held, filed] = both(slice::from_ref(&path), &smoothed(40.0));
+    let [held, filed] = both(slice::from_ref(&path), &smoothed(40.0), FILED);
     assert!(bits(&held) == bits(&filed), "other heights");
     assert_eq!(held.voids(), filed.voids());
     assert_eq!(words(held.history().converted()), ["smoothed at a scale of 40 m (--generalise)"]);
@@ -284,7 +305,7 @@ fn generalised_heights_are_the_same_from_files_and_from_memory() {
     let [one, other] = stamps.map(|dem| dem.expect("a DEM").stamp());
     assert!(one.is_some() && one != other && other == filed.stamp());
 
-    for (metres, remedy) in [(9.0, "give 10 to 640 metres"), (1e4, "larger cells with resample")] {
+    for (metres, remedy) in [(24.0, "give 25 to 2560 metres"), (2561.0, "larger cells with resample")] {
         match read(&path, &smoothed(metres)) {
             Err(error @ Error::Setting { .. }) => assert!(error.to_string().contains(remedy), "{error}"),
             other => panic!("{metres} m: {other:?}"),

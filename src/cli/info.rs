@@ -26,7 +26,7 @@ pub struct InfoArguments {
 /// As [`geo::info()`].
 pub fn run(arguments: &InfoArguments, talk: &Talk) -> Result<()> {
     let terrain = &arguments.terrain;
-    let options = terrain.options(1.0, Cache::of_user());
+    let options = terrain.options(1.0, Cache::none());
     let info = geo::info(&terrain.dems, &options, &|stage, share| talk.progress(words(stage), share))?;
     talk.answer(&info.told(told))
 }

@@ -120,5 +120,6 @@ pub fn words(stage: Stage) -> &'static str {
         Stage::Warp => "warping it to metres",
         Stage::Fill => "filling voids",
         Stage::Look => "looking for steps, once for this file",
+        Stage::Smooth => "smoothing heights, once for this file",
     }
 }

@@ -13,6 +13,7 @@ mod overviews;
 mod samples;
 pub(crate) mod scale;
 pub mod smoothest;
+mod stored;
 mod survey;
 mod systems;
 mod tiles;

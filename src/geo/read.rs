@@ -36,9 +36,10 @@ pub struct ReadOptions {
     /// Leave heights at the multiples of a step that the files hold, stairs and all. Default false: the smoothest surface
     /// within half a step of them is drawn.
     pub keep_steps: bool,
-    /// Smooth at a scale of so many metres, from one cell to 64. Default `None`: not.
+    /// Smooth at a scale of so many metres, from 2.5 cells to 256. Default `None`: not.
     pub generalise: Option<f64>,
-    /// Where what was found of steps is kept of samples that stay in their files. Default none.
+    /// Where smoothed heights are kept of samples that stay in their files, and what was found of steps. Default none: they
+    /// are smoothed as they are asked for.
     pub cache: Cache,
     /// Open files on a network, and VRTs that refer to files outside their folder. Default false.
     pub allow_remote: bool,
@@ -79,6 +80,8 @@ pub enum Stage {
     Fill,
     /// All samples are looked at for steps, where they stay in their files.
     Look,
+    /// They are smoothed, where they stay in their files.
+    Smooth,
 }
 
 /// Reads `path` as a DEM of at least 2 x 2 samples, metres, north-up. See [`read_all`].

@@ -93,6 +93,11 @@ impl Part {
         self.smoothing.get()?.as_ref()
     }
 
+    /// What it is read from, in a few words.
+    pub fn label(&self) -> String {
+        self.mosaic.label()
+    }
+
     /// Half the step of each sample of `window`, by the file that gives it, metres.
     pub fn halves(&self, steps: &Steps, window: Window) -> Result<Vec<f32>> {
         let mut halves = vec![0.0; window.samples() as usize];

@@ -26,8 +26,8 @@ use crate::message;
 
 /// Largest exaggeration: above it the highest mountain stands higher than the Earth is wide.
 const MAX_EXAGGERATION: f64 = 1000.0;
-/// Largest scale of smoothing, in cells.
-const MOST_CELLS: f64 = 64.0;
+/// Least and largest scale of smoothing, in cells: below it changes nothing, beyond it looks too far around.
+const SCALES: [f64; 2] = [2.5, 256.0];
 /// Sound cell sizes, metres: from a millimetre to a thousand kilometres.
 const CELLS: std::ops::RangeInclusive<f64> = 1e-3..=1e6;
 
@@ -105,7 +105,8 @@ impl Reading {
                 part.look(&options.cache, &|done| progress(Stage::Look, done))?;
                 tell(&part, scale, &mut history);
                 let budget = usize::try_from(options.memory).unwrap_or(usize::MAX);
-                Dem::from_tiles(filed(&part, scale, budget), cell, origin, options.exaggeration, budget)
+                let tiles = filed(&part, scale, &options, &|done| progress(Stage::Smooth, done))?;
+                Dem::from_tiles(tiles, cell, origin, options.exaggeration, budget)
             }
         };
         if metres != 1.0 {
@@ -147,16 +148,27 @@ fn hold(
     Ok(metres)
 }
 
-/// The samples of `part` as they are read from its files and worked on.
-fn filed(part: &Arc<Part>, scale: Option<Scale>, budget: usize) -> Arc<dyn Tiles> {
-    let mut tiles: Arc<dyn Tiles> = part.clone();
-    if let Some(smoothing) = part.smoothing().cloned() {
-        tiles = Arc::new(Worked::new(tiles, Smoothed { part: part.clone(), smoothing }, budget));
-    }
-    if let Some(scale) = scale {
-        tiles = Arc::new(Worked::new(tiles, scale, budget));
-    }
-    tiles
+/// The samples of `part` as they are read from its files and worked on; what comes of all work is kept in the cache.
+fn filed(
+    part: &Arc<Part>,
+    scale: Option<Scale>,
+    options: &ReadOptions,
+    progress: &dyn Fn(f64),
+) -> Result<Arc<dyn Tiles>> {
+    let budget = usize::try_from(options.memory).unwrap_or(usize::MAX);
+    let smoothed = part.smoothing().cloned().map(|smoothing| {
+        let part = part.clone();
+        Worked::new(part.clone(), Smoothed { part, smoothing }, budget)
+    });
+    let (cache, label) = (&options.cache, part.label());
+    Ok(match (smoothed, scale) {
+        (None, None) => part.clone(),
+        (Some(smoothed), None) => Arc::new(smoothed.kept_in(cache, label, progress)?),
+        (None, Some(scale)) => Arc::new(Worked::new(part.clone(), scale, budget).kept_in(cache, label, progress)?),
+        (Some(smoothed), Some(scale)) => {
+            Arc::new(Worked::new(Arc::new(smoothed), scale, budget).kept_in(cache, label, progress)?)
+        }
+    })
 }
 
 /// What is smoothed, in words.
@@ -177,19 +189,19 @@ fn filled(before: usize, after: usize) -> Message {
     message![filled, Setting::FillVoids, ")", left]
 }
 
-/// A scale that is more than a cell, and not so many that the work grows without end.
+/// A scale at which something is smoothed, and not so many cells that the work grows without end.
 fn check_scale(metres: f64, grid: &Grid) -> Result<()> {
     let cell = grid.cell() * grid.crs.metres_per_unit().unwrap_or(1.0);
-    let [least, most] = [cell.max_element(), cell.min_element() * MOST_CELLS];
+    let [least, most] = SCALES.map(|cells| cell.min_element() * cells);
     if (least..=most).contains(&metres) {
         return Ok(());
     }
     let (least, most) = ((least * 1e3).ceil() / 1e3, (most * 1e3).floor() / 1e3);
     let what = format!("{metres} m is no scale to smooth cells of {} x {} m at", cell.x, cell.y);
     let remedy = match metres < least {
-        true => message![format!("give {least} to {most} metres, or leave it out: nothing is finer than a cell")],
+        true => message![format!("give {least} to {most} metres, or leave it out: so little changes nothing")],
         false => {
-            message![format!("give {least} to {most} metres, or larger cells with "), Setting::Resample.at(metres)]
+            message![format!("give {least} to {most} metres, or larger cells with "), Setting::Resample.with_value()]
         }
     };
     Err(Error::setting(Setting::Generalise, what, remedy))
