@@ -295,7 +295,7 @@ fn generalised_heights_are_the_same_from_files_and_from_memory() {
         _ => rough(c, r),
     });
     let smoothed = |metres| ReadOptions { generalise: Some(metres), exaggeration: 2.0, ..Default::default() };
-    let [held, filed] = both(slice::from_ref(&path), &smoothed(40.0), FILED);
+    let [held, filed] = both(slice::from_ref(&path), &smoothed(40.0), 3 << 20);
     assert!(bits(&held) == bits(&filed), "other heights");
     assert_eq!(held.voids(), filed.voids());
     assert_eq!(words(held.history().converted()), ["smoothed at a scale of 40 m (--generalise)"]);
