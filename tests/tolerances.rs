@@ -144,6 +144,11 @@ pub const FILED_MIB_BESIDE: u64 = 80;
 /// Example: 18.8 million samples take 244 MB, and 113 MB beside them while they are read and warped.
 pub const READ_BYTES_BESIDE: f64 = 6.0;
 
+/// The same while heights become the smoothest within their steps: half a step a sample, and the surfaces under way.
+///
+/// Example: of 19.4 million samples that are read 18.8 million are left, and 281 MB are taken beside those and their normals.
+pub const SMOOTH_BYTES_BESIDE: f64 = 16.0;
+
 /// Least share of ink within a pixel between two samplings of the same ground, drawn from afar.
 ///
 /// Example: of 20 000 inked pixels 400 may have no partner: bits of ridges that one grid of 30 m has and another has not.
@@ -276,3 +281,34 @@ pub const REPROJECTED_PX: f64 = 1e-5;
 ///
 /// Example: seen with 330 px per unit of tangent from 1 000 m, 2 px are 6 m.
 pub const CHAIN_OFF_SURFACE_PX: f64 = 2.0;
+
+/// How far the smoothest surface within the steps of a plane may lie from it, as a share of a step, away from the DEM's
+/// border: there half a step is left open.
+///
+/// Example: a plane rounded to whole metres comes back to 10 cm.
+pub const PLANE_OF_STEPS: f64 = 0.1;
+
+/// Least and most ink of hills without their steps, as a share of that of the hills before they were rounded.
+///
+/// Example: of 900 px at least 720 and at most 1 125.
+pub const STEPLESS_INK: [f64; 2] = [0.8, 1.25];
+
+/// Least F, within a pixel, of the ink of the one against that of the other.
+///
+/// Example: 900 px each, of which 135 lie elsewhere.
+pub const STEPLESS_F: f64 = 0.85;
+
+/// Least share of its height that a crest keeps when heights are generalised.
+///
+/// Example: of a roof of 100 m at least 98 m.
+pub const CREST: f64 = 0.98;
+
+/// Most of the energy of noise and trees that may be left, as a share of it.
+///
+/// Example: trees and noise of 1 m, root mean square, leave 0.14 m.
+pub const NOISE_LEFT: f64 = 0.02;
+
+/// How far a generalised plane may lie from itself, m: heights of 1 000 m are stored to 0.00006 m.
+///
+/// Example: a plane at 1 000 m comes back to 1 mm.
+pub const PLANE_M: f64 = 1e-3;

@@ -3,12 +3,12 @@
 //! Method: `facets`. A plane is fitted to every 4 x 4 blocks of a fifth of the scale each (facet model: Haralick,
 //! Watson 1981), and a sample gets the mean of the sixteen planes about it, each weighted by how near it is and by a
 //! power of its variance, so that planes on one side of a crest win over those across it (Kuwahara et al. 1976;
-//! Papari, Petkov, Campisi 2007). That is done twice: what stands out of the first surface by more than [`STANDS_OUT`]
+//! Papari, Petkov, Campisi 2007). That is done twice: what stands out of the first surface by more than a twenty-fifth
 //! of the scale is cut to that, and the second surface, of smoother weights, is that of the rest.
 //!
-//! Planes stay planes, crests keep their height: a roof all of it, the top of a cone loses a tenth of the scale. Blocks
-//! are counted from the DEM's first sample and sums are taken in one order: a window with its [`halo`] has the bits of
-//! the whole, on any number of threads. Cost: some 300 ns of one core a sample, at any scale.
+//! Planes stay planes and crests keep their height: a roof nearly all of it, while the top of a cone loses its slope times
+//! a fifth of the scale. Blocks are counted from the DEM's first sample and sums are taken in one order: a window with its
+//! [`halo`] has the bits of the whole, on any number of threads. Cost: some 300 ns of one core a sample, at any scale.
 //!
 //! Not handled: scales below two and a half cells change nothing. Voids stay voids, and what lies outside counts for nothing.
 

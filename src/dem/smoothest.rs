@@ -27,9 +27,22 @@ use levels::Level;
 /// own edge), the bits inside are those of the whole.
 pub const HALO: usize = 192;
 
-/// Sweeps on the samples, on blocks of 2 x 2, on blocks of 4 x 4. Each reaches two of them, a finer level starts from the
-/// blocks around, and the guess reaches as far as contours are looked for: 32 + 3 + 40 + 6 + 48 + 3 + 41 samples.
-const SWEEPS: [usize; 3] = [16, 10, 6];
+/// Sweeps on the samples, on blocks of 2 x 2, on blocks of 4 x 4.
+const SWEEPS: [usize; 3] = [20, 14, 6];
+
+const _: () = assert!(reach() <= HALO);
+
+/// Samples that a smoothed height depends on to each side: a sweep reaches two blocks of its level, and where a level starts
+/// from blocks of 2 x 2 of its own, those about one of them reach three.
+const fn reach() -> usize {
+    let (mut samples, mut level) = (contours::REACH + 1, 0);
+    while level < SWEEPS.len() {
+        let start = if level + 1 < SWEEPS.len() { 3 } else { 0 };
+        samples += (2 * SWEEPS[level] + start) << level;
+        level += 1;
+    }
+    samples
+}
 
 /// Replaces `heights` (metres, row-major, NaN at voids) of a window by those of the smoothest surface that lies within
 /// `half` (metres, same shape; 0: exact, stays as it is) of each. `window` counts in samples of the DEM; `parallel` says
@@ -42,22 +55,29 @@ pub fn smoothest(heights: &mut [f32], half: &[f32], window: Window, parallel: bo
     if half.iter().all(|half| *half == 0.0) {
         return;
     }
-    let mut surface = contours::between(heights, half, window.size[0], parallel);
-    let mut levels = vec![Level::finest(heights, half, window)];
-    for coarser in 1..SWEEPS.len() {
-        let finer = &levels[coarser - 1];
-        surface = finer.halved(&surface);
-        levels.push(finer.coarser());
-    }
-    for (at, level) in levels.iter().enumerate().rev() {
-        if let Some(coarser) = levels.get(at + 1) {
-            surface = level.within(coarser.refined(&surface, level.window));
-        }
-        surface = relax::relaxed(level, surface, SWEEPS[at], parallel);
-    }
+    let surface = surface(heights, half, window, parallel);
     for ((height, half), smooth) in heights.iter_mut().zip(half).zip(surface) {
         *height = inside(smooth, *height, *half);
     }
+}
+
+/// The smoothest surface but for rounding, from the coarsest level to the finest.
+fn surface(heights: &[f32], half: &[f32], window: Window, parallel: bool) -> Vec<f32> {
+    let mut surface = contours::between(heights, half, window.size[0], parallel);
+    let mut levels = vec![Level::finest(heights, half, window)];
+    while let Some(finer) = levels.last().filter(|_| levels.len() < SWEEPS.len()) {
+        surface = finer.halved(&surface);
+        levels.push(finer.coarser());
+    }
+    let mut coarser: Option<Level> = None;
+    while let Some(level) = levels.pop() {
+        if let Some(coarser) = coarser {
+            surface = level.within(coarser.refined(&surface, level.window));
+        }
+        surface = relax::relaxed(&level, surface, SWEEPS[levels.len()], parallel);
+        coarser = Some(level);
+    }
+    surface
 }
 
 /// The number nearest to `height` that lies within `half` of `middle` exactly, and not only as rounded.

@@ -139,7 +139,7 @@ fn place(at: usize, first: usize, side: usize) -> (usize, usize) {
 fn nearness(side: usize) -> Vec<[f64; SIDE]> {
     let near = |within: usize, k: usize| {
         let off = (within as f64 + 0.5) / side as f64 - (k as f64 - 1.0);
-        (1.0 - (off / 2.0).powi(2)).powi(2)
+        1.0 - (off / 2.0).powi(2)
     };
     (0..side).map(|within| std::array::from_fn(|k| near(within, k))).collect()
 }

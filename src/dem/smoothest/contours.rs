@@ -11,7 +11,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 /// Samples along a line in which changes are looked for.
-const REACH: usize = 40;
+pub const REACH: usize = 32;
 /// Weight of a line that rises, or falls, to both sides.
 const SAME: f32 = 0.1;
 /// Columns and rows of a tile.

@@ -2,7 +2,7 @@
 //!
 //! Cost: one pass over the samples that the drawn part needs, and the warp where there is one; where they stay in their files
 //! nothing yet, or a look for steps. Memory of a held DEM at most 12 1/8 bytes a sample: the rasters under way are gone before normals
-//! are computed.
+//! are computed; some 24 while heights become the smoothest within their steps.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
