@@ -86,6 +86,11 @@ fn read_all(path: &Path) -> Dem {
     read(path, &ReadOptions::default()).unwrap()
 }
 
+/// Numbers as they stand in the file: multiples of a step, too.
+fn with_steps() -> ReadOptions {
+    ReadOptions { keep_steps: true, ..Default::default() }
+}
+
 /// Whether each sample holds an elevation, row-major.
 fn valid(dem: &Dem) -> Vec<bool> {
     (0..dem.rows()).flat_map(|r| (0..dem.columns()).map(move |c| dem.height(c, r).is_some())).collect()
@@ -286,13 +291,20 @@ fn info_says_what_a_file_holds() {
     assert_eq!((told.columns, told.rows, told.crs.epsg(), told.voids), (500, 500, Some(32610), 0));
     assert_eq!(told.extent, [536_715.0, 4_180_515.0, 551_685.0, 4_195_485.0]);
     assert_eq!(told.cell, [30.0, 30.0]);
-    assert!(told.range[0] == 0.0 && (told.range[1] - 338.4).abs() < F32_METRES, "{told}");
+    // The file holds tenths of a metre.
+    assert_eq!(told.history.steps().len(), 1);
+    assert!((told.history.steps()[0] - 0.1).abs() < 1e-9, "{told}");
+    assert!(told.range[0].abs() <= 0.05 && (told.range[1] - 338.4).abs() <= 0.05 + F32_METRES, "{told}");
     let lines = told.to_string();
     let column = |line: &str| line.len() - line.split_once(' ').unwrap().1.trim_start().len();
     assert!(lines.lines().all(|line| column(line) == 11), "not aligned:\n{lines}");
-    for part in
-        ["GeoTIFF", "500 columns x 500 rows", "WGS 84 / UTM zone 10N (EPSG:32610)", "0.0 to 338.4 m", "0 (0.0 %)"]
-    {
+    for part in ["GeoTIFF", "500 columns x 500 rows", "WGS 84 / UTM zone 10N (EPSG:32610)", " to 338.", "0 (0.0 %)"] {
         assert!(lines.contains(part), "no {part:?}:\n{lines}");
     }
+    assert!(
+        lines.contains("\nconverted  heights are multiples of 0.1 m: drawn is the smoothest surface within 0.05 m")
+    );
+    let kept = info(&[path], &with_steps(), &|_, _| ()).unwrap();
+    assert!(kept.range[0] == 0.0 && (kept.range[1] - 338.4).abs() < F32_METRES, "{kept}");
+    assert!(kept.to_string().contains("0.0 to 338.4 m"), "{kept}");
 }

@@ -80,7 +80,7 @@ fn one<T: GdalType + Copy>(numbers: &[f64], stored: impl Fn(f64) -> T) -> Bands<
 
 fn folder() -> TempDir {
     // The first call takes drivers from GDAL; no other thread may be using it meanwhile.
-    let _ = read(Path::new(""), &ReadOptions::default());
+    let _ = read(Path::new(""), &with_steps());
     tempfile::tempdir().unwrap()
 }
 
@@ -97,9 +97,14 @@ fn assumed(paths: &[PathBuf], options: &ReadOptions) -> Vec<String> {
     words(held.history().assumed())
 }
 
+/// Numbers as they stand in the file: the land here is in whole metres, and what is looked for is not their stairs.
+fn with_steps() -> ReadOptions {
+    ReadOptions { keep_steps: true, ..Default::default() }
+}
+
 /// The only clause that is assumed of a file, with all `words`.
 fn doubt(path: &Path, words: &[&str]) -> String {
-    let clauses = assumed(&[path.to_owned()], &ReadOptions::default());
+    let clauses = assumed(&[path.to_owned()], &with_steps());
     assert_eq!(clauses.len(), 1, "{}: {clauses:?}", path.display());
     words.iter().for_each(|word| assert!(clauses[0].contains(word), "no {word:?}: {}", clauses[0]));
     clauses[0].clone()
@@ -109,7 +114,7 @@ fn doubt(path: &Path, words: &[&str]) -> String {
 fn cured(path: &Path, line: &str, flag: &str) -> Dem {
     let rest = line.split_once(flag).unwrap_or_else(|| panic!("no {flag}: {line}")).1;
     let value = rest.trim_start().split([' ', ')', ':', ';']).next().unwrap().trim_end_matches(',');
-    let mut options = ReadOptions::default();
+    let mut options = with_steps();
     match flag {
         "--nodata" => options.nodata = values::nodata(value).unwrap(),
         "--elevation-unit" => options.elevation_unit = Some(values::elevation_unit(value).unwrap()),

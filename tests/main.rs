@@ -58,6 +58,7 @@ mod shell;
 mod silhouettes;
 mod smoothest;
 mod stepless;
+mod steps;
 mod times;
 mod tolerances;
 mod trial;

@@ -117,7 +117,7 @@ fn line(Shown { name, kind, bytes, used, of }: &Shown, now: SystemTime) -> Strin
 }
 
 fn make(terrain: &TerrainArguments, cache: &Cache, talk: &Talk) -> Result<()> {
-    let dem = terrain.read(terrain.open(&terrain.dems, 1.0)?, talk)?;
+    let dem = terrain.read(terrain.open(&terrain.dems, 1.0, cache.clone())?, talk)?;
     let label = dem.label();
     if !dem.is_filed() {
         return talk

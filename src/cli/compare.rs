@@ -128,7 +128,7 @@ pub fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
     let views = || jobs.iter().flat_map(|job| &job.views);
     let names = views().flat_map(|view| sizes.iter().map(|size| scene_name(&view.name, *size, &sizes)));
     // Before anything is written: a report may replace none of the files that it is made of.
-    let open = |job: &Job| arguments.terrain.open(&job.files, arguments.exaggeration);
+    let open = |job: &Job| arguments.terrain.open(&job.files, arguments.exaggeration, Cache::none());
     let readings = jobs.iter().map(open).collect::<Result<Vec<_>>>()?;
     let inputs = readings.iter().flat_map(Reading::files).chain(arguments.views.as_deref());
     let pictures = names.flat_map(|name| comparison.picture_names(&name));

@@ -134,6 +134,7 @@ struct DemReport {
     cell_m: [f64; 2],
     extent_m: [f64; 4],
     voids: usize,
+    steps_m: Vec<f64>,
     converted: Vec<String>,
     assumed: Vec<String>,
 }
@@ -160,10 +161,10 @@ struct Drawn<'a> {
 pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     let plan = arguments.check()?;
     let started = Instant::now();
-    let reading = arguments.terrain.open(&arguments.terrain.dems, arguments.exaggeration)?;
+    let cache = arguments.cache.cache();
+    let reading = arguments.terrain.open(&arguments.terrain.dems, arguments.exaggeration, cache.clone())?;
     let mut outputs = arguments.outputs.open(Taken::inputs(reading.files()))?;
     let surface = Arc::new(arguments.surface(reading, talk)?);
-    let cache = arguments.cache.cache();
     let gpu = arguments.prepare(&surface, &cache, talk)?;
     let view = arguments.look(&surface, talk)?;
     let gpu = Arc::new(gpu?);
@@ -364,6 +365,7 @@ impl DemReport {
             cell_m: dem.cell().to_array(),
             extent_m: dem.extent(),
             voids: dem.voids(),
+            steps_m: dem.history().steps().to_vec(),
             converted: dem.history().converted().iter().map(told).collect(),
             assumed: assumed.into_iter().flatten().map(told).collect(),
         }

@@ -3,6 +3,7 @@
 use super::talk::Talk;
 use super::terrain::{TerrainArguments, words};
 use super::words::told;
+use crate::cache::Cache;
 use crate::error::Result;
 use crate::geo;
 
@@ -25,6 +26,7 @@ pub struct InfoArguments {
 /// As [`geo::info()`].
 pub fn run(arguments: &InfoArguments, talk: &Talk) -> Result<()> {
     let terrain = &arguments.terrain;
-    let info = geo::info(&terrain.dems, &terrain.options(1.0), &|stage, share| talk.progress(words(stage), share))?;
+    let options = terrain.options(1.0, Cache::none());
+    let info = geo::info(&terrain.dems, &options, &|stage, share| talk.progress(words(stage), share))?;
     talk.answer(&info.told(told))
 }

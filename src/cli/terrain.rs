@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use super::talk::Talk;
 use super::values;
 use super::words::told;
+use crate::cache::Cache;
 use crate::dem::Dem;
 use crate::error::Result;
 use crate::geo::{ElevationUnit, Encoding, Nodata, Order, ReadOptions, Reading, Stage};
@@ -52,6 +53,13 @@ pub struct TerrainArguments {
     /// the upper half of which is below 0; elevations or depths, whatever the file says [default: as the file says]
     #[arg(long, value_name = "NAME", value_parser = values::encoding, help_heading = "Surface")]
     encoding: Option<Encoding>,
+    /// Keep heights that are multiples of a step (whole metres, feet, tenths) as they are, stairs and all [default: draw the
+    /// smoothest surface within half a step of them]
+    #[arg(long, help_heading = "Surface")]
+    keep_steps: bool,
+    /// Smooth heights at a scale of so many metres, crests kept: for surface models of trees and roofs
+    #[arg(long, value_name = "M", value_parser = values::metres, allow_hyphen_values = true, help_heading = "Surface")]
+    generalise: Option<f64>,
     /// Open files on a network, and VRTs that refer to files outside their folder
     #[arg(long, help_heading = "Surface")]
     allow_remote: bool,
@@ -61,8 +69,8 @@ pub struct TerrainArguments {
 }
 
 impl TerrainArguments {
-    /// How to read, with this exaggeration.
-    pub fn options(&self, exaggeration: f64) -> ReadOptions {
+    /// How to read, with this exaggeration; what is found of steps is kept in `cache`.
+    pub fn options(&self, exaggeration: f64, cache: Cache) -> ReadOptions {
         ReadOptions {
             crop: self.crop,
             exaggeration,
@@ -76,6 +84,9 @@ impl TerrainArguments {
             elevation_unit: self.elevation_unit,
             nodata: self.nodata.clone().unwrap_or_default(),
             encoding: self.encoding,
+            keep_steps: self.keep_steps,
+            generalise: self.generalise,
+            cache,
             allow_remote: self.allow_remote,
             memory: self.memory,
         }
@@ -85,8 +96,8 @@ impl TerrainArguments {
     ///
     /// # Errors
     /// As [`Reading::new`].
-    pub fn open(&self, files: &[PathBuf], exaggeration: f64) -> Result<Reading> {
-        Reading::new(files, &self.options(exaggeration))
+    pub fn open(&self, files: &[PathBuf], exaggeration: f64, cache: Cache) -> Result<Reading> {
+        Reading::new(files, &self.options(exaggeration, cache))
     }
 
     /// Reads a DEM that was opened, with progress, and says what was converted and assumed.
@@ -121,5 +132,7 @@ pub fn words(stage: Stage) -> &'static str {
         Stage::Read => "reading the DEM",
         Stage::Warp => "warping it to metres",
         Stage::Fill => "filling voids",
+        Stage::Look => "looking for steps, once for this file",
+        Stage::Smooth => "smoothing heights, once for this file",
     }
 }

@@ -103,6 +103,11 @@ impl Filed {
         gather(window, &tiles, self.tiles.is_parallel(), |tile| self.tile(tile), progress)
     }
 
+    /// The same on this thread alone, for whoever works inside a reading.
+    pub fn read_alone(&self, window: Window) -> Result<Vec<f32>> {
+        gather(window, &self.tiling.tiles(window), false, |tile| self.tile(tile), &|_| ())
+    }
+
     /// Exaggerated metres of one sample, NaN at a void.
     pub fn height(&self, at: [usize; 2]) -> Result<f32> {
         let window = self.tiling.tile(at);

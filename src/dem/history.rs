@@ -6,11 +6,12 @@ use crate::error::{Message, shown};
 use crate::message;
 
 /// Clauses on how a DEM came about, in the order in which things were done.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct History {
     converted: Vec<Message>,
     assumed: Vec<Message>,
     usual: Vec<Message>,
+    steps: Vec<f64>,
 }
 
 impl History {
@@ -27,6 +28,17 @@ impl History {
     /// What the files do not say but few files do, and was taken as given: nothing to warn of.
     pub fn usual(&self) -> &[Message] {
         &self.usual
+    }
+
+    /// Metres of the step of which each file's heights are multiples, 0 where there is none, in the order of the files; empty
+    /// where the heights are as the files have them.
+    pub fn steps(&self) -> &[f64] {
+        &self.steps
+    }
+
+    /// The heights are the smoothest within these steps.
+    pub fn smooth(&mut self, steps: Vec<f64>) {
+        self.steps = steps;
     }
 
     /// One more clause on what was changed.

@@ -3,6 +3,7 @@
 
 mod bands;
 pub(crate) mod filed;
+pub(crate) mod focal;
 pub mod fractal;
 pub mod generalise;
 mod georeference;
@@ -11,7 +12,9 @@ mod history;
 mod north;
 mod overviews;
 mod samples;
+pub(crate) mod scale;
 pub mod smoothest;
+mod stored;
 mod survey;
 mod systems;
 mod tiles;

@@ -39,6 +39,11 @@ impl Tiling {
         Self { size, before: [0; 2], whole }
     }
 
+    /// The same grid with so many of its tiles in one that no whole tile has a shorter side.
+    pub fn at_least(self, side: usize) -> Self {
+        Self { size: self.size.map(|size| size * side.div_ceil(size).max(1)), ..self }
+    }
+
     /// The tile that holds sample (c, r).
     pub fn tile(&self, at: [usize; 2]) -> Window {
         let borders = [0, 1].map(|i| {
@@ -88,7 +93,7 @@ pub(crate) fn gather<T: AsRef<[f32]> + Send>(
 }
 
 /// Copies what two windows share of `from`, the samples of `tile`, to `onto`, those of `window`.
-fn copy(tile: Window, from: &[f32], window: Window, onto: &mut [f32]) {
+pub(crate) fn copy(tile: Window, from: &[f32], window: Window, onto: &mut [f32]) {
     let first = [0, 1].map(|i| tile.first[i].max(window.first[i]));
     let end = [0, 1].map(|i| (tile.first[i] + tile.size[i]).min(window.first[i] + window.size[i]));
     for r in first[1]..end[1] {

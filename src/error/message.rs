@@ -68,8 +68,12 @@ settings! {
     Exaggeration = "exaggeration",
     /// Whether voids are filled.
     FillVoids = "fill voids",
+    /// Metres of what is smoothed away.
+    Generalise = "generalise",
     /// The file of what was done.
     Json = "JSON file",
+    /// Whether heights stay as coarse as the file has them.
+    KeepSteps = "keep steps",
     /// How fine facets are.
     Level = "level",
     /// Several of them.

@@ -1,12 +1,13 @@
 //! Reads rasters as one DEM: what to ask, and what is done.
 //!
-//! Cost: one pass over the samples that the drawn part needs, and the warp where there is one; nothing yet where they
-//! stay in their files.
+//! Cost: one pass over the samples that the drawn part needs, and the warp where there is one; where they stay in their files
+//! nothing yet, but for a look at all of them where they may be multiples of a step, once a cache.
 
 use std::fmt::{self, Display, Formatter};
 use std::path::{Path, PathBuf};
 
 use super::{ElevationUnit, Encoding, Nodata, Reading};
+use crate::cache::Cache;
 use crate::dem::Dem;
 use crate::error::Result;
 
@@ -40,6 +41,14 @@ pub struct ReadOptions {
     pub nodata: Nodata,
     /// How elevations are packed into the numbers of the files. Default `None`: they are the numbers.
     pub encoding: Option<Encoding>,
+    /// Leave heights at the multiples of a step that the files hold, stairs and all. Default false: the smoothest surface
+    /// within half a step of them is drawn.
+    pub keep_steps: bool,
+    /// Smooth at a scale of so many metres, from 2.5 cells to 256. Default `None`: not.
+    pub generalise: Option<f64>,
+    /// Where smoothed heights are kept of samples that stay in their files, and what was found of steps. Default none: they
+    /// are smoothed as they are asked for.
+    pub cache: Cache,
     /// Open files on a network, and VRTs that refer to files outside their folder. Default false.
     pub allow_remote: bool,
     /// Bytes of memory for samples and normals. A DEM that takes more stays in its files, and half of them keep what was
@@ -87,6 +96,9 @@ impl Default for ReadOptions {
             elevation_unit: None,
             nodata: Nodata::default(),
             encoding: None,
+            keep_steps: false,
+            generalise: None,
+            cache: Cache::none(),
             allow_remote: false,
             memory: 1 << 30,
         }
@@ -102,6 +114,10 @@ pub enum Stage {
     Warp,
     /// Voids are filled.
     Fill,
+    /// All samples are looked at for steps, where they stay in their files.
+    Look,
+    /// They are smoothed, where they stay in their files.
+    Smooth,
 }
 
 /// Reads `path` as a DEM of at least 2 x 2 samples, metres, north-up. See [`read_all`].
@@ -122,6 +138,8 @@ pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Dem> {
 /// data that the file forgot to declare: at or below -32767, above 100 000 m. Of files that overlap on one grid the last
 /// wins. Files on several grids are warped, cubic, to that of the finest whose samples fit; the finest lies on top, and
 /// seams are blended over four cells of the coarser. Degrees and turned grids are warped to square cells in metres.
+/// Where all numbers of a file are multiples of a step (whole metres, feet, tenths), its heights become the smoothest surface
+/// within half a step of them, before any warp; flat water stays flat.
 /// What was converted and what had to be assumed stands in [`Dem::history`]. A path may name one grid of a container as
 /// `NETCDF:file:grid`; `.gz`, `.zip` and `.tar` are read through. `progress` hears what is being done and the share done, 0 to 1.
 ///

@@ -8,9 +8,9 @@ use hachure::geo::{ReadOptions, read, write};
 use hachure::measure::memory::peak;
 use hachure::surface::Surface;
 
-use super::folder;
+use super::{folder, with_steps};
 use crate::common::shared_dems;
-use crate::tolerances::{FILED_MIB_BESIDE, READ_BYTES_BESIDE};
+use crate::tolerances::{FILED_MIB_BESIDE, READ_BYTES_BESIDE, SMOOTH_BYTES_BESIDE};
 
 /// Bytes a sample of a DEM and its normals: height, a bit of validity, two gradients.
 const DEM_BYTES: f64 = 12.125;
@@ -22,8 +22,8 @@ fn korea_is_read_in_little_memory() {
         return;
     }
     let line = line_of("dem::large::child_reads_korea", "korea: ");
-    let beside: f64 = line.split(", ").nth(2).unwrap().split(' ').next().unwrap().parse().unwrap();
-    assert!(beside <= READ_BYTES_BESIDE, "{line}");
+    let [kept, smoothed] = [1, 9].map(|word| line.split(' ').nth(word).unwrap().parse::<f64>().unwrap());
+    assert!(kept <= READ_BYTES_BESIDE && smoothed <= SMOOTH_BYTES_BESIDE, "{line}");
 }
 
 /// The line that a test prints which runs alone in a process, for the peak is the process's.
@@ -43,17 +43,24 @@ fn line_of(child: &str, start: &str) -> String {
 #[cfg(target_os = "linux")]
 fn child_reads_korea() {
     let shared = shared_dems().unwrap();
-    let before = peak().unwrap();
-    let start = Instant::now();
-    let dem = read(shared.join("korea_srtm3_4400.tif"), &ReadOptions::default()).unwrap();
-    let read_s = start.elapsed().as_secs_f64();
-    let surface = Surface::new(dem);
-    let seconds = start.elapsed().as_secs_f64();
-    let samples = (surface.dem().columns() * surface.dem().rows()) as f64;
-    let beside = (peak().unwrap() - before) as f64 / samples - DEM_BYTES;
-    println!(
-        "korea: {samples} samples, {seconds:.2} s to normals ({read_s:.2} s to heights), {beside:.2} bytes a sample beside grid and normals"
-    );
+    let read = |options: &ReadOptions| {
+        hachure::measure::memory::reset_peak();
+        let before = peak().unwrap();
+        let start = Instant::now();
+        let dem = read(shared.join("korea_srtm3_4400.tif"), options).unwrap();
+        let read_s = start.elapsed().as_secs_f64();
+        let surface = Surface::new(dem);
+        let seconds = start.elapsed().as_secs_f64();
+        let samples = (surface.dem().columns() * surface.dem().rows()) as f64;
+        let beside = (peak().unwrap() - before) as f64 / samples - DEM_BYTES;
+        println!(
+            "{samples} samples, {seconds:.2} s to normals ({read_s:.2} s to heights), {beside:.2} bytes a sample beside \
+             grid and normals"
+        );
+        beside
+    };
+    let [kept, smoothed] = [with_steps(), ReadOptions::default()].each_ref().map(read);
+    println!("korea: {kept:.2} bytes a sample beside grid and normals, {smoothed:.2} while steps are smoothed");
 }
 
 #[test]
@@ -89,7 +96,7 @@ fn child_reads_a_filed_dem() {
     let grown = |memory: u64| {
         hachure::measure::memory::reset_peak();
         let before = peak().unwrap();
-        let surface = Surface::new(read(&path, &ReadOptions { memory, ..Default::default() }).unwrap());
+        let surface = Surface::new(read(&path, &ReadOptions { memory, ..with_steps() }).unwrap());
         assert_eq!(surface.dem().survey(&|_| ()).unwrap().range, Some([0.0, 999.0]));
         let rows: usize = surface.bands(2).map(|band| band.unwrap().rows.len()).sum();
         assert_eq!(rows, 5200);

@@ -7,7 +7,7 @@ use gdal::Metadata;
 use gdal::raster::GdalDataType::Float32;
 use hachure::geo::{Encoding, ReadOptions, read};
 
-use super::{Bands, SIDE, assumed, cured, folder, land, one, same};
+use super::{Bands, SIDE, assumed, cured, folder, land, one, same, with_steps};
 use crate::common::words;
 
 fn turned() -> Vec<f64> {
@@ -17,8 +17,8 @@ fn turned() -> Vec<f64> {
 /// What is read of land in a band called `name`, of which this is said.
 fn check(path: &Path, name: &'static str, said: &[(&'static str, &'static str)], heights: &[f64]) {
     Bands { names: vec![name], said: said.to_vec(), ..one(&land(), |n| n as f32) }.write(path);
-    same(&read(path, &ReadOptions::default()).unwrap(), heights, 0.0);
-    assert_eq!(assumed(&[path.to_owned()], &ReadOptions::default()), Vec::<String>::new(), "{name} {said:?}");
+    same(&read(path, &with_steps()).unwrap(), heights, 0.0);
+    assert_eq!(assumed(&[path.to_owned()], &with_steps()), Vec::<String>::new(), "{name} {said:?}");
 }
 
 #[test]
@@ -48,12 +48,12 @@ fn the_flag_is_surer_than_the_file() {
     let dir = folder();
     let path = dir.path().join("flag.tif");
     let read_as = |encoding| {
-        let dem = read(&path, &ReadOptions { encoding: Some(encoding), ..Default::default() }).unwrap();
+        let dem = read(&path, &ReadOptions { encoding: Some(encoding), ..with_steps() }).unwrap();
         (words(dem.history().converted()), dem)
     };
     for said in [("positive", "down"), ("standard_name", "depth"), ("long_name", "Depth")] {
         check(&path, "", &[said], &turned());
-        let told = words(read(&path, &ReadOptions::default()).unwrap().history().converted());
+        let told = words(read(&path, &with_steps()).unwrap().history().converted());
         let line = told.iter().find(|clause| clause.starts_with("depths x -1")).unwrap();
         same(&cured(&path, line, "--encoding"), &land(), 0.0);
         let (told, dem) = read_as(Encoding::Elevations);
@@ -66,7 +66,7 @@ fn the_flag_is_surer_than_the_file() {
     assert!(told.contains(&"depths x -1 to heights (--encoding depths)".to_owned()), "{told:?}");
     // Where the numbers decide, both ways are told.
     Bands { said: vec![("long_name", "Depth")], ..one(&turned(), |n| n as f32) }.write(&path);
-    let line = assumed(std::slice::from_ref(&path), &ReadOptions::default()).remove(0);
+    let line = assumed(std::slice::from_ref(&path), &with_steps()).remove(0);
     same(&cured(&path, &line, "--encoding"), &land(), 0.0);
     let (_, last) = line.rsplit_once("say").unwrap();
     same(&cured(&path, last, "--encoding"), &turned(), 0.0);
@@ -88,7 +88,7 @@ fn bare_vrt(path: &Path, file: &str, band: usize, inner: &str) {
 fn what_a_file_says_holds_in_a_vrt_of_it() {
     let dir = folder();
     let at = |name: &str| dir.path().join(name);
-    let read = |name: &str| read(at(name), &ReadOptions::default()).unwrap();
+    let read = |name: &str| read(at(name), &with_steps()).unwrap();
     check(&at("down.tif"), "", &[("positive", "down")], &turned());
     bare_vrt(&at("bare.vrt"), "down.tif", 1, "");
     same(&read("bare.vrt"), &turned(), 0.0);
@@ -140,8 +140,8 @@ fn bands_about_elevations_are_not_taken_for_them() {
         let mut bands = vec![other.clone(); names.len()];
         bands[taken - 1].clone_from(&heights);
         Bands { names: names.clone(), ..Bands::new(bands) }.write(&path);
-        same(&read(&path, &ReadOptions::default()).unwrap(), &land(), 0.0);
-        let told = assumed(std::slice::from_ref(&path), &ReadOptions::default());
+        same(&read(&path, &with_steps()).unwrap(), &land(), 0.0);
+        let told = assumed(std::slice::from_ref(&path), &with_steps());
         assert!(told[0].contains(&format!("in band {taken} of {}", names.len())), "{names:?}: {told:?}");
     }
 }

@@ -6,7 +6,7 @@ use std::process::Command;
 use hachure::cli::words::line;
 use hachure::geo::{ReadOptions, read, read_all};
 
-use super::{Bands, SIDE, assumed, cured, doubt, folder, land, marked, one, same};
+use super::{Bands, SIDE, assumed, cured, doubt, folder, land, marked, one, same, with_steps};
 use crate::common::{shared_dems, words};
 
 /// Metres that a whole height of the land loses as f32 in a small unit.
@@ -71,7 +71,7 @@ fn several_marks_are_one_flag() {
 fn ordinary_land_is_not_doubted() {
     let dir = folder();
     let plain = one(&land(), |n| n as f32).write(&dir.path().join("plain.tif"));
-    assert_eq!(assumed(&[plain], &ReadOptions::default()), Vec::<String>::new());
+    assert_eq!(assumed(&[plain], &with_steps()), Vec::<String>::new());
     // A sea and its shore, a lake, a plateau, a drawing of two heights, a deep sea beside a mountain.
     let shapes: [fn(f64) -> f64; 5] = [
         |n| (n - 600.0).max(0.0),
@@ -83,7 +83,7 @@ fn ordinary_land_is_not_doubted() {
     for (i, shape) in shapes.into_iter().enumerate() {
         let numbers: Vec<_> = land().into_iter().map(shape).collect();
         let path = one(&numbers, |n| n as f32).write(&dir.path().join("shape.tif"));
-        assert_eq!(assumed(&[path], &ReadOptions::default()), Vec::<String>::new(), "shape {i}");
+        assert_eq!(assumed(&[path], &with_steps()), Vec::<String>::new(), "shape {i}");
     }
 }
 
@@ -96,7 +96,7 @@ fn small_units_and_feet_are_named() {
         let heights = if unit == "ft" { land().iter().map(|n| n + 2500.0).collect() } else { land() };
         let numbers: Vec<_> = heights.iter().map(|n| n * factor).collect();
         one(&numbers, |n| n as f32).write(&path);
-        let all = assumed(std::slice::from_ref(&path), &ReadOptions::default());
+        let all = assumed(std::slice::from_ref(&path), &with_steps());
         let line = all.last().unwrap();
         let advised = format!("--elevation-unit {unit}:");
         assert!(line.contains("above all land on Earth (8900 m)") && line.contains(&advised), "{line}");
@@ -105,11 +105,11 @@ fn small_units_and_feet_are_named() {
     }
     // All of them pass for marks.
     one(&times(1000.0), |n| n as i32).write(&path);
-    let line = line(&read(&path, &ReadOptions::default()).unwrap_err());
+    let line = line(&read(&path, &with_steps()).unwrap_err());
     same(&cured(&path, &line, "--elevation-unit"), &land(), UNIT_METRES);
     // Both at once: each is told.
     one(&marked(65535.0, &times(10.0)), |n| n as u16).write(&path);
-    let both = assumed(&[path], &ReadOptions::default());
+    let both = assumed(&[path], &with_steps());
     assert!(
         both.len() == 2 && both[0].contains("--nodata 65535") && both[1].contains("--elevation-unit dm"),
         "{both:?}"
@@ -142,7 +142,7 @@ fn lost_signs_are_found_again() {
     let line = doubt(&path, &["from 65436 to 65535", "look like -100 to -1"]);
     same(&cured(&path, &line, "--encoding"), &coast, 0.0);
     one(&coast, |n| n as i32 as u32).write(&path);
-    let all = assumed(std::slice::from_ref(&path), &ReadOptions::default());
+    let all = assumed(std::slice::from_ref(&path), &with_steps());
     same(&cured(&path, &all[1], "--encoding"), &coast, 0.0);
     one(&coast, |n| f32::from(n as i16 as u16)).write(&path);
     let line = doubt(&path, &["look like -100 to -1"]);
@@ -162,7 +162,7 @@ fn marks_are_found_before_a_warp_and_by_file() {
     let first = one(&land(), |n| n as f32).write(&dir.path().join("first.tif"));
     let east = [500_000.0 + 30.0 * SIDE as f64, 30.0, 0.0, 5_000_000.0, 0.0, -30.0];
     let second = Bands { transform: east, ..Bands::new(vec![numbers]) }.write(&dir.path().join("second.tif"));
-    let told = assumed(&[first, second.clone()], &ReadOptions::default());
+    let told = assumed(&[first, second.clone()], &with_steps());
     assert!(told.len() == 1 && told[0].starts_with(&format!("{}: 225 samples", second.display())), "{told:?}");
 }
 
@@ -177,7 +177,7 @@ fn other_planets_have_other_limits() {
     let mut file = gdal::Dataset::open_ex(&path, options).unwrap();
     file.set_spatial_ref(&mars).unwrap();
     file.close().unwrap();
-    let told = words(read(&path, &ReadOptions::default()).unwrap().history().assumed());
+    let told = words(read(&path, &with_steps()).unwrap().history().assumed());
     assert!(told.iter().all(|clause| !clause.contains("land on Earth")), "{told:?}");
 }
 
@@ -190,7 +190,7 @@ fn of_shared_terrain_crater_lake_alone_is_doubted() {
     let mut read = 0;
     for path in files.chain([sample]) {
         // Those that stay in their file take long to be looked at.
-        let options = ReadOptions { memory: 1 << 32, ..Default::default() };
+        let options = ReadOptions { memory: 1 << 32, ..with_steps() };
         let Ok(dem) = read_all(std::slice::from_ref(&path), &options, &|_, _| ()) else { continue };
         let doubts = ["are heights", "are voids", "8-bit", "in band", "below zero"];
         let told = words(dem.history().assumed());

@@ -11,7 +11,7 @@ use hachure::cli::values;
 use hachure::cli::words::line;
 use hachure::geo::{Encoding, ReadOptions, read};
 
-use super::{Bands, SIDE, assumed, cured, doubt, folder, land, marked, one, same};
+use super::{Bands, SIDE, assumed, cured, doubt, folder, land, marked, one, same, with_steps};
 
 /// Bytes of which the file says that they have a sign.
 fn signed_bytes(numbers: &[f64], path: &Path) {
@@ -33,7 +33,7 @@ fn signed_bytes_are_below_zero() {
     signed_bytes(&numbers, &path);
     let line = doubt(&path, &["8-bit numbers, -128 to 127, are heights"]);
     same(&cured(&path, &line, "--elevation-unit"), &numbers, 0.0);
-    let asked = ReadOptions { nodata: values::nodata("-128..-60").unwrap(), ..Default::default() };
+    let asked = ReadOptions { nodata: values::nodata("-128..-60").unwrap(), ..with_steps() };
     let void: Vec<_> = numbers.iter().map(|n| if *n <= -60.0 { f64::NAN } else { *n }).collect();
     same(&read(&path, &asked).unwrap(), &void, 0.0);
 }
@@ -55,20 +55,20 @@ fn a_mark_beside_another_unit_leaves_the_unit() {
     let hole =
         |mark: f64, unit: f64| -> Vec<_> { metres(unit).iter().map(|n| if n.is_nan() { mark } else { *n }).collect() };
     one(&hole(-2_147_483_648.0, 100.0), |n| n as i32).write(&path);
-    let told = assumed(std::slice::from_ref(&path), &ReadOptions::default());
+    let told = assumed(std::slice::from_ref(&path), &with_steps());
     assert_eq!(told.len(), 2, "{told:?}");
     assert!(told[0].contains("--nodata -2147483648,") && told[1].contains("--elevation-unit cm"), "{told:?}");
     let both = ReadOptions {
         nodata: values::nodata("-2147483648").unwrap(),
         elevation_unit: Some(values::elevation_unit("cm").unwrap()),
-        ..Default::default()
+        ..with_steps()
     };
     assert_eq!(assumed(std::slice::from_ref(&path), &both), Vec::<String>::new());
     same(&read(&path, &both).unwrap(), &marked(f64::NAN, &land()), 1e-3);
     // Without a mark only the unit.
     let plain: Vec<_> = land().iter().map(|n| n * 100.0).collect();
     one(&plain, |n| n as i32).write(&path);
-    let told = assumed(std::slice::from_ref(&path), &ReadOptions::default());
+    let told = assumed(std::slice::from_ref(&path), &with_steps());
     assert!(
         told.iter().all(|clause| clause.contains("--elevation-unit cm") && !clause.contains("--nodata")),
         "{told:?}"
@@ -91,7 +91,7 @@ fn nothing_but_a_mark_is_told() {
     doubt(&path, &words);
     let half: Vec<_> = land().iter().enumerate().map(|(i, n)| if i % SIDE < 40 { -9999.0 } else { *n }).collect();
     one(&half, |n| n as f32).write(&path);
-    let crop = ReadOptions { crop: Some([500_000.0, 4_998_000.0, 500_900.0, 4_999_500.0]), ..Default::default() };
+    let crop = ReadOptions { crop: Some([500_000.0, 4_998_000.0, 500_900.0, 4_999_500.0]), ..with_steps() };
     let told = assumed(std::slice::from_ref(&path), &crop);
     assert!(
         told.len() == 1 && told[0].contains("there are no others") && told[0].contains("--nodata -9999)"),
@@ -99,7 +99,7 @@ fn nothing_but_a_mark_is_told() {
     );
     // A plain is one.
     one(&vec![-12.0; SIDE * SIDE], |n| n as f32).write(&path);
-    assert_eq!(assumed(&[path], &ReadOptions::default()), Vec::<String>::new());
+    assert_eq!(assumed(&[path], &with_steps()), Vec::<String>::new());
 }
 
 #[test]
@@ -128,12 +128,12 @@ fn pictures_of_elevations_have_holes() {
         [16, 8, 0].map(|shift| heights.iter().map(|metres| (number(*metres) >> shift) as u8).collect()).to_vec()
     };
     let colours = || vec![RedBand, GreenBand, BlueBand, Undefined];
-    let asked = ReadOptions { encoding: Some(Encoding::TerrainRgb), ..Default::default() };
+    let asked = ReadOptions { encoding: Some(Encoding::TerrainRgb), ..with_steps() };
     let black: Vec<Vec<u8>> = packed(&holes);
     Bands { colours: colours(), ..Bands::new(black) }.write(&path);
     same(&read(&path, &asked).unwrap(), &holes, 1e-4);
     let opaque: Vec<u8> = marked(0.0, &vec![255.0; SIDE * SIDE]).iter().map(|n| *n as u8).collect();
     Bands { colours: colours(), ..Bands::new([packed(&whole), vec![opaque]].concat()) }.write(&path);
-    let line = line(&read(&path, &ReadOptions::default()).expect_err("a picture was read"));
+    let line = line(&read(&path, &with_steps()).expect_err("a picture was read"));
     same(&cured(&path, &line, "--encoding"), &holes, 1e-4);
 }

@@ -6,7 +6,7 @@ use gdal::raster::ColorInterpretation::{AlphaBand, BlueBand, GrayIndex, GreenBan
 use hachure::cli::words::line;
 use hachure::geo::{Encoding, ReadOptions, read};
 
-use super::{Bands, FILED, SIDE, assumed, cured, doubt, folder, land, marked, one, same};
+use super::{Bands, FILED, SIDE, assumed, cured, doubt, folder, land, marked, one, same, with_steps};
 
 /// The line that a picture is refused with, held and filed.
 fn refused(path: &Path, options: &ReadOptions, words: &[&str]) -> String {
@@ -39,24 +39,24 @@ fn pictures_are_refused_unless_a_band_is_named() {
     let dir = folder();
     let rgb = coloured(vec![shade(); 3], &dir.path().join("rgb.tif"));
     let remedy = ["band 1 holds the red of a picture", "--band 1"];
-    refused(&rgb, &ReadOptions::default(), &remedy);
+    refused(&rgb, &with_steps(), &remedy);
     let rgba = coloured(vec![shade(); 4], &dir.path().join("rgba.tif"));
-    refused(&rgba, &ReadOptions::default(), &remedy);
+    refused(&rgba, &with_steps(), &remedy);
     let palette = Bands { colours: vec![PaletteIndex], ..Bands::new(vec![shade()]) };
     let palette = palette.write(&dir.path().join("palette.tif"));
-    refused(&palette, &ReadOptions::default(), &["band 1 holds numbers of colours in a palette", "--band 1"]);
+    refused(&palette, &with_steps(), &["band 1 holds numbers of colours in a palette", "--band 1"]);
     for path in [rgb, rgba, palette] {
-        let dem = read(&path, &ReadOptions { band: Some(1), ..Default::default() }).unwrap();
+        let dem = read(&path, &ReadOptions { band: Some(1), ..with_steps() }).unwrap();
         same(&dem, &shade().into_iter().map(f64::from).collect::<Vec<_>>(), 0.0);
     }
     // For a picture is no picture of elevations.
     let rgb = dir.path().join("rgb.tif");
     for encoding in [Encoding::TerrainRgb, Encoding::Terrarium] {
-        let asked = ReadOptions { encoding: Some(encoding), ..Default::default() };
+        let asked = ReadOptions { encoding: Some(encoding), ..with_steps() };
         refused(&rgb, &asked, &["is no picture of elevations", encoding.name(), "leave --encoding out"]);
     }
     let land = one(&land(), |n| n as f32).write(&dir.path().join("land.tif"));
-    let asked = ReadOptions { encoding: Some(Encoding::Terrarium), ..Default::default() };
+    let asked = ReadOptions { encoding: Some(Encoding::Terrarium), ..with_steps() };
     refused(&land, &asked, &["is no picture of elevations"]);
 }
 
@@ -69,19 +69,18 @@ fn elevations_in_colours_are_named_and_decoded() {
     for encoding in [Encoding::TerrainRgb, Encoding::Terrarium] {
         let name = encoding.name();
         coloured(packed(encoding), &path);
-        let line =
-            refused(&path, &ReadOptions::default(), &["packed into its colours", &format!("--encoding {name} ")]);
+        let line = refused(&path, &with_steps(), &["packed into its colours", &format!("--encoding {name} ")]);
         same(&cured(&path, &line, "--encoding"), &steep, 1e-4);
         coloured([packed(encoding), vec![opaque.clone()]].concat(), &path);
-        let line = refused(&path, &ReadOptions::default(), &[&format!("--encoding {name} ")]);
+        let line = refused(&path, &with_steps(), &[&format!("--encoding {name} ")]);
         same(&cured(&path, &line, "--encoding"), &holes, 1e-4);
         // The other one is not it, and says so.
         let other = if encoding == Encoding::Terrarium { Encoding::TerrainRgb } else { Encoding::Terrarium };
-        let asked = ReadOptions { encoding: Some(other), ..Default::default() };
+        let asked = ReadOptions { encoding: Some(other), ..with_steps() };
         refused(&path, &asked, &[&format!("give --encoding {name}")]);
         // Colours that nobody calls so.
         Bands { colours: vec![GrayIndex], ..Bands::new(packed(encoding)) }.write(&path);
-        let line = refused(&path, &ReadOptions::default(), &[&format!("--encoding {name} ")]);
+        let line = refused(&path, &with_steps(), &[&format!("--encoding {name} ")]);
         same(&cured(&path, &line, "--encoding"), &steep, 1e-4);
     }
 }
@@ -112,8 +111,8 @@ fn the_band_that_is_called_elevation_is_taken() {
         let told = format!("elevations are in band {taken} of 3, called {}", names[taken - 1]);
         let all = format!("the bands are 1 {}, 2 {}, 3 {}", names[0], names[1], names[2]);
         doubt(&path, &[&told, &all, "--band N"]);
-        same(&read(&path, &ReadOptions::default()).unwrap(), &land(), 0.0);
-        let first = read(&path, &ReadOptions { band: Some(1), ..Default::default() }).unwrap();
+        same(&read(&path, &with_steps()).unwrap(), &land(), 0.0);
+        let first = read(&path, &ReadOptions { band: Some(1), ..with_steps() }).unwrap();
         assert_eq!(first.height(40, 40) == Some(heights[40 * SIDE + 40]), taken == 1);
     }
     Bands { names: vec!["count", "stdev"], ..Bands::new(vec![heights.clone(), other]) }.write(&path);
@@ -121,6 +120,6 @@ fn the_band_that_is_called_elevation_is_taken() {
     // A mask is no second band to choose from.
     let opaque: Vec<f32> = marked(0.0, &vec![255.0; SIDE * SIDE]).iter().map(|n| *n as f32).collect();
     Bands { colours: vec![GrayIndex, AlphaBand], ..Bands::new(vec![heights, opaque]) }.write(&path);
-    assert_eq!(assumed(std::slice::from_ref(&path), &ReadOptions::default()), Vec::<String>::new());
-    same(&read(&path, &ReadOptions::default()).unwrap(), &marked(f64::NAN, &land()), 0.0);
+    assert_eq!(assumed(std::slice::from_ref(&path), &with_steps()), Vec::<String>::new());
+    same(&read(&path, &with_steps()).unwrap(), &marked(f64::NAN, &land()), 0.0);
 }

@@ -7,7 +7,7 @@ use std::process::Command;
 use hachure::cli::words::line;
 use hachure::geo::{ReadOptions, read};
 
-use super::{Bands, FILED, SIDE, assumed, folder, land, one, same};
+use super::{Bands, FILED, SIDE, assumed, folder, land, one, same, with_steps};
 use crate::common::words;
 
 type Said = &'static [(&'static str, &'static str)];
@@ -36,7 +36,7 @@ fn depths_become_heights() {
     for (said, is_depth) in cases {
         with(&up, said, &path);
         for memory in [1 << 30, FILED] {
-            let dem = read(&path, &ReadOptions { memory, ..Default::default() }).unwrap();
+            let dem = read(&path, &ReadOptions { memory, ..with_steps() }).unwrap();
             same(&dem, if is_depth { &down } else { &up }, 0.0);
             let told =
                 words(dem.history().converted()).iter().any(|clause| clause.starts_with("depths x -1 to heights ("));
@@ -45,8 +45,8 @@ fn depths_become_heights() {
     }
     // What a person calls depth and is below zero is a height already.
     with(&down, &[("long_name", "Depth")], &path);
-    same(&read(&path, &ReadOptions::default()).unwrap(), &down, 0.0);
-    let told = assumed(std::slice::from_ref(&path), &ReadOptions::default());
+    same(&read(&path, &with_steps()).unwrap(), &down, 0.0);
+    let told = assumed(std::slice::from_ref(&path), &with_steps());
     assert!(told[0].contains("heights already, though the long name is \"Depth\""), "{told:?}");
     // Marks stay what they are.
     let mut fill = up.clone();
@@ -54,7 +54,7 @@ fn depths_become_heights() {
     with(&fill, &[("positive", "down")], &path);
     fill[..SIDE].fill(f64::NAN);
     let void: Vec<_> = fill.iter().map(|n| -n).collect();
-    same(&read(&path, &ReadOptions::default()).unwrap(), &void, 0.0);
+    same(&read(&path, &with_steps()).unwrap(), &void, 0.0);
 }
 
 #[test]
@@ -65,13 +65,13 @@ fn what_is_said_of_a_variable_is_said_of_its_band() {
     let mut file = gdal::Dataset::open_ex(&path, options).unwrap();
     gdal::Metadata::set_metadata_item(&mut file, "time#positive", "down", "").unwrap();
     file.close().unwrap();
-    same(&read(&path, &ReadOptions::default()).unwrap(), &land(), 0.0);
+    same(&read(&path, &with_steps()).unwrap(), &land(), 0.0);
     let options = gdal::DatasetOptions { open_flags: gdal::GdalOpenFlags::GDAL_OF_UPDATE, ..Default::default() };
     let mut file = gdal::Dataset::open_ex(&path, options).unwrap();
     gdal::Metadata::set_metadata_item(&mut file, "z#positive", "down", "").unwrap();
     file.close().unwrap();
     let down: Vec<_> = land().iter().map(|n| -n).collect();
-    same(&read(&path, &ReadOptions::default()).unwrap(), &down, 0.0);
+    same(&read(&path, &with_steps()).unwrap(), &down, 0.0);
 }
 
 /// A grid of land whose longitudes and latitudes stand in arrays beside it, as VRT.
@@ -106,9 +106,9 @@ fn curved_grids_are_refused_with_a_line_that_works() {
     let dir = folder();
     let path = curved(dir.path());
     let refused = |options| line(&read(&path, &options).expect_err("a curved grid was read"));
-    let line = refused(ReadOptions::default());
+    let line = refused(with_steps());
     assert!(line.contains("gdalwarp -geoloc") && !line.contains("--cell"), "{line}");
-    assert_eq!(refused(ReadOptions { cell: Some(30.0), ..Default::default() }), line, "with --cell");
+    assert_eq!(refused(ReadOptions { cell: Some(30.0), ..with_steps() }), line, "with --cell");
     let mut words = line.split('`').nth(1).unwrap().split(' ');
     let out = dir.path().join("out.tif");
     let mut command = Command::new(words.next().unwrap());
@@ -124,7 +124,7 @@ fn curved_grids_are_refused_with_a_line_that_works() {
         return;
     };
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
-    let dem = read(&out, &ReadOptions::default()).unwrap();
+    let dem = read(&out, &with_steps()).unwrap();
     let [low, high] = dem.range().unwrap();
     assert!((395.0..410.0).contains(&low) && (1280.0..1315.0).contains(&high), "{low} to {high} m");
     let share = dem.voids() as f64 / (dem.columns() * dem.rows()) as f64;

@@ -126,6 +126,16 @@ impl Elevation {
         if self.is_signed() && raw >= modulus / 2.0 && raw < modulus { raw - modulus } else { raw }
     }
 
+    /// Metres between two heights whose numbers differ by so much.
+    pub fn metres_between(&self, numbers: f64) -> f64 {
+        (numbers * self.scale * self.factor).abs()
+    }
+
+    /// Whether the numbers are stored as whole ones.
+    pub fn is_whole(&self) -> bool {
+        !matches!(self.kind, GdalDataType::Float32 | GdalDataType::Float64)
+    }
+
     /// Numbers below zero stored without a sign come out as much higher: 2 to the power of its bits. Those of 16 bits may
     /// stand in a larger type since.
     pub fn modulus(&self) -> f64 {

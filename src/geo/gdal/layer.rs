@@ -30,6 +30,8 @@ const BLOCK_SAMPLES: usize = 1 << 20;
 /// Formats whose blocks are unpacked one by one and cost time: there, threads gain by reading at once. Others are read
 /// as fast by one thread, or only in the order in which they are written.
 const PARALLEL: [&str; 3] = ["GTiff", "COG", "VRT"];
+/// Columns and rows of a float file that tell whether its numbers are multiples of a step at all.
+const FIRST_SAMPLES: [usize; 2] = [512, 16];
 /// Samples around a window that cubic convolution reaches, and one more.
 const MARGIN: usize = 3;
 
@@ -43,6 +45,7 @@ pub(super) struct Layer {
     pub format: String,
     /// Whether it is all that there is of more than one file, or stands among other layers: messages name files then.
     several: bool,
+    numbers: Vec<usize>,
     sources: Vec<Placed>,
 }
 
@@ -65,8 +68,9 @@ pub(super) struct Placed {
 }
 
 impl Layer {
-    /// Of `files`, at least one, each with its lie to the first's grid, north up. `several`: whether messages name them.
-    pub fn of(files: Vec<(Placed, Lie)>, cell: f64, several: bool) -> Option<Self> {
+    /// Of `files`, at least one, each with its lie to the first's grid, north up, and their numbers among all that are named.
+    /// `several`: whether messages name them.
+    pub fn of(files: Vec<(Placed, Lie)>, numbers: Vec<usize>, cell: f64, several: bool) -> Option<Self> {
         let (first, _) = files.first()?;
         let (base, format) = (first.grid.north_up(), first.format.clone());
         let lies = files.iter().map(|(placed, lie)| lie.bounds(&placed.grid));
@@ -76,7 +80,7 @@ impl Layer {
         let sources = files.into_iter().map(|(placed, lie)| placed.at(lie, low)).collect();
         let to_crs = base.to_crs * glam::DAffine2::from_translation(DVec2::new(low[0] as f64, low[1] as f64));
         let [columns, rows] = [0, 1].map(|i| (end[i] - low[i]) as usize);
-        Some(Self { grid: Grid { to_crs, columns, rows, ..base }, cell, format, several, sources })
+        Some(Self { grid: Grid { to_crs, columns, rows, ..base }, cell, format, several, numbers, sources })
     }
 
     /// The first file, for messages.
@@ -101,9 +105,9 @@ impl Layer {
         and_more(&shown(path.file_name().map_or(path, Path::new)), self.sources.len())
     }
 
-    /// How many files it is of.
-    pub fn files_named(&self) -> usize {
-        self.sources.len()
+    /// Numbers of its files among all that are named.
+    pub fn numbers(&self) -> &[usize] {
+        &self.numbers
     }
 
     /// Every file on the disk that it is made of.
@@ -143,6 +147,45 @@ impl Layer {
         Ok((raster, tallies))
     }
 
+    /// Reads the samples of `window` that the file at this place has, as if it were alone.
+    pub fn read_of(&self, place: usize, window: Window) -> Result<(Raster, Tally)> {
+        let (mut raster, placed) = (Raster::void(self.grid.part(window))?, &self.sources[place]);
+        let mut tally = Tally::new(&placed.elevation);
+        placed.read(window, &mut raster, &mut tally, &|_| ())?;
+        Ok((raster, tally))
+    }
+
+    /// Whether the files' numbers may be multiples of a step, by their type and, where that leaves it open, by the first
+    /// samples of each in `window`.
+    pub fn may_have_steps(&self, window: Window) -> Result<bool> {
+        if self.sources.iter().any(|placed| placed.elevation.is_whole()) {
+            return Ok(true);
+        }
+        for place in self.meeting(window) {
+            let Window { first, size } = self.shared(place, window);
+            let size = [0, 1].map(|i| size[i].min(FIRST_SAMPLES[i]));
+            if self.read_of(place, Window { first, size })?.1.grain.may_have() {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    /// The places of the files that have samples in `window`, or voids.
+    pub fn meeting(&self, window: Window) -> impl Iterator<Item = usize> {
+        (0..self.sources.len()).filter(move |place| self.shared(*place, window).samples() > 0)
+    }
+
+    /// What the file at this place and `window` share.
+    fn shared(&self, place: usize, window: Window) -> Window {
+        let placed = &self.sources[place];
+        let size = [placed.grid.columns, placed.grid.rows];
+        let end = [0, 1].map(|i| (placed.first[i] + size[i] as i64).max(0) as usize);
+        let first = [0, 1].map(|i| (placed.first[i].max(0) as usize).max(window.first[i]));
+        let end = [0, 1].map(|i| end[i].min(window.first[i] + window.size[i]));
+        Window { first, size: [0, 1].map(|i| end[i].saturating_sub(first[i])) }
+    }
+
     /// The files of which numbers are tallied, each with its rules and its tally.
     pub fn tallied<'a>(&'a self, tallies: &'a Tallies) -> Vec<Tallied<'a>> {
         let of = |(i, tally): (&usize, &'a Tally)| {
@@ -150,6 +193,11 @@ impl Layer {
             Some(Tallied { path: placed.handles.path(), elevation: &placed.elevation, tally })
         };
         tallies.iter().filter_map(of).collect()
+    }
+
+    /// How many files it is made of.
+    pub fn count(&self) -> usize {
+        self.sources.len()
     }
 
     /// Whether messages name files, for there are several.

@@ -84,8 +84,11 @@ impl Layers {
         let (first, chosen) = (holds(0), chosen.and_then(holds));
         let several = groups.len() > 1 || lasts.iter().any(|last| *last > 0);
         let mut groups: Vec<_> = groups.into_iter().map(Some).collect();
-        let all: Vec<_> =
-            places.iter().filter_map(|place| Layer::of(groups[*place].take()?.files, cells[*place], several)).collect();
+        let layer = |place: &usize| {
+            let Group { files, numbers, .. } = groups[*place].take()?;
+            Layer::of(files, numbers, cells[*place], several)
+        };
+        let all: Vec<_> = places.iter().filter_map(layer).collect();
         match first {
             Some(first) => Ok(Self { all, first, chosen }),
             None => Err(Error::input(Path::new("DEM"), "no file is named", "name at least one raster")),
@@ -109,7 +112,7 @@ impl Layers {
 
     /// What it was opened from, in a few words.
     pub fn label(&self) -> String {
-        and_more(&shown(self.first().path()), self.all.iter().map(Layer::files_named).sum())
+        and_more(&shown(self.first().path()), self.all.iter().map(Layer::count).sum())
     }
 
     /// The grid of `base` run on over all layers, as far as it has places between their outermost samples.
@@ -146,13 +149,14 @@ impl Layers {
         self.all.iter().map(|layer| needed(&layer.grid, grid)).collect()
     }
 
-    /// What is to be read of each layer for `target`, from the bottom to the top; of those that do not meet it nothing.
-    pub fn into_parts(mut self, target: &Target) -> Vec<Part> {
+    /// What is to be read of each layer for `target`, from the bottom to the top; of those that do not meet it
+    /// nothing. `keep_steps`: heights stay as the files have them.
+    pub fn into_parts(mut self, target: &Target, keep_steps: bool) -> Vec<Part> {
         if self.all.len() == 1 {
-            return self.all.pop().map(|layer| Part::new(layer, target.window)).into_iter().collect();
+            return self.all.pop().map(|layer| Part::new(layer, target.window, keep_steps)).into_iter().collect();
         }
         let part = |layer: Layer| Some((needed(&layer.grid, &target.grid)?.0, layer));
-        self.all.into_iter().filter_map(part).map(|(window, layer)| Part::new(layer, window)).collect()
+        self.all.into_iter().filter_map(part).map(|(window, layer)| Part::new(layer, window, keep_steps)).collect()
     }
 }
 

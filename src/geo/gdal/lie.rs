@@ -8,7 +8,7 @@ use super::grid::{Grid, span};
 /// How far, in cells, samples may lie from those of the first file and still count as the same places.
 pub(super) const ALIGNED_CELLS: f64 = 0.01;
 
-/// How the samples of a file lie to those of the mosaic.
+/// How the samples of a file lie to those of the layer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Lie {
     /// The same places, from this column and row on, read backwards where flipped.
@@ -39,7 +39,7 @@ impl Lie {
         if aligned {
             return Some(Self::Aligned { first: [first.x as i64, first.y as i64], flip: [flip_x, flip_y] });
         }
-        // Places of the base between the outermost samples; where there are none the mosaic need not grow.
+        // Places of the base between the outermost samples; where there are none the layer need not grow.
         let (low, high) = ((low - 0.5).ceil(), (high + 0.5).floor());
         let grows = low.cmplt(high).all();
         let (low, high) = if grows { (low, high) } else { (DVec2::ZERO, DVec2::ZERO) };

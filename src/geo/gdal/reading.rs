@@ -1,8 +1,8 @@
 //! The whole way from files to metres.
 //!
-//! Cost: one pass over the samples that the drawn part needs, and the warp where there is one; nothing yet where they
-//! stay in their files. Memory of a held DEM at most 12 1/8 bytes a sample: the rasters under way are gone before normals
-//! are computed.
+//! Cost: one pass over the samples that the drawn part needs, and the warp where there is one; where they stay in their
+//! files nothing yet, but for a look at all of them where they may be multiples of a step. Memory of a held DEM at most 12 1/8
+//! bytes a sample: the rasters under way are gone before normals are computed.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -10,24 +10,25 @@ use std::sync::Arc;
 use super::crs::Proj;
 use super::finest;
 use super::grid::Grid;
+use super::held::hold;
 use super::layer::Layer;
 use super::layers::Layers;
 use super::limits::are_held;
 use super::part::Part;
-use super::raster::{FILL_REACH, Raster};
-use super::seams;
-use super::target::{Target, rounded};
-use crate::dem::filed::exaggerate;
-use crate::dem::{Dem, Georeference, History};
-use crate::error::{Error, Message, Result, Setting};
+use super::smoothing::Smoothed;
+use super::target::Target;
+use crate::dem::focal::Worked;
+use crate::dem::scale::Scale;
+use crate::dem::{Dem, Georeference, History, Tiles};
+use crate::error::{Error, Result, Setting};
 use crate::geo::info::name_of;
 use crate::geo::{ReadOptions, Stage};
 use crate::message;
 
 /// Largest exaggeration: above it the highest mountain stands higher than the Earth is wide.
 const MAX_EXAGGERATION: f64 = 1000.0;
-/// Layers that are named.
-const NAMED: usize = 3;
+/// Least and largest scale of smoothing, in cells: below it changes nothing, beyond it looks too far around.
+const SCALES: [f64; 2] = [2.5, 256.0];
 /// Sound cell sizes, metres: from a millimetre to a thousand kilometres.
 const CELLS: std::ops::RangeInclusive<f64> = 1e-3..=1e6;
 
@@ -51,6 +52,7 @@ impl Reading {
         let layers = Layers::open(paths, options, &mut history)?;
         let target = finest::target(&layers, options, &mut history)?;
         let held = are_held(&layers, &target, options)?;
+        options.generalise.map_or(Ok(()), |metres| check_scale(metres, &target.grid))?;
         Ok(Self { layers, target, history, options: options.clone(), held })
     }
 
@@ -88,79 +90,71 @@ impl Reading {
         let label = layers.label();
         let (files, world) = (layers.first().grid.crs.as_defined(), target.grid.crs.clone());
         let georeference = Georeference::new(files, world, Arc::new(Proj));
-        let alone = layers.all().len() == 1;
-        let mut parts = layers.into_parts(&target);
-        let Target { grid, warps, .. } = target;
-        let raster = match parts.as_slice() {
-            _ if !held => None,
-            [part] if alone => Some(taken(part, warps.then_some(&grid), progress)?),
-            parts => Some(laid(parts, &grid, &mut history, progress)?),
+        let metres = target.grid.crs.metres_per_unit().unwrap_or(1.0);
+        let (cell, origin) = (target.grid.cell() * metres, target.grid.sample(0.0, 0.0) * metres);
+        let scale = options.generalise.map(|metres| Scale { metres, cell });
+        let (columns, units) = (target.grid.columns, target.grid.crs.units().to_owned());
+        let dem = if held {
+            let heights = hold(layers, target, scale, &options, &mut history, progress)?;
+            Dem::from_heights(columns, cell, origin, heights)
+        } else {
+            let tiles = filed(layers, &target, scale, &options, &mut history, progress)?;
+            let budget = usize::try_from(options.memory).unwrap_or(usize::MAX);
+            Dem::from_tiles(tiles, cell, origin, options.exaggeration, budget)
         };
-        let heights = raster.map(|raster| hold(&parts, raster, &options, &mut history, progress)).transpose()?;
-        let metres = grid.crs.metres_per_unit().unwrap_or(1.0);
         if metres != 1.0 {
-            history.convert(format!("coordinates x {metres} to metres ({})", grid.crs.units()));
+            history.convert(format!("coordinates x {metres} to metres ({units})"));
         }
-        let (cell, origin) = (grid.cell() * metres, grid.sample(0.0, 0.0) * metres);
-        let dem = match (heights, parts.pop()) {
-            (None, Some(part)) => {
-                let budget = usize::try_from(options.memory).unwrap_or(usize::MAX);
-                Dem::from_tiles(Arc::new(part), cell, origin, options.exaggeration, budget)
-            }
-            (heights, _) => Dem::from_heights(grid.columns, cell, origin, heights.unwrap_or_default()),
-        };
         Ok(dem.with_source(georeference, history).with_label(label))
     }
 }
 
-/// All samples of `part`, the only one. `warped` is the grid they are warped to.
-fn taken(part: &Part, warped: Option<&Grid>, progress: &dyn Fn(Stage, f64)) -> Result<Raster> {
-    let raster = part.raster(&|done| progress(Stage::Read, done))?;
-    let Some(grid) = warped else { return Ok(raster) };
-    let mut onto = Raster::void(grid.clone())?;
-    onto.lay(&raster, &|done| progress(Stage::Warp, done))?;
-    Ok(onto)
-}
-
-/// All samples of `parts` of several layers, from the bottom to the top, on `grid`.
-fn laid(parts: &[Part], grid: &Grid, history: &mut History, progress: &dyn Fn(Stage, f64)) -> Result<Raster> {
-    let [bottom, ..] = parts else { return Err(between(grid)) };
-    let (raster, seams) = seams::lay(parts, grid, progress)?;
-    let names: Vec<_> = parts.iter().rev().take(NAMED).map(|part| part.layer().name()).collect();
-    let more = match parts.len() - names.len() {
-        0 => String::new(),
-        more => format!(" and {more} more grids, the lowest of {}", bottom.layer().name()),
-    };
-    let cell = rounded(grid.cell().x * grid.crs.metres_per_unit().unwrap_or(1.0), 6);
-    let seam = match seams.map(|metres| metres.map(|metres| rounded(metres, 3))) {
-        None => String::new(),
-        Some([least, most]) if least == most => format!(", seams blended over {most} m"),
-        Some([least, most]) => format!(", seams blended over {least} to {most} m"),
-    };
-    history.convert(format!("{}{more}, cells of {cell} m{seam}", names.join(" on ")));
-    Ok(raster)
-}
-
-/// Exaggerated metres of all samples that were read of `parts`, after what GDAL does to samples in memory.
-fn hold(
-    parts: &[Part],
-    mut raster: Raster,
+/// The samples of the only layer as they are read from its files and worked on; what comes of all work is kept in the
+/// cache.
+fn filed(
+    layers: Layers,
+    target: &Target,
+    scale: Option<Scale>,
     options: &ReadOptions,
     history: &mut History,
     progress: &dyn Fn(Stage, f64),
-) -> Result<Vec<f32>> {
-    Part::assumed_of(parts).into_iter().for_each(|clause| history.assume(clause));
-    let before = if options.fill_voids { raster.voids() } else { 0 };
-    if before > 0 {
-        raster.fill(&|done| progress(Stage::Fill, done))?;
-        history.convert(filled(before, raster.voids()));
+) -> Result<Arc<dyn Tiles>> {
+    let (budget, label) = (usize::try_from(options.memory).unwrap_or(usize::MAX), layers.label());
+    let part = layers.into_parts(target, options.keep_steps).pop().ok_or_else(|| between(&target.grid))?;
+    part.look(&options.cache, label.clone(), &|done| progress(Stage::Look, done))?;
+    tell(std::slice::from_ref(&part), scale, history);
+    let part = Arc::new(part);
+    let smoothed = part.smoothing().cloned().map(|smoothing| {
+        let part = part.clone();
+        Worked::new(part.clone(), Smoothed { part, smoothing }, budget)
+    });
+    let (cache, progress) = (&options.cache, |done| progress(Stage::Smooth, done));
+    Ok(match (smoothed, scale) {
+        (None, None) => part,
+        (Some(smoothed), None) => Arc::new(smoothed.kept_in(cache, label, &progress)?),
+        (None, Some(scale)) => Arc::new(Worked::new(part, scale, budget).kept_in(cache, label, &progress)?),
+        (Some(smoothed), Some(scale)) => {
+            Arc::new(Worked::new(Arc::new(smoothed), scale, budget).kept_in(cache, label, &progress)?)
+        }
+    })
+}
+
+/// What is smoothed, in words.
+pub(super) fn tell(parts: &[Part], scale: Option<Scale>, history: &mut History) {
+    let found = || parts.iter().filter_map(|part| Some((part.layer(), &part.smoothing()?.steps)));
+    let files = parts.iter().flat_map(|part| part.layer().numbers()).max().map_or(0, |last| last + 1);
+    let mut metres = vec![0.0; files];
+    for (layer, steps) in found() {
+        let words = steps.words();
+        history.convert(if parts.len() > 1 { message![format!("{}: ", layer.name()), words] } else { words });
+        layer.numbers().iter().zip(steps.metres()).for_each(|(number, step)| metres[*number] = *step);
     }
-    let mut metres = raster.metres;
-    if let (true, Some(part)) = (metres.iter().all(|height| height.is_nan()), parts.first()) {
-        return Err(part.void(metres.len() as u64));
+    if found().next().is_some() {
+        history.smooth(metres);
     }
-    exaggerate(&mut metres, options.exaggeration);
-    Ok(metres)
+    if let Some(Scale { metres, .. }) = scale {
+        history.convert(message![format!("smoothed at a scale of {metres} m ("), Setting::Generalise, ")"]);
+    }
 }
 
 /// A grid in words.
@@ -177,18 +171,29 @@ fn grid_words(grid: &Grid) -> String {
     )
 }
 
-/// What filling did, in words.
-fn filled(before: usize, after: usize) -> Message {
-    let filled = format!("{} voids filled from up to {FILL_REACH} samples away (", before - after);
-    let left = if after > 0 { format!(", {after} farther away stay holes") } else { String::new() };
-    message![filled, Setting::FillVoids, ")", left]
-}
-
 /// The error for a crop that lies between all files.
-fn between(grid: &Grid) -> Error {
+pub(super) fn between(grid: &Grid) -> Error {
     let [west, south, east, north] = grid.extent();
     let what = format!("no file has a sample in {west},{south},{east},{north} {}", grid.crs.units());
     Error::setting(Setting::Crop, what, "move it to where one has")
+}
+
+/// A scale at which something is smoothed, and not so many cells that the work grows without end.
+fn check_scale(metres: f64, grid: &Grid) -> Result<()> {
+    let cell = grid.cell() * grid.crs.metres_per_unit().unwrap_or(1.0);
+    let [least, most] = SCALES.map(|cells| cell.min_element() * cells);
+    if (least..=most).contains(&metres) {
+        return Ok(());
+    }
+    let (least, most) = ((least * 1e3).ceil() / 1e3, (most * 1e3).floor() / 1e3);
+    let what = format!("{metres} m is no scale to smooth cells of {} x {} m at", cell.x, cell.y);
+    let remedy = match metres < least {
+        true => message![format!("give {least} to {most} metres, or leave it out: so little changes nothing")],
+        false => {
+            message![format!("give {least} to {most} metres, or larger cells with "), Setting::Resample.with_value()]
+        }
+    };
+    Err(Error::setting(Setting::Generalise, what, remedy))
 }
 
 fn check_options(options: &ReadOptions) -> Result<()> {

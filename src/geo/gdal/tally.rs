@@ -6,11 +6,12 @@
 use std::collections::BTreeMap;
 
 use super::elevation::{Elevation, Reading};
+use super::grain::Grain;
 
 /// Distinct numbers that are kept at each end.
 const KEPT: usize = 16;
 
-/// Tallies of the files of a mosaic, by their place in it; of those that were read.
+/// Tallies of the files of a layer, by their place in it; of those that were read.
 pub(super) type Tallies = BTreeMap<usize, Tally>;
 
 /// Figures of numbers as the file has them, those declared void left out.
@@ -32,6 +33,8 @@ pub(super) struct Tally {
     pub upper: Beyond,
     /// The greatest number in its lower half.
     pub below: f64,
+    /// Of which step they may be multiples, marks left out.
+    pub grain: Grain,
     half: f64,
     limits: [f64; 2],
 }
@@ -69,6 +72,7 @@ impl Tally {
             huge: [Beyond::NONE; 2],
             upper: Beyond::NONE,
             below: f64::NEG_INFINITY,
+            grain: Grain::new(),
             half: elevation.modulus() / 2.0,
             limits: elevation.limits(),
         }
@@ -77,6 +81,9 @@ impl Tally {
     /// Counts a sample, void or not.
     pub fn add(&mut self, number: f64, reading: Reading) {
         self.samples += 1;
+        if matches!(reading, Reading::Metres(_)) {
+            self.grain.add(number);
+        }
         match reading {
             Reading::Void => return,
             Reading::Metres(metres) if metres < self.limits[0] => self.outside[0].add(number),
@@ -108,6 +115,7 @@ impl Tally {
         }
         self.upper = self.upper.with(other.upper);
         self.below = self.below.max(other.below);
+        self.grain.merge(&other.grain);
         other.low.iter().for_each(|entry| add(&mut self.low, *entry, |a, b| a < b));
         other.high.iter().for_each(|entry| add(&mut self.high, *entry, |a, b| a > b));
     }
