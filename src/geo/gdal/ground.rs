@@ -68,6 +68,16 @@ impl Ground {
         self.off() > TRUE_SCALE
     }
 
+    /// What becomes of slopes that are drawn in metres of the map, in words.
+    pub fn slopes(&self) -> &'static str {
+        let [least, greatest] = self.scale();
+        match (least > 1.0 - TRUE_SCALE, greatest < 1.0 + TRUE_SCALE) {
+            (true, false) => "too flat",
+            (false, true) => "too steep",
+            _ => "wrong",
+        }
+    }
+
     /// Scale and shear, in words.
     pub fn words(&self) -> String {
         let [least, greatest] = self.scale().map(|scale| format!("{scale:.3}"));
@@ -186,6 +196,12 @@ mod tests {
         let [least, greatest] = ground(&about(32632, 9.0, 50.0)).scale();
         assert!((least - 0.9996).abs() < 1e-6 && (greatest - 0.9996).abs() < 1e-6, "{least} {greatest}");
         assert!(!ground(&about(32632, 12.0, 0.0)).is_off());
+        // Plate carree is true from north to south, Albers by area alone, a polar map within its circle is too small.
+        let slopes = |epsg, longitude, latitude| ground(&about(epsg, longitude, latitude)).slopes();
+        assert_eq!(
+            [slopes(32662, 10.0, 60.0), slopes(5070, -81.0, 25.0), slopes(3413, 10.0, 89.0)],
+            ["too flat", "wrong", "too steep"]
+        );
     }
 
     #[test]

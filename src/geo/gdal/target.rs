@@ -187,14 +187,11 @@ impl Asked<'_> {
 
 /// What is said of a map that is drawn though it is `off` the ground; `truer` is one that would be better.
 fn off_the_ground(off: &Ground, truer: Option<&Crs>, options: &ReadOptions) -> Message {
-    let [least, greatest] = off.scale();
-    let wrong = match (least > 1.0, greatest < 1.0) {
-        (true, _) => "too flat",
-        (_, true) => "too steep",
-        _ => "wrong",
-    };
-    let what =
-        format!("map metres are metres on the ground (this map is off it: {}, slopes are drawn {wrong}; ", off.words());
+    let what = format!(
+        "map metres are metres on the ground (this map is off it: {}, slopes are drawn {}; ",
+        off.words(),
+        off.slopes()
+    );
     let first = |crs: &Crs| format!("warp it first: `gdalwarp -t_srs {} -r cubic IN OUT.tif`)", crs.typed());
     match truer {
         None => message![what, "take a smaller part with ", Setting::Crop, ")"],
