@@ -3,7 +3,7 @@
 //! Along each of the four lines through a sample (west-east, north-south, both diagonals) the nearest changes of height are
 //! looked for to either side. Where heights change the surface crosses the edge of the band, so that on a line that rises on
 //! one side and falls on the other the height follows linearly. Steep lines count more, by the square of their steepness,
-//! as one reads a contour map. On a line that rises or falls to both sides the height goes back towards the middle of the
+//! as one reads a contour map. On a line that rises or falls to both sides the height goes back to the middle of the
 //! band by a parabola; where there is a change on one side only, by a line of length [`REACH`].
 //!
 //! Cost: eight scans over tiles with the reach around them. Not handled: a bend of the contours between two lines.
@@ -16,8 +16,6 @@ use rayon::prelude::*;
 pub const REACH: usize = 28;
 /// Weight of a line that rises, or falls, to both sides.
 const SAME: f32 = 0.1;
-/// How far such a line goes back to the middle of the band, as a share of the way.
-const BACK: f32 = 0.7;
 /// Columns and rows of a tile.
 const TILE: usize = 192;
 
