@@ -3,7 +3,7 @@
 
 mod bands;
 pub(crate) mod filed;
-pub(crate) mod focal;
+pub mod focal;
 pub mod fractal;
 pub mod generalise;
 mod georeference;
@@ -11,7 +11,7 @@ mod held;
 mod history;
 mod overviews;
 mod samples;
-pub(crate) mod scale;
+pub mod scale;
 pub mod smoothest;
 mod stored;
 mod survey;
