@@ -1,7 +1,7 @@
 //! Heights that depend on those around them: tiles of a grid, changed by what works on a window with a halo.
 //!
 //! Cost: a tile is read with its halo, so tiles are larger than those of the grid; the grid's own are kept while they fit,
-//! so that none is read anew for each halo it lies in. What comes of the work may be kept on disk ([`stored`](super::stored)),
+//! so that none is read anew for each halo it lies in. What comes of the work may be kept on disk (`stored`),
 //! all of it once, and is read from there ever after. Memory: a quarter of the budget, a tile with its halo a thread.
 
 use std::fmt::Debug;
@@ -43,7 +43,7 @@ pub trait Focal: Debug + Send + Sync {
 
 /// Tiles with work done on them.
 #[derive(Debug)]
-pub(crate) struct Worked<F> {
+pub struct Worked<F> {
     of: Filed,
     by: F,
     stored: Option<Stored>,
@@ -57,6 +57,9 @@ impl<F: Focal> Worked<F> {
 
     /// The same, with what comes of the work found in the cache, or made and kept there; `of`: what it is made of, for people.
     /// Without a folder nothing is made yet. `progress` hears the share done.
+    ///
+    /// # Errors
+    /// Those of reading the tiles, and of the work.
     pub fn kept_in(self, cache: &Cache, of: String, progress: &dyn Fn(f64)) -> Result<Self> {
         let Some(stamp) = cache.folder().and_then(|_| self.stamp()) else { return Ok(self) };
         let tiles = self.tiling().tiles(Window { first: [0, 0], size: self.size() });

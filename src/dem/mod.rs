@@ -3,7 +3,7 @@
 
 mod bands;
 pub(crate) mod filed;
-pub(crate) mod focal;
+pub mod focal;
 pub mod fractal;
 pub mod generalise;
 mod georeference;
@@ -12,7 +12,7 @@ mod history;
 mod north;
 mod overviews;
 mod samples;
-pub(crate) mod scale;
+pub mod scale;
 pub mod smoothest;
 mod stored;
 mod survey;

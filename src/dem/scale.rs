@@ -13,7 +13,7 @@ const FORMAT: u32 = 1;
 
 /// A scale at which heights are smoothed, and the grid on which they lie.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Scale {
+pub struct Scale {
     /// Of what is smoothed away.
     pub metres: f64,
     /// Metres between columns and between rows.
