@@ -9,6 +9,7 @@ pub mod generalise;
 mod georeference;
 mod held;
 mod history;
+pub(crate) mod in_bands;
 mod north;
 mod overviews;
 mod samples;

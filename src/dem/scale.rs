@@ -5,6 +5,7 @@ use xxhash_rust::xxh3::xxh3_128;
 
 use super::focal::Focal;
 use super::generalise::{generalise, halo};
+use super::in_bands::in_bands;
 use super::window::Window;
 use crate::error::Result;
 
@@ -21,9 +22,15 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// Smooths heights of a window, see [`generalise`].
-    pub fn smooth(&self, heights: &mut [f32], window: Window, parallel: bool) {
-        generalise(heights, window, self.cell, self.metres, parallel);
+    /// Smooths all heights of a held grid of so many columns and rows, see [`generalise`], on every core.
+    ///
+    /// # Errors
+    /// None: those of [`in_bands`].
+    pub fn smooth(&self, heights: &mut [f32], size: [usize; 2]) -> Result<()> {
+        in_bands(heights, size, self.halo(), |heights, window| {
+            generalise(heights, window, self.cell, self.metres, true);
+            Ok(())
+        })
     }
 }
 
@@ -33,7 +40,7 @@ impl Focal for Scale {
     }
 
     fn apply(&self, heights: &mut [f32], window: Window) -> Result<()> {
-        self.smooth(heights, window, false);
+        generalise(heights, window, self.cell, self.metres, false);
         Ok(())
     }
 

@@ -9,7 +9,7 @@ use glam::DVec2;
 use hachure::dem::{Crs, Dem};
 use hachure::geo::{ReadOptions, read, read_all as read_files};
 
-use super::{Raster, cropped, folder, read_all};
+use super::{Raster, cropped, folder, read_all, with_steps};
 use crate::common::{shared_dems, words};
 use crate::tolerances::{MAP_SHARE, WARP_METRES};
 
@@ -188,7 +188,7 @@ fn maps_of_unequal_or_other_scale_are_warped_and_true_ones_are_not() {
         let place = on_map(epsg, longitude, latitude);
         let transform = Some([place.x, 30.0, 0.0, place.y, 0.0, -30.0]);
         let raster = Raster { transform, epsg: Some(epsg), ..Raster::new(40, told_apart(40, 40)) };
-        read_all(&raster.write("GTiff", &dir.path().join("map.tif")))
+        read(raster.write("GTiff", &dir.path().join("map.tif")), &with_steps()).unwrap()
     };
     for (epsg, longitude, latitude, scale, zone) in [
         (32662, 10.0, 60.0, ["scale 0.999", "to 1.99"], 32632),

@@ -41,11 +41,11 @@ pub(super) fn hold(
         raster.fill(&|done| progress(Stage::Fill, done))?;
         history.convert(filled(before, raster.voids()));
     }
-    let (whole, mut metres) = (raster.grid.whole(), raster.metres);
+    let (size, mut metres) = ([raster.grid.columns, raster.grid.rows], raster.metres);
     if let (true, Some(part)) = (metres.iter().all(|height| height.is_nan()), parts.first()) {
         return Err(part.void(metres.len() as u64));
     }
-    scale.iter().for_each(|scale| scale.smooth(&mut metres, whole, true));
+    scale.map_or(Ok(()), |scale| scale.smooth(&mut metres, size))?;
     exaggerate(&mut metres, options.exaggeration);
     Ok(metres)
 }

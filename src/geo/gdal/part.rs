@@ -15,6 +15,8 @@ use super::steps::Steps;
 use super::tally::{Tallies, merge};
 use super::water::WaterBuilder;
 use crate::cache::{Cache, Hearing};
+use crate::dem::in_bands::in_bands;
+use crate::dem::smoothest::HALO;
 use crate::dem::tiling::gather;
 use crate::dem::{Tiles, Tiling, Window};
 use crate::error::{Error, Message, Result, Setting};
@@ -57,7 +59,7 @@ impl Part {
             Smoothing { steps, water: water.finish() }
         });
         if let Some(smoothing) = self.smoothing.get_or_init(|| found) {
-            smoothing.smooth(self, &mut metres, whole, true)?;
+            in_bands(&mut metres, whole.size, HALO, |heights, window| smoothing.smooth(self, heights, window, true))?;
         }
         Ok(Raster { grid: self.layer.grid.part(self.window), metres })
     }

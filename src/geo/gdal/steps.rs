@@ -8,7 +8,7 @@ use crate::error::{Message, Setting};
 use crate::message;
 
 /// Finer steps, in metres, are none: nobody sees their stairs.
-const LEAST: f64 = 0.05;
+const LEAST: f64 = 0.1;
 /// How far a step may be from a whole number of others, as a share of those.
 const WHOLE: f64 = 1e-6;
 
