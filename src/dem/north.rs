@@ -138,7 +138,8 @@ impl Axes {
 
     /// Of the second axis, degrees clockwise from the world's.
     fn bearing(&self) -> f64 {
-        self.second.x.atan2(self.second.y).to_degrees()
+        // No -0 is printed.
+        self.second.x.atan2(self.second.y).to_degrees() + 0.0
     }
 
     /// Whether they are the axes of the world, but for their order and their signs: those of a file that was flipped, not
