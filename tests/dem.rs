@@ -14,6 +14,7 @@ mod remedies;
 mod shared;
 mod trusted;
 mod typed;
+mod wide_layers;
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -4,8 +4,10 @@
 
 use glam::DVec2;
 
+use super::crs::Way;
 use super::grid::{Grid, span};
 use super::lie::ALIGNED_CELLS;
+use crate::dem::{Crs, Window};
 use crate::error::{Error, Result, Setting};
 use crate::message;
 
@@ -47,4 +49,29 @@ pub(super) fn round_the_globe(grid: &Grid, crop: Option<[f64; 4]>) -> Option<i64
         (false, true) => Some(beside),
         _ => None,
     }
+}
+
+/// The smallest rectangle of one system around that of another; `None` where its edges have no place there. Degrees run on
+/// round the globe from its middle; around a pole they are all.
+pub(super) fn carried([west, south, east, north]: [f64; 4], from: &Crs, to: &Crs) -> Option<[f64; 4]> {
+    // As four samples have it, in the corners.
+    let mut places = Window { first: [0, 0], size: [2, 2] }.outline();
+    let (low, size) = (DVec2::new(west, south), DVec2::new(east - west, north - south));
+    places.iter_mut().for_each(|place| *place = low + (*place - 0.5) * size);
+    let way = Way::between(from, to)?;
+    way.carry(&mut places);
+    if let Some(turn) = to.turn() {
+        let middle = way.place(low + size / 2.0)?.x;
+        places.iter_mut().for_each(|place| place.x = to.near(place.x, middle));
+        let back = Way::between(to, from).filter(|_| from.turn().is_none());
+        let inside = |pole: &DVec2| {
+            let place = back.as_ref().and_then(|back| back.place(*pole));
+            place.is_some_and(|place| place.cmpge(low).all() && place.cmple(low + size).all())
+        };
+        let poles = [-1.0, 1.0].map(|side| DVec2::new(middle, side * turn / 4.0));
+        let half = DVec2::X * turn / 2.0;
+        poles.iter().filter(|pole| inside(pole)).for_each(|pole| places.extend([*pole - half, *pole + half]));
+    }
+    let [low, high] = span(&places);
+    places.iter().all(|place| place.is_finite()).then_some([low.x, low.y, high.x, high.y])
 }

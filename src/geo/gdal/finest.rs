@@ -6,9 +6,12 @@
 
 use glam::DVec2;
 
+use super::around::around;
+use super::crop::{self, carried};
 use super::layer::Layer;
-use super::layers::{AS_FINE, Layers, carried};
-use super::target::{Target, rounded};
+use super::layers::{AS_FINE, Layers};
+use super::limits::are_held;
+use super::target::{CROP_DIGITS, Target, rounded};
 use crate::dem::{History, MAX_SAMPLES, held_bytes, mebibytes};
 use crate::error::{Error, Result, Setting};
 use crate::geo::ReadOptions;
@@ -16,14 +19,12 @@ use crate::message;
 
 /// Parts that are tried, each smaller than the one before.
 const TRIALS: usize = 12;
-/// Digits of a crop: centimetres of a northing, a tenth of a metre in degrees.
-const DIGITS: i32 = 9;
 
 /// What is drawn of `layers`. Fails when too little is left.
 pub(super) fn target(layers: &Layers, options: &ReadOptions, history: &mut History) -> Result<Target> {
     if let [only] = layers.all() {
         let crop = layers.crop_on(&only.grid, options.crop)?;
-        return Target::of(&only.grid, only.path(), crop, options, history);
+        return Target::of(&only.grid, only.path(), crop, &only.grid.crs, options, history);
     }
     let candidates = candidates(layers, options)?;
     let Some((coarsest, finer)) = candidates.split_last() else {
@@ -31,19 +32,34 @@ pub(super) fn target(layers: &Layers, options: &ReadOptions, history: &mut Histo
     };
     for layer in finer {
         let mut own = History::default();
-        match on(layers, layer, options, &mut own) {
-            Ok(target) if fits(&target, options) => {
-                history.take(own, None);
-                warn(layers, candidates[0], layer, options, history);
-                return Ok(target);
-            }
-            Ok(_) | Err(Error::Limit { .. }) => {}
-            Err(error) => return Err(error),
+        // What is wrong with one map may be right with the next.
+        if let Some(target) = on(layers, layer, options, &mut own).ok().filter(|target| fits(target, options)) {
+            history.take(own, None);
+            warn(layers, candidates[0], layer, options, history);
+            return Ok(target);
         }
     }
-    let target = on(layers, coarsest, options, history)?;
+    let target = on(layers, coarsest, options, history).and_then(|target| match fits(&target, options) {
+        true => Ok(target),
+        false => are_held(layers, &target, options).map(|_| target),
+    });
+    let target = target.map_err(|error| with_crop(error, layers, candidates[0], options))?;
     warn(layers, candidates[0], coarsest, options, history);
     Ok(target)
+}
+
+/// The error with a crop that can be drawn in the cells of `finest`, where there is one.
+fn with_crop(error: Error, layers: &Layers, finest: &Layer, options: &ReadOptions) -> Error {
+    let Some(crop) = crop_to_fit(layers, finest, options) else { return error };
+    let part = |remedy| {
+        let cells = format!(" for a part in the cells of {}, or ", finest.name());
+        message!["use ", Setting::Crop.at(&crop), cells, remedy]
+    };
+    match error {
+        Error::Input { path, what, remedy } => Error::Input { path, what, remedy: part(remedy).plain() },
+        Error::Limit { what, remedy } => Error::limit(what, part(remedy)),
+        other => other,
+    }
 }
 
 /// The layers whose grids may be drawn, from the finest on; of like ones the first.
@@ -51,9 +67,11 @@ fn candidates<'a>(layers: &'a Layers, options: &ReadOptions) -> Result<Vec<&'a L
     if let Some(chosen) = layers.chosen() {
         return Ok(vec![chosen]);
     }
+    crop::on(&layers.first().grid, options.crop)?;
     let mut found: Vec<&Layer> = Vec::new();
     for layer in layers.all() {
-        let met = layers.crop_on(&layer.grid, options.crop)?.is_none_or(|crop| layer.grid.window(crop).is_some());
+        let crop = layers.crop_on(&layer.grid, options.crop);
+        let met = crop.is_ok_and(|crop| crop.is_none_or(|crop| layer.grid.window(crop).is_some()));
         if met && found.iter().all(|other| (other.cell / layer.cell - 1.0).abs() > AS_FINE) {
             found.push(layer);
         }
@@ -68,9 +86,9 @@ fn candidates<'a>(layers: &'a Layers, options: &ReadOptions) -> Result<Vec<&'a L
 
 /// What is drawn in the grid of `base`.
 fn on(layers: &Layers, base: &Layer, options: &ReadOptions, history: &mut History) -> Result<Target> {
-    let around = layers.around(base)?;
+    let around = around(layers, base, options.crop)?;
     let crop = layers.crop_on(&around, options.crop)?;
-    Target::of(&around, base.path(), crop, options, history)
+    Target::of(&around, base.path(), crop, &layers.first().grid.crs, options, history)
 }
 
 /// Whether the samples can be held.
@@ -106,8 +124,11 @@ fn warn(layers: &Layers, finest: &Layer, drawn: &Layer, options: &ReadOptions, h
 /// A crop around the finest layer, with as much land around it as fits or as much of it, in units of the first file; one
 /// that was tried.
 fn crop_to_fit(layers: &Layers, finest: &Layer, options: &ReadOptions) -> Option<String> {
-    let all = layers.around(finest).ok()?.extent();
-    let [low, high] = corners(layers.crop_on(&finest.grid, options.crop).ok()?.unwrap_or(all));
+    let all = || {
+        around(layers, finest, None)
+            .map_or([-f64::INFINITY, -f64::INFINITY, f64::INFINITY, f64::INFINITY], |all| all.extent())
+    };
+    let [low, high] = corners(layers.crop_on(&finest.grid, options.crop).ok()?.unwrap_or_else(all));
     let [own_low, own_high] = corners(finest.grid.extent());
     let (own_low, own_high) = (own_low.max(low), own_high.min(high));
     let (mut middle, half) = ((own_low + own_high) / 2.0, (own_high - own_low) / 2.0);
@@ -120,8 +141,8 @@ fn crop_to_fit(layers: &Layers, finest: &Layer, options: &ReadOptions) -> Option
     for _ in 0..TRIALS {
         let [low, high] = [(middle - half * share).max(low), (middle + half * share).min(high)];
         let part = [low.x, low.y, high.x, high.y];
-        let crop =
-            carried(part, &finest.grid.crs, &layers.first().grid.crs.as_defined())?.map(|edge| rounded(edge, DIGITS));
+        let crop = carried(part, &finest.grid.crs, &layers.first().grid.crs.as_defined())?
+            .map(|edge| rounded(edge, CROP_DIGITS));
         let trial = ReadOptions { crop: Some(crop), ..options.clone() };
         share *= match on(layers, finest, &trial, &mut History::default()) {
             Ok(target) if fits(&target, options) => return Some(crop.map(|edge| edge.to_string()).join(",")),

@@ -6,11 +6,11 @@
 
 use std::path::{Path, PathBuf};
 
-use glam::{DAffine2, DVec2};
+use glam::DVec2;
 
 use super::crop;
 use super::crs::Way;
-use super::grid::{Grid, span};
+use super::grid::Grid;
 use super::handles::Opening;
 use super::layer::{Layer, Placed, and_more, reach};
 use super::lie::Lie;
@@ -51,7 +51,9 @@ impl Layers {
             let mut own = History::default();
             let like = groups.first().map(|first| &first.base.crs);
             let placed = Placed::open(path, options, paths.len() == 1, like, &mut opening, &mut own)?;
-            if let Some(first) = groups.first().filter(|first| Lie::of(&placed.grid, &first.base).is_none()) {
+            if let Some(first) =
+                groups.first().filter(|first| Way::between(&placed.grid.crs, &first.base.crs).is_none())
+            {
                 let first = (first.files[0].0.path(), &first.files[0].0.grid);
                 return Err(no_way([(path, &placed.grid), first]));
             }
@@ -115,22 +117,6 @@ impl Layers {
         and_more(&shown(self.first().path()), self.all.iter().map(Layer::count).sum())
     }
 
-    /// The grid of `base` run on over all layers, as far as it has places between their outermost samples.
-    pub fn around(&self, base: &Layer) -> Result<Grid> {
-        let mut bounds = ([0; 2], [base.grid.columns as i64, base.grid.rows as i64]);
-        for layer in &self.all {
-            let lie = Lie::of(&layer.grid, &base.grid);
-            let lie = lie.ok_or_else(|| no_way([(layer.path(), &layer.grid), (base.path(), &base.grid)]))?;
-            let (low, end) = lie.bounds(&layer.grid);
-            bounds.0 = [0, 1].map(|i| bounds.0[i].min(low[i]));
-            bounds.1 = [0, 1].map(|i| bounds.1[i].max(end[i]));
-        }
-        let (low, end) = bounds;
-        let to_crs = base.grid.to_crs * DAffine2::from_translation(DVec2::new(low[0] as f64, low[1] as f64));
-        let [columns, rows] = [0, 1].map(|i| end[i].saturating_sub(low[i]) as usize);
-        Ok(Grid { to_crs, columns, rows, crs: base.grid.crs.clone() })
-    }
-
     /// The crop in the units of `grid`: the smallest rectangle around it where these are not those of the first file.
     pub fn crop_on(&self, grid: &Grid, crop: Option<[f64; 4]>) -> Result<Option<[f64; 4]>> {
         let own = &self.first().grid;
@@ -138,7 +124,7 @@ impl Layers {
         if own.crs == grid.crs {
             return Ok(Some(crop));
         }
-        carried(crop, &own.crs, &grid.crs).map(Some).ok_or_else(|| {
+        crop::carried(crop, &own.crs, &grid.crs).map(Some).ok_or_else(|| {
             let remedy = "give a part of the globe that the map of the DEM shows";
             Error::setting(Setting::Crop, "its edges have no place on the map of the DEM", remedy)
         })
@@ -213,17 +199,6 @@ fn finest_last(cells: &[f64], lasts: &[usize]) -> Vec<usize> {
     let as_fine = |a: &usize, b: &usize| cells[*a] <= cells[*b] * (1.0 + AS_FINE);
     places.chunk_by_mut(as_fine).for_each(|like| like.sort_by_key(|place| lasts[*place]));
     places
-}
-
-/// The smallest rectangle of one system around that of another; `None` where its edges have no place there.
-pub(super) fn carried([west, south, east, north]: [f64; 4], from: &Crs, to: &Crs) -> Option<[f64; 4]> {
-    // As four samples have it, in the corners.
-    let mut places = Window { first: [0, 0], size: [2, 2] }.outline();
-    let size = DVec2::new(east - west, north - south);
-    places.iter_mut().for_each(|place| *place = DVec2::new(west, south) + (*place - 0.5) * size);
-    Way::between(from, to)?.carry(&mut places);
-    let [low, high] = span(&places);
-    places.iter().all(|place| place.is_finite()).then_some([low.x, low.y, high.x, high.y])
 }
 
 /// Side of a square as large as a cell in the middle of a grid, metres on the ground; on the map where the place on the

@@ -1,6 +1,7 @@
 //! Whatever GDAL opens, as a DEM: files are found, checked, understood, laid together and warped here.
 
 mod archive;
+mod around;
 mod assumed;
 mod choice;
 mod crop;

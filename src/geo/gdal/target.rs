@@ -10,6 +10,7 @@ use std::path::Path;
 
 use glam::DVec2;
 
+use super::crop::carried;
 use super::crs::Way;
 use super::grid::{Grid, span};
 use super::ground::{Ground, places};
@@ -25,6 +26,8 @@ use crate::message;
 
 /// Pixels from the border of the files to where cubic convolution has all its samples.
 const BORDER: f64 = 1.5;
+/// Digits of a crop: centimetres of a northing, a tenth of a metre in degrees.
+pub(super) const CROP_DIGITS: i32 = 9;
 /// Samples along a side from which something is left when it is warped.
 const WARPED_SIDE: usize = 5;
 /// Widest and highest DEM in degrees that a zone of UTM shows within two percent of its true size.
@@ -52,25 +55,28 @@ struct Asked<'a> {
     window: Window,
     /// In the coordinates of `files`.
     crop: Option<[f64; 4]>,
+    /// The system in which crops are typed.
+    typed: &'a Crs,
     options: &'a ReadOptions,
 }
 
 impl Target {
-    /// For the grid of the files; `path` is the first, for messages; `crop` is in the coordinates of `files`. Fails when
-    /// too little is left.
+    /// For the grid of the files; `path` is the first, for messages; `crop` is in the coordinates of `files`, and `typed` the
+    /// system in which another would be typed. Fails when too little is left.
     pub fn of(
         files: &Grid,
         path: &Path,
         crop: Option<[f64; 4]>,
+        typed: &Crs,
         options: &ReadOptions,
         history: &mut History,
     ) -> Result<Self> {
         let window = match crop {
             None => files.whole(),
-            Some(crop) => files.window(crop).ok_or_else(|| outside(files, path))?,
+            Some(crop) => files.window(crop).ok_or_else(|| outside(files, path, typed))?,
         };
         check_sides(window.size, files, path)?;
-        let asked = Asked { files, path, window, crop, options };
+        let asked = Asked { files, path, window, crop, typed, options };
         let off = Ground::of(files, window).filter(Ground::is_off);
         let truer = off.as_ref().and_then(|off| asked.truer(off));
         let warped = truer.as_ref().zip(off.as_ref()).filter(|_| options.warp);
@@ -171,15 +177,14 @@ impl Asked<'_> {
         let middle = files.centre(window);
         let polar = is_polar(degrees(&files.crs, middle).ok_or_else(|| lost(path))?.y);
         if height > HIGHEST || (width > WIDEST && !polar) {
-            return Err(Error::input(
-                path,
-                format!("spans {width:.0} x {height:.0} degrees, too much of the globe for one map in metres"),
-                message![
-                    format!("take at most {WIDEST} x {HIGHEST} degrees, for instance `"),
-                    Setting::Crop.at(middle_part(files, &part, per_unit)),
-                    "`"
-                ],
-            ));
+            let mut remedy = message![format!("take at most {WIDEST} x {HIGHEST} degrees")];
+            if self.typed.as_defined() == files.crs.as_defined() {
+                remedy.push(", for instance `");
+                remedy.push(Setting::Crop.at(middle_part(files, &part, per_unit)));
+                remedy.push("`");
+            }
+            let what = format!("spans {width:.0} x {height:.0} degrees, too much of the globe for one map in metres");
+            return Err(Error::input(path, what, remedy));
         }
         metric(&files.crs, middle).ok_or_else(|| lost(path))
     }
@@ -328,8 +333,12 @@ fn too_small(files: &Grid, path: &Path, metres: f64, crs: &Crs) -> Error {
     )
 }
 
-fn outside(files: &Grid, path: &Path) -> Error {
-    let ([west, south, east, north], units) = (files.extent_in_file(), files.crs.units());
+fn outside(files: &Grid, path: &Path, typed: &Crs) -> Error {
+    let elsewhere = if *typed == files.crs { None } else { carried(files.extent(), &files.crs, &typed.as_defined()) };
+    let ([west, south, east, north], units) = match elsewhere {
+        Some(extent) => (extent.map(|edge| rounded(edge, CROP_DIGITS)), typed.units()),
+        None => (files.extent_in_file(), files.crs.units()),
+    };
     Error::input(
         path,
         message!["no sample lies inside ", Setting::Crop],
