@@ -232,6 +232,9 @@ fn what_is_found_and_smoothed_is_kept() {
     other[tile + 8..tile + 16].copy_from_slice(&xxh3_64(&hash).to_le_bytes());
     fs::write(&files[1], other).expect("a file");
     assert_eq!(read(&path, FILED).1[0], 777.0_f32.to_bits(), "what is kept is not read");
+    let mut kinds: Vec<_> = cache.list().iter().map(|file| file.kind).collect();
+    kinds.sort_unstable();
+    assert_eq!((kinds, cache.clear().files), (vec!["smooth", "steps"], 2), "a cache must know its own files");
 }
 
 #[test]
