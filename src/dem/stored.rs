@@ -17,7 +17,7 @@ use super::window::Window;
 use crate::cache::{Kept, Key, Kind, Sheet};
 
 /// Raise it when the bytes mean something else.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 const KIND: Kind =
     Kind { name: "smooth", format: FORMAT, words: ["what was made of the heights", "what was kept of the heights"] };
 
