@@ -13,7 +13,7 @@ use xxhash_rust::xxh3::xxh3_128;
 
 use super::filed::Filed;
 use super::places::Places;
-use super::stored::{Stored, key};
+use super::stored::{Found, Stored, key};
 use super::tiles::Tiles;
 use super::tiling::{Tiling, copy};
 use super::window::Window;
@@ -102,7 +102,13 @@ impl<F: Focal> Worked<F> {
         }
         // What was read of files that changed meanwhile is of neither state.
         self.check()?;
-        Ok(Stored::finish(sheet, hashes, tiles))
+        let found = Found { marks: self.of.tiles().marks(), assumed: self.of.tiles().assumed() };
+        Ok(Stored::finish(sheet, hashes, tiles, found))
+    }
+
+    /// What was found of the samples where all of them are kept: they are not read then.
+    fn found(&self) -> Option<&Found> {
+        self.stored.as_ref().map(Stored::found)
     }
 
     /// `tiles`, row by row of them, those together for which the grid is read at once.
@@ -151,11 +157,11 @@ impl<F: Focal> Tiles for Worked<F> {
     }
 
     fn marks(&self) -> usize {
-        self.of.tiles().marks()
+        self.found().map_or_else(|| self.of.tiles().marks(), |found| found.marks)
     }
 
     fn assumed(&self) -> Vec<Message> {
-        self.of.tiles().assumed()
+        self.found().map_or_else(|| self.of.tiles().assumed(), |found| found.assumed.clone())
     }
 
     fn all_void(&self) -> Error {
