@@ -229,9 +229,33 @@ fn what_is_found_and_smoothed_is_kept() {
     other[..4].copy_from_slice(&777.0_f32.to_le_bytes());
     let hash = xxh3_64(&other[..tile]).to_le_bytes();
     other[tile..tile + 8].copy_from_slice(&hash);
-    other[tile + 8..tile + 16].copy_from_slice(&xxh3_64(&hash).to_le_bytes());
+    // What was found, and its length.
+    let end = tile + 8 + other[tile + 8..].iter().position(|byte| *byte == b'}').expect("words") + 1 + 8;
+    let hash = xxh3_64(&other[tile..end]).to_le_bytes();
+    other[end..end + 8].copy_from_slice(&hash);
     fs::write(&files[1], other).expect("a file");
     assert_eq!(read(&path, FILED).1[0], 777.0_f32.to_bits(), "what is kept is not read");
+    let mut kinds: Vec<_> = cache.list().iter().map(|file| file.kind).collect();
+    kinds.sort_unstable();
+    assert_eq!((kinds, cache.clear().files), (vec!["smooth", "steps"], 2), "a cache must know its own files");
+}
+
+#[test]
+fn what_is_assumed_of_numbers_is_kept_with_smooth_heights() {
+    let dir = folder();
+    let cache = Cache::in_folder(dir.path().join("cache"));
+    // A corner of a mark that the file does not declare.
+    let numbers = |c, r| if c < 5 && r < 4 { -9998 } else { stepped(1.0)(c, r) as i16 };
+    let path = written(dir.path().join("marks.tif"), [256, 256], metres(0.0, 0.0), numbers);
+    let survey = || {
+        let dem = read(&path, &ReadOptions { cache: cache.clone(), ..options(FILED) }).expect("a DEM");
+        let survey = dem.survey(&|_| ()).expect("a survey").clone();
+        assert!(!dem.history().steps().is_empty());
+        (words(&survey.assumed), survey.marks, dem.samples_read())
+    };
+    let (first, second) = (survey(), survey());
+    assert!(first.0.concat().contains("-9998"), "{first:?}");
+    assert_eq!(first, second, "heights that are kept say nothing of the numbers");
 }
 
 #[test]

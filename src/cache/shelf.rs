@@ -8,7 +8,7 @@ use std::time::{Duration, SystemTime};
 use super::{Cache, entry, lock};
 
 /// Kinds of files by how their names begin; the last one is of earlier versions, and goes in its turn.
-const KINDS: [&str; 4] = ["bounds-", "heights-", "truth-", "prepared-"];
+const KINDS: [&str; 6] = ["bounds-", "heights-", "smooth-", "steps-", "truth-", "prepared-"];
 /// Letters of a name behind that.
 const DIGITS: usize = 32;
 /// How the names of files in the making begin; outputs of other kinds in the same folder are called otherwise.

@@ -1,8 +1,9 @@
 //! Heights that depend on those around them: tiles of a grid, changed by what works on a window with a halo.
 //!
-//! Cost: a tile is read with its halo, so tiles are larger than those of the grid; the grid's own are kept while they fit,
-//! so that none is read anew for each halo it lies in. What comes of the work may be kept on disk (`stored`),
-//! all of it once, and is read from there ever after. Memory: a quarter of the budget, a tile with its halo a thread.
+//! Cost: a tile is read with its halo, so tiles are squares of their own, whatever those of the grid are; the grid's own are
+//! kept while they fit, so that none is read anew for each halo it lies in. What comes of the work may be kept on disk
+//! (`stored`), all of it once, and is read from there ever after; then neighbours are read together, for the grid's own
+//! tiles may be as wide as it is. Memory: as much as the budget, but one tile at work and what is read for some at least.
 
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -11,17 +12,22 @@ use rayon::prelude::*;
 use xxhash_rust::xxh3::xxh3_128;
 
 use super::filed::Filed;
-use super::stored::{Stored, key};
+use super::places::Places;
+use super::stored::{Found, Stored, key};
 use super::tiles::Tiles;
 use super::tiling::{Tiling, copy};
 use super::window::Window;
 use crate::cache::{Cache, Hearing, Sheet};
 use crate::error::{Error, Message, Result};
 
-/// Tiles that each core works on before they are written.
-const TILES_A_CORE: usize = 2;
-/// Shortest side of a tile in halos: then no more than 2 1/4 samples are worked on for one.
+/// Side of a tile in halos: then no more than 2 1/4 samples are worked on for one.
 const HALOS: usize = 4;
+/// Shortest side of a tile, samples.
+const SIDE: usize = 512;
+/// Bytes a sample at work.
+const WORK_BYTES: usize = 24;
+/// Bytes of samples that may be read together whatever the budget.
+const TOGETHER: usize = 16 << 20;
 
 /// Work on heights that looks at those around.
 ///
@@ -46,13 +52,18 @@ pub trait Focal: Debug + Send + Sync {
 pub struct Worked<F> {
     of: Filed,
     by: F,
+    tiling: Tiling,
+    places: Places,
     stored: Option<Stored>,
 }
 
 impl<F: Focal> Worked<F> {
-    /// All of `tiles`; half of `budget` bytes is for those who keep what comes of them.
+    /// All of `tiles`; half of `budget` bytes is for the tiles at work, a quarter for what is read of the grid and kept.
     pub fn new(tiles: Arc<dyn Tiles>, by: F, budget: usize) -> Self {
-        Self { of: Filed::new(tiles, 1.0, budget / 2), by, stored: None }
+        let side = (HALOS * by.halo()).max(SIDE);
+        let tiling = Tiling::whole([side; 2], tiles.size());
+        let places = Places::new(budget / 2 / (WORK_BYTES * (side + 2 * by.halo()).pow(2)));
+        Self { of: Filed::new(tiles, 1.0, budget / 2), by, tiling, places, stored: None }
     }
 
     /// The same, with what comes of the work found in the cache, or made and kept there; `of`: what it is made of, for people.
@@ -76,29 +87,45 @@ impl<F: Focal> Worked<F> {
 
     /// Works on all `tiles` and keeps what comes of it; `None` where it cannot be kept.
     fn make(&self, mut sheet: Sheet, tiles: &[Window], progress: &dyn Fn(f64)) -> Result<Option<Stored>> {
-        let at_once = if self.is_parallel() { TILES_A_CORE * rayon::current_num_threads() } else { 1 };
         let mut hashes = Vec::with_capacity(tiles.len());
-        for batch in tiles.chunks(at_once) {
-            let made: Vec<_> = match batch {
-                [tile] => vec![self.work(*tile)?],
-                _ => batch.par_iter().map(|tile| self.work(*tile)).collect::<Result<_>>()?,
-            };
-            hashes.extend(made.iter().map(|heights| Stored::write(&mut sheet, heights)));
-            progress(hashes.len() as f64 / tiles.len() as f64);
+        for run in self.runs(tiles) {
+            let width = run.iter().map(|tile| tile.size[0]).sum();
+            let around =
+                Window { first: run[0].first, size: [width, run[0].size[1]] }.with_halo(self.by.halo(), self.size());
+            let read = self.of.read(around, &|_| ())?;
+            for batch in run.chunks(self.places.together()) {
+                let work = |tile: &Window| self.work(*tile, |onto| Ok(part(around, &read, onto)));
+                let made: Vec<_> = batch.par_iter().map(work).collect::<Result<_>>()?;
+                hashes.extend(made.iter().map(|heights| Stored::write(&mut sheet, heights)));
+                progress(hashes.len() as f64 / tiles.len() as f64);
+            }
         }
         // What was read of files that changed meanwhile is of neither state.
         self.check()?;
-        Ok(Stored::finish(sheet, hashes, tiles))
+        let found = Found { marks: self.of.tiles().marks(), assumed: self.of.tiles().assumed() };
+        Ok(Stored::finish(sheet, hashes, tiles, found))
     }
 
-    /// The heights of a tile after the work.
-    fn work(&self, window: Window) -> Result<Vec<f32>> {
-        let around = window.with_halo(self.by.halo(), self.size());
-        let mut heights = self.of.read_alone(around)?;
+    /// What was found of the samples where all of them are kept: they are not read then.
+    fn found(&self) -> Option<&Found> {
+        self.stored.as_ref().map(Stored::found)
+    }
+
+    /// `tiles`, row by row of them, those together for which the grid is read at once.
+    fn runs<'a>(&self, tiles: &'a [Window]) -> impl Iterator<Item = &'a [Window]> {
+        let (side, halo) = (self.tiling.size[1], self.by.halo());
+        let columns = (self.of.budget() / 2).max(TOGETHER) / (size_of::<f32>() * (side + 2 * halo));
+        let most = (columns.saturating_sub(2 * halo) / side).max(1);
+        tiles.chunk_by(|a, b| a.first[1] == b.first[1]).flat_map(move |row| row.chunks(most))
+    }
+
+    /// The heights of a tile after the work; `read` gives those of a window before. Waits while too many are at work.
+    fn work(&self, tile: Window, read: impl FnOnce(Window) -> Result<Vec<f32>>) -> Result<Vec<f32>> {
+        let _place = self.places.take();
+        let around = tile.with_halo(self.by.halo(), self.size());
+        let mut heights = read(around)?;
         self.by.apply(&mut heights, around)?;
-        let mut inside = vec![f32::NAN; window.samples() as usize];
-        copy(around, &heights, window, &mut inside);
-        Ok(inside)
+        Ok(part(around, &heights, tile))
     }
 }
 
@@ -108,7 +135,7 @@ impl<F: Focal> Tiles for Worked<F> {
     }
 
     fn tiling(&self) -> Tiling {
-        self.of.tiles().tiling().at_least(HALOS * self.by.halo())
+        self.tiling
     }
 
     fn is_parallel(&self) -> bool {
@@ -117,7 +144,7 @@ impl<F: Focal> Tiles for Worked<F> {
 
     fn read(&self, window: Window) -> Result<Vec<f32>> {
         let stored = self.stored.as_ref().and_then(|stored| stored.read(window));
-        stored.map_or_else(|| self.work(window), Ok)
+        stored.map_or_else(|| self.work(window, |around| self.of.read_alone(around)), Ok)
     }
 
     fn stamp(&self) -> Option<u128> {
@@ -130,14 +157,121 @@ impl<F: Focal> Tiles for Worked<F> {
     }
 
     fn marks(&self) -> usize {
-        self.of.tiles().marks()
+        self.found().map_or_else(|| self.of.tiles().marks(), |found| found.marks)
     }
 
     fn assumed(&self) -> Vec<Message> {
-        self.of.tiles().assumed()
+        self.found().map_or_else(|| self.of.tiles().assumed(), |found| found.assumed.clone())
     }
 
     fn all_void(&self) -> Error {
         self.of.tiles().all_void()
+    }
+}
+
+/// The samples of a part of a window.
+fn part(of: Window, samples: &[f32], part: Window) -> Vec<f32> {
+    let mut inside = vec![f32::NAN; part.samples() as usize];
+    copy(of, samples, part, &mut inside);
+    inside
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+
+    use super::*;
+
+    const SIZE: [usize; 2] = [6000, 1100];
+
+    /// A file in strips as wide as it is, which counts what is read of it.
+    #[derive(Debug, Default)]
+    struct Strips {
+        read: AtomicU64,
+    }
+
+    impl Tiles for Strips {
+        fn size(&self) -> [usize; 2] {
+            SIZE
+        }
+
+        fn tiling(&self) -> Tiling {
+            Tiling::of([SIZE[0], 1], [0; 2], SIZE)
+        }
+
+        fn is_parallel(&self) -> bool {
+            true
+        }
+
+        fn read(&self, window: Window) -> Result<Vec<f32>> {
+            self.read.fetch_add(window.samples(), Ordering::Relaxed);
+            Ok((0..window.samples()).map(|i| (i % 1000) as f32).collect())
+        }
+
+        fn stamp(&self) -> Option<u128> {
+            Some(1)
+        }
+
+        fn check(&self) -> Result<()> {
+            Ok(())
+        }
+
+        fn marks(&self) -> usize {
+            0
+        }
+
+        fn assumed(&self) -> Vec<Message> {
+            Vec::new()
+        }
+
+        fn all_void(&self) -> Error {
+            Error::limit("nothing", "nothing")
+        }
+    }
+
+    /// Work that adds one, and counts how many work at once.
+    #[derive(Debug, Default)]
+    struct More {
+        at_work: AtomicUsize,
+        most: Arc<AtomicUsize>,
+    }
+
+    impl Focal for More {
+        fn halo(&self) -> usize {
+            10
+        }
+
+        fn apply(&self, heights: &mut [f32], _: Window) -> Result<()> {
+            let at_work = self.at_work.fetch_add(1, Ordering::SeqCst) + 1;
+            self.most.fetch_max(at_work, Ordering::SeqCst);
+            heights.iter_mut().for_each(|height| *height += 1.0);
+            self.at_work.fetch_sub(1, Ordering::SeqCst);
+            Ok(())
+        }
+
+        fn stamp(&self) -> u128 {
+            2
+        }
+    }
+
+    #[test]
+    fn strips_are_worked_on_in_squares_and_read_about_once() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let cache = Cache::in_folder(dir.path().to_owned());
+        let (strips, by) = (Arc::new(Strips::default()), More::default());
+        let most = by.most.clone();
+        // Fewer bytes than any tile takes.
+        let worked = Worked::new(strips.clone(), by, 1 << 10);
+        assert_eq!(worked.tiling().size, [SIDE; 2]);
+        let worked = worked.kept_in(&cache, String::new(), &|_| ()).expect("heights");
+        let [read, all] = [strips.read.load(Ordering::Relaxed), SIZE.iter().product::<usize>() as u64];
+        assert!((all..all * 5 / 4).contains(&read), "{read} samples read of {all}");
+        assert_eq!(most.load(Ordering::SeqCst), 1, "tiles at work at once");
+        let tile = worked.tiling().tile([2000, 600]);
+        let before = strips.read.load(Ordering::Relaxed);
+        assert!(
+            worked.stored.is_some() && worked.read(tile).is_ok_and(|heights| heights.len() as u64 == tile.samples())
+        );
+        assert_eq!(strips.read.load(Ordering::Relaxed), before, "read from the files again");
     }
 }

@@ -56,7 +56,7 @@ pub fn generalise(heights: &mut [f32], window: Window, cell: DVec2, metres: f64,
         let size = [tile, rows.len() / width];
         for column in (0..width).step_by(tile) {
             let part = Window { first: [column, at * tile], size: [size[0].min(width - column), size[1]] };
-            let around = about(part, window.size, halo);
+            let around = part.with_halo(halo, window.size);
             let smooth = smoothed(&cut(&rough, width, around), shifted(around, window.first), sides, metres);
             for (r, row) in rows.chunks_exact_mut(width).enumerate() {
                 let from = (part.first[1] + r - around.first[1]) * around.size[0] + column - around.first[0];
@@ -86,13 +86,6 @@ fn smoothed(rough: &[f32], window: Window, sides: [usize; 2], metres: f64) -> Ve
         *smooth += (rough - *smooth).clamp(-most, most);
     }
     surface(&first, POWERS[1])
-}
-
-/// A part of a grid of so many samples with those around it.
-fn about(part: Window, whole: [usize; 2], halo: usize) -> Window {
-    let first = part.first.map(|first| first.saturating_sub(halo));
-    let end = [0, 1].map(|i| (part.first[i] + part.size[i] + halo).min(whole[i]));
-    Window { first, size: [0, 1].map(|i| end[i] - first[i]) }
 }
 
 /// The samples of a part of a grid of so many columns.

@@ -12,6 +12,7 @@ mod history;
 pub(crate) mod in_bands;
 mod north;
 mod overviews;
+mod places;
 mod samples;
 pub mod scale;
 pub mod smoothest;

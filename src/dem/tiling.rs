@@ -39,11 +39,6 @@ impl Tiling {
         Self { size, before: [0; 2], whole }
     }
 
-    /// The same grid with so many of its tiles in one that no whole tile has a shorter side.
-    pub fn at_least(self, side: usize) -> Self {
-        Self { size: self.size.map(|size| size * side.div_ceil(size).max(1)), ..self }
-    }
-
     /// The tile that holds sample (c, r).
     pub fn tile(&self, at: [usize; 2]) -> Window {
         let borders = [0, 1].map(|i| {
