@@ -16,7 +16,8 @@ const COLUMNS: usize = 64;
 /// `surface` after so many sweeps on a level.
 pub fn relaxed(level: &Level, mut surface: Vec<f32>, sweeps: usize, parallel: bool) -> Vec<f32> {
     let width = level.window.size[0];
-    let runs: Vec<_> = level.half.chunks(ROWS * width).map(|half| loose(half, width)).collect();
+    let bands = level.middle.chunks(ROWS * width).zip(level.half.chunks(ROWS * width));
+    let runs: Vec<_> = bands.map(|(middle, half)| loose(middle, half, width)).collect();
     let (mut ahead, mut next) = (surface.clone(), surface.clone());
     for sweep in 0..sweeps {
         let momentum = sweep as f32 / (sweep + 3) as f32;
@@ -34,11 +35,12 @@ pub fn relaxed(level: &Level, mut surface: Vec<f32>, sweeps: usize, parallel: bo
 }
 
 /// Runs of columns in which something can move.
-fn loose(half: &[f32], width: usize) -> Vec<Range<usize>> {
+fn loose(middle: &[f32], half: &[f32], width: usize) -> Vec<Range<usize>> {
     let mut runs: Vec<Range<usize>> = Vec::new();
     for first in (0..width).step_by(COLUMNS) {
         let columns = first..(first + COLUMNS).min(width);
-        if half.chunks_exact(width).all(|row| row[columns.clone()].iter().all(|half| *half == 0.0)) {
+        let mut rows = middle.chunks_exact(width).zip(half.chunks_exact(width));
+        if rows.all(|(middle, half)| columns.clone().all(|c| is_fixed(middle[c], half[c]))) {
             continue;
         }
         match runs.last_mut() {
@@ -47,6 +49,11 @@ fn loose(half: &[f32], width: usize) -> Vec<Range<usize>> {
         }
     }
     runs
+}
+
+/// Whether a sample stays as it is: one without a band, or a void, which would cost what a rim costs in every sweep.
+fn is_fixed(middle: f32, half: f32) -> bool {
+    half == 0.0 || middle.is_nan()
 }
 
 /// Rows of a level, from `first` on, and the surface ahead of which they are swept.
@@ -102,7 +109,7 @@ impl Rows<'_> {
         }
     }
 
-    /// The gradient of the energy along a run of row `r`.
+    /// The gradient of the energy along a run of row `r`; near edges 0 where nothing moves.
     fn pull(&self, [above, here, below]: [&[f32]; 3], r: usize, run: &Range<usize>, pull: &mut [f32]) {
         let width = here.len();
         pull.fill(f32::NAN);
@@ -116,8 +123,9 @@ impl Rows<'_> {
             }
         }
         if pull.iter().any(|pull| pull.is_nan()) {
+            let (middle, half) = (&self.level.middle[r * width..][..width], &self.level.half[r * width..][..width]);
             for (pull, c) in pull.iter_mut().zip(run.clone()).filter(|(pull, _)| pull.is_nan()) {
-                *pull = self.pull_at_edge(c, r);
+                *pull = if is_fixed(middle[c], half[c]) { 0.0 } else { self.pull_at_edge(c, r) };
             }
         }
     }
@@ -168,5 +176,32 @@ fn advance(
         let moved = clamped(ahead[i] - STEP * pull[i], middle[i], half[i]);
         next[i] = moved + momentum * (moved - surface[i]);
         surface[i] = moved;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dem::window::Window;
+
+    #[test]
+    fn voids_cost_no_look_at_their_neighbours() {
+        let size = [2 * COLUMNS + 3, ROWS];
+        // Nothing but voids and exact heights in the middle block of columns.
+        let middle: Vec<_> = (0..size[0] * size[1])
+            .map(|i| match (i % size[0], i / size[0]) {
+                (c, r) if (COLUMNS..2 * COLUMNS).contains(&c) && r != 3 => f32::NAN,
+                (c, r) => (c * c % 7 + r * r % 5) as f32,
+            })
+            .collect();
+        let in_block = |i: usize| (COLUMNS..2 * COLUMNS).contains(&(i % size[0]));
+        let half: Vec<_> = (0..middle.len()).map(|i| if in_block(i) && i / size[0] == 3 { 0.0 } else { 0.5 }).collect();
+        assert_eq!(loose(&middle, &half, size[0]), [0..COLUMNS, 2 * COLUMNS..size[0]]);
+
+        let level = Level::finest(&middle, &half, Window { first: [0, 0], size });
+        let rows = Rows { level: &level, ahead: &middle, first: 0, runs: &[] };
+        let (missing, mut pull) = (vec![f32::NAN; size[0]], vec![0.0; size[0]]);
+        rows.pull([&missing; 3], 2, &(0..size[0]), &mut pull);
+        assert!((0..size[0]).all(|c| (pull[c] == 0.0) == in_block(c)), "{pull:?}");
     }
 }

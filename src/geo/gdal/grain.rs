@@ -12,6 +12,8 @@ const FINEST: f64 = 0.05;
 const MOST: usize = 256;
 /// Fewer distinct numbers say nothing of a step: a plain and a tableland are multiples of their difference.
 const LEVELS: usize = 6;
+/// Whole numbers by their type are known to be a step apart; fewer of them have no stairs.
+const WHOLE_LEVELS: usize = 2;
 /// Nor do fewer samples: a handful of whole numbers is a coincidence, or too small to have stairs.
 const SAMPLES: u64 = 1024;
 /// How far a number in 32 bits may be from the one meant, as a share of it: half a unit in its last place.
@@ -76,11 +78,14 @@ impl Grain {
         self.divisor.is_some() || self.distinct.is_some()
     }
 
-    /// What the samples say.
-    pub fn found(&self) -> Found {
+    /// What the samples say; `is_whole`: their type holds whole numbers alone, so that 1 is a step where there are too few
+    /// levels for a larger one, as on polders and in crops.
+    pub fn found(&self, is_whole: bool) -> Found {
         let spread = || self.distinct.as_deref().and_then(evenly_spread);
-        let few = self.samples < SAMPLES || self.distinct.as_ref().is_some_and(|distinct| distinct.len() < LEVELS);
+        let fewer = |levels| self.distinct.as_ref().is_some_and(|distinct| distinct.len() < levels);
+        let few = self.samples < SAMPLES || fewer(LEVELS);
         match self.divisor.map(|divisor| divisor as f64 * FINEST) {
+            Some(_) if is_whole && few && self.samples >= SAMPLES && !fewer(WHOLE_LEVELS) => Found::Step(1.0),
             Some(step) if few => Found::Unsure(step),
             // Whole steps beside a constant part have a smaller divisor.
             Some(step) => Found::Step(spread().map_or(step, |spread| spread.max(step))),
@@ -150,7 +155,7 @@ mod tests {
     }
 
     fn step(grain: &Grain) -> Option<f64> {
-        match grain.found() {
+        match grain.found(false) {
             Found::Step(step) => Some(step),
             _ => None,
         }
@@ -171,22 +176,33 @@ mod tests {
 
     #[test]
     fn what_has_no_step_has_none() {
-        assert_eq!(of(|height| f64::from(height as f32)).found(), Found::None);
+        assert_eq!(of(|height| f64::from(height as f32)).found(false), Found::None);
         assert!(!of(|height| f64::from(height as f32)).may_have(), "and that is known early");
         let mut one_odd = of(rounded(1.0));
         one_odd.add(412.3301);
-        assert_eq!(one_odd.found(), Found::None, "one number is no multiple");
-        assert_eq!(of(rounded(0.01)).found(), Found::None, "too fine to be told from none");
+        assert_eq!(one_odd.found(false), Found::None, "one number is no multiple");
+        assert_eq!(of(rounded(0.01)).found(false), Found::None, "too fine to be told from none");
     }
 
     #[test]
     fn few_levels_or_samples_say_nothing() {
-        assert_eq!(of(|_| 250.0).found(), Found::Unsure(250.0));
-        assert_eq!(of(|_| 0.0).found(), Found::Unsure(0.0));
-        assert_eq!(of(|height| if height > 700.0 { 900.0 } else { 300.0 }).found(), Found::Unsure(300.0));
+        assert_eq!(of(|_| 250.0).found(false), Found::Unsure(250.0));
+        assert_eq!(of(|_| 0.0).found(false), Found::Unsure(0.0));
+        assert_eq!(of(|height| if height > 700.0 { 900.0 } else { 300.0 }).found(false), Found::Unsure(300.0));
         let mut few = Grain::new();
         (100..112).for_each(|height| few.add(f64::from(height)));
-        assert_eq!(few.found(), Found::Unsure(1.0));
+        assert_eq!(few.found(false), Found::Unsure(1.0));
+    }
+
+    #[test]
+    fn whole_numbers_by_their_type_are_a_step_apart() {
+        let polder = of(|height| (height / 300.0).round());
+        assert_eq!(polder.found(false), Found::Unsure(1.0));
+        assert_eq!(polder.found(true), Found::Step(1.0));
+        let tableland = of(|height| if height > 700.0 { 900.0 } else { 300.0 });
+        assert_eq!(tableland.found(true), Found::Step(1.0), "which their difference is not");
+        assert_eq!(of(|_| 250.0).found(true), Found::Unsure(250.0), "there are no stairs");
+        assert_eq!(of(rounded(10.0)).found(true), Found::Step(10.0));
     }
 
     #[test]
@@ -200,7 +216,7 @@ mod tests {
         let mut parts = part(4000..6000);
         parts.merge(&part(0..1000));
         parts.merge(&part(1000..4000));
-        assert_eq!(parts.found(), part(0..6000).found());
+        assert_eq!(parts.found(false), part(0..6000).found(false));
         assert_eq!((step(&part(0..3000)), step(&parts)), (Some(4.0), Some(0.5)));
     }
 }

@@ -20,7 +20,7 @@ impl Steps {
     /// Of `count` files, of which some numbers are tallied, each by its place; `None` where none has a step. A file that is
     /// too flat to tell has the step of another that its numbers are multiples of: a tile of sea beside others.
     pub fn of<'a>(count: usize, tallied: impl Iterator<Item = (usize, &'a Tallied<'a>)> + Clone) -> Option<Self> {
-        let found = |file: &Tallied<'_>| match file.tally.grain.found() {
+        let found = |file: &Tallied<'_>| match file.tally.grain.found(file.elevation.is_whole()) {
             Found::Step(step) => Found::Step(file.elevation.metres_between(step)),
             Found::Unsure(step) => Found::Unsure(file.elevation.metres_between(step)),
             Found::None => Found::None,
