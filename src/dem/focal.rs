@@ -109,7 +109,11 @@ impl<F: Focal> Worked<F> {
             let width = run.iter().map(|tile| tile.size[0]).sum();
             let around =
                 Window { first: run[0].first, size: [width, run[0].size[1]] }.with_halo(self.by.halo(), self.size());
-            let read = self.of.read(around, &|_| ())?;
+            // Several threads read into several tiles of the grid, which take memory too.
+            let read = match self.places.are_short() {
+                true => self.of.read_alone(around)?,
+                false => self.of.read(around, &|_| ())?,
+            };
             for batch in run.chunks(self.places.together()) {
                 let work = |tile: &Window| self.work(*tile, |onto| Ok(part(around, &read, onto)));
                 let made: Vec<_> = batch.par_iter().map(work).collect::<Result<_>>()?;
