@@ -14,7 +14,7 @@ use glam::DVec3;
 use hachure::cache::Cache;
 use hachure::dem::Dem;
 use hachure::error::Error;
-use hachure::geo::{ReadOptions, Stage, read, read_all};
+use hachure::geo::{Info, ReadOptions, Reading, Stage, info, read, read_all};
 use hachure::plan::{Border, Detail, Method, Plan};
 use hachure::surface::Surface;
 use tempfile::TempDir;
@@ -256,6 +256,39 @@ fn what_is_assumed_of_numbers_is_kept_with_smooth_heights() {
     let (first, second) = (survey(), survey());
     assert!(first.0.concat().contains("-9998"), "{first:?}");
     assert_eq!(first, second, "heights that are kept say nothing of the numbers");
+}
+
+#[test]
+fn heights_that_a_cache_has_no_room_for_are_not_kept() {
+    let dir = folder();
+    let path = whole_metres(&dir, [256, 256]);
+    let within = |size: u64| {
+        let cache = Cache::in_folder(dir.path().join(size.to_string())).with_size(size);
+        let dem = read(&path, &ReadOptions { cache: cache.clone(), ..options(FILED) }).expect("a DEM");
+        let kinds: Vec<_> = cache.list().iter().map(|file| file.kind).collect();
+        (bits(&dem), kinds.contains(&"smooth"), words(dem.history().converted()))
+    };
+    let [small, large] = [4 * 256 * 256 - 1, 1 << 30].map(within);
+    assert!(small.0 == large.0 && [small.1, large.1] == [false, true]);
+    let told = "smoothed heights are worked out anew in each run: they take 1 MiB, more than --cache-size allows";
+    assert_eq!(small.2.strip_prefix(large.2.as_slice()), Some(&[told.to_owned()][..]));
+}
+
+#[test]
+fn a_look_at_numbers_smooths_none_that_stay_in_their_files() {
+    let dir = folder();
+    let path = whole_metres(&dir, [256, 256]);
+    let ranges = [ReadOptions { keep_steps: true, ..Default::default() }, ReadOptions::default()]
+        .map(|options| read(&path, &options).expect("a DEM").range());
+    assert_ne!(ranges[0], ranges[1], "smoothing shows");
+    let told = |memory| info(slice::from_ref(&path), &options(memory), &|_, _| ()).expect("figures");
+    let [held, filed] = [1 << 30, FILED].map(told);
+    assert_eq!([Some(filed.range), Some(held.range)], ranges);
+    assert_eq!(filed.history, held.history, "how it is drawn is told all the same");
+    let says = |info: &Info| info.to_string().contains("m, before they are smoothed\n");
+    assert_eq!([says(&filed), says(&held)], [true, false]);
+    let refused = Reading::new(slice::from_ref(&path), &options(FILED)).map(|reading| reading.check_held());
+    assert!(matches!(refused, Ok(Err(Error::Limit { .. }))), "held without a look at a sample");
 }
 
 #[test]

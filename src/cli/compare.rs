@@ -130,6 +130,8 @@ pub fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
     // Before anything is written: a report may replace none of the files that it is made of.
     let open = |job: &Job| arguments.terrain.open(&job.files, arguments.exaggeration, Cache::none());
     let readings = jobs.iter().map(open).collect::<Result<Vec<_>>>()?;
+    // Truth looks at every sample again and again.
+    readings.iter().try_for_each(Reading::check_held)?;
     let inputs = readings.iter().flat_map(Reading::files).chain(arguments.views.as_deref());
     let pictures = names.flat_map(|name| comparison.picture_names(&name));
     let folder = Folder::open(&arguments.output, pictures, Taken::inputs(inputs))?;
@@ -203,8 +205,6 @@ impl CompareArguments {
 
     fn surface(&self, reading: Reading, talk: &Talk) -> Result<Surface> {
         let dem = self.terrain.read(reading, talk)?;
-        // Truth looks at every sample again and again.
-        dem.held()?;
         dem.check_patches()?;
         cells::warn(&dem, self.exaggeration, talk);
         Ok(Surface::new(dem))

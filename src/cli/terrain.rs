@@ -132,7 +132,7 @@ pub fn words(stage: Stage) -> &'static str {
         Stage::Read => "reading the DEM",
         Stage::Warp => "warping it to metres",
         Stage::Fill => "filling voids",
-        Stage::Look => "looking for steps, once for this file",
+        Stage::Look => "looking for steps",
         Stage::Smooth => "smoothing heights, once for this file",
     }
 }

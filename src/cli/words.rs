@@ -22,6 +22,7 @@ pub fn flag(setting: Setting) -> &'static str {
         Setting::Band => "--band",
         Setting::Border => "--border",
         Setting::Cache => "--cache",
+        Setting::CacheSize => "--cache-size",
         Setting::Cell => "--cell",
         Setting::CellOf => "--cell-of",
         Setting::Crop => "--crop",

@@ -13,12 +13,13 @@ use xxhash_rust::xxh3::xxh3_128;
 
 use super::filed::Filed;
 use super::places::Places;
-use super::stored::{Found, Stored, key};
+use super::stored::{Found, Stored, bytes_of, key};
 use super::tiles::Tiles;
 use super::tiling::{Tiling, copy};
 use super::window::Window;
 use crate::cache::{Cache, Hearing, Sheet};
-use crate::error::{Error, Message, Result};
+use crate::error::{Error, Message, Result, Setting};
+use crate::message;
 
 /// Side of a tile in halos: then no more than 2 1/4 samples are worked on for one.
 const HALOS: usize = 4;
@@ -66,14 +67,25 @@ impl<F: Focal> Worked<F> {
         Self { of: Filed::new(tiles, 1.0, budget / 2), by, tiling, places, stored: None }
     }
 
+    /// What is wrong with keeping what comes of the work in the cache, where that has no room for it: then the work is done
+    /// whenever heights are read.
+    pub fn too_large_for(&self, cache: &Cache) -> Option<Message> {
+        let bytes = bytes_of(&[self.whole()]);
+        let needed =
+            format!("smoothed heights are worked out anew in each run: they take {} MiB, ", bytes.div_ceil(1 << 20));
+        (cache.folder().is_some() && bytes > cache.size())
+            .then(|| message![needed, "more than ", Setting::CacheSize, " allows"])
+    }
+
     /// The same, with what comes of the work found in the cache, or made and kept there; `of`: what it is made of, for people.
-    /// Without a folder nothing is made yet. `progress` hears the share done.
+    /// Without a folder, or room in it, nothing is made yet. `progress` hears the share done.
     ///
     /// # Errors
     /// Those of reading the tiles, and of the work.
     pub fn kept_in(self, cache: &Cache, of: String, progress: &dyn Fn(f64)) -> Result<Self> {
-        let Some(stamp) = cache.folder().and_then(|_| self.stamp()) else { return Ok(self) };
-        let tiles = self.tiling().tiles(Window { first: [0, 0], size: self.size() });
+        let folder = cache.folder().filter(|_| self.too_large_for(cache).is_none());
+        let Some(stamp) = folder.and_then(|_| self.stamp()) else { return Ok(self) };
+        let tiles = self.tiling().tiles(self.whole());
         // What is damaged is made anew; where nothing can be kept, those who keep more tell so.
         let hearing = Hearing { warn: &|_| (), progress };
         let stored = cache.get(
@@ -85,6 +97,11 @@ impl<F: Focal> Worked<F> {
         Ok(Self { stored, ..self })
     }
 
+    /// All of it.
+    fn whole(&self) -> Window {
+        Window { first: [0, 0], size: self.size() }
+    }
+
     /// Works on all `tiles` and keeps what comes of it; `None` where it cannot be kept.
     fn make(&self, mut sheet: Sheet, tiles: &[Window], progress: &dyn Fn(f64)) -> Result<Option<Stored>> {
         let mut hashes = Vec::with_capacity(tiles.len());
@@ -92,7 +109,11 @@ impl<F: Focal> Worked<F> {
             let width = run.iter().map(|tile| tile.size[0]).sum();
             let around =
                 Window { first: run[0].first, size: [width, run[0].size[1]] }.with_halo(self.by.halo(), self.size());
-            let read = self.of.read(around, &|_| ())?;
+            // Several threads read into several tiles of the grid, which take memory too.
+            let read = match self.places.are_short() {
+                true => self.of.read_alone(around)?,
+                false => self.of.read(around, &|_| ())?,
+            };
             for batch in run.chunks(self.places.together()) {
                 let work = |tile: &Window| self.work(*tile, |onto| Ok(part(around, &read, onto)));
                 let made: Vec<_> = batch.par_iter().map(work).collect::<Result<_>>()?;

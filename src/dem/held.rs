@@ -14,7 +14,7 @@ pub fn held_bytes(samples: u64) -> u64 {
 }
 
 /// The error of those who need samples in memory that stay in their files.
-pub(super) fn not_held([columns, rows]: [usize; 2]) -> Error {
+pub fn not_held([columns, rows]: [usize; 2]) -> Error {
     let samples = columns as u64 * rows as u64;
     let more = held_bytes(samples).div_ceil(1 << 20);
     let mut remedy = message!["use ", Setting::Crop, " to take a part"];

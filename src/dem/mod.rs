@@ -33,7 +33,7 @@ use filed::Filed;
 
 pub use bands::Band;
 pub use georeference::Georeference;
-pub use held::{LARGEST_SIDE, MAX_SAMPLES, held_bytes, mebibytes};
+pub use held::{LARGEST_SIDE, MAX_SAMPLES, held_bytes, mebibytes, not_held};
 pub use history::History;
 pub use north::{Bearings, North, convergence_in_words};
 pub use overviews::{Entry, OverviewBuilder, Overviews};

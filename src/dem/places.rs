@@ -32,8 +32,12 @@ impl Places {
 
     /// How much work is best given to all cores together: some for each, unless they lack places.
     pub fn together(&self) -> usize {
-        let cores = rayon::current_num_threads();
-        if self.all < cores { self.all } else { TILES_A_CORE * cores }
+        if self.are_short() { self.all } else { TILES_A_CORE * rayon::current_num_threads() }
+    }
+
+    /// Whether there are fewer than cores.
+    pub fn are_short(&self) -> bool {
+        self.all < rayon::current_num_threads()
     }
 
     fn free(&self) -> MutexGuard<'_, usize> {

@@ -25,7 +25,7 @@ impl Scale {
     /// Smooths all heights of a held grid of so many columns and rows, see [`generalise`], on every core.
     ///
     /// # Errors
-    /// None: those of [`in_bands`].
+    /// None: those of work that has none.
     pub fn smooth(&self, heights: &mut [f32], size: [usize; 2]) -> Result<()> {
         in_bands(heights, size, self.halo(), |heights, window| {
             generalise(heights, window, self.cell, self.metres, true);

@@ -46,6 +46,8 @@ settings! {
     Border = "border",
     /// The folder in which things are kept.
     Cache = "cache",
+    /// Bytes of what is kept.
+    CacheSize = "cache size",
     /// Metres between samples of files that do not say.
     Cell = "cell",
     /// The file whose grid is drawn.

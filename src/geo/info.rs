@@ -13,6 +13,8 @@ const UNNAMED: [&str; 3] = ["", "unknown", "unnamed"];
 /// What is known of a DEM after reading it whole. `Display` prints a few aligned lines, settings by their names.
 ///
 /// Size, extent, cell and range are those of the DEM as it is drawn; where its files are on another grid, `source` says so.
+/// Where heights stay in their files and are smoothed when they are drawn, the range is that of the files' numbers: it is not
+/// worth smoothing all of them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Info {
     /// The files as the user named them.
@@ -39,6 +41,8 @@ pub struct Info {
     pub cell: [f64; 2],
     /// Lowest and highest elevation, metres.
     pub range: [f32; 2],
+    /// Whether that is the range before heights are smoothed.
+    pub before_smoothing: bool,
     /// Samples without elevation.
     pub voids: usize,
     /// What was done to the files' samples and what was assumed of them.
@@ -59,7 +63,7 @@ impl Info {
 pub fn info(paths: &[PathBuf], options: &ReadOptions, progress: &dyn Fn(Stage, f64)) -> Result<Info> {
     let reading = Reading::new(paths, options)?;
     let (driver, source) = (reading.format().to_owned(), reading.warped_from());
-    let dem = reading.finish(progress)?;
+    let dem = reading.finish_as_read(progress)?;
     let survey = dem.survey(&|done| progress(Stage::Read, done))?;
     let mut history = dem.history().clone();
     survey.assumed.iter().for_each(|clause| history.assume(clause.clone()));
@@ -80,6 +84,7 @@ pub fn info(paths: &[PathBuf], options: &ReadOptions, progress: &dyn Fn(Stage, f
         convergence: dem.georeference().bearings(middle)?.convergence(),
         cell: dem.cell().to_array(),
         range: survey.range.unwrap_or_default(),
+        before_smoothing: dem.is_filed() && (options.generalise.is_some() || !dem.history().steps().is_empty()),
         voids: survey.voids,
         history,
     })
@@ -123,7 +128,8 @@ impl Info {
         }
         let [across, down] = self.cell.map(short);
         writeln!(f, "cell       {across} m x {down} m (east x north)")?;
-        writeln!(f, "elevation  {:.1} to {:.1} m", self.range[0], self.range[1])?;
+        let before = if self.before_smoothing { ", before they are smoothed" } else { "" };
+        writeln!(f, "elevation  {:.1} to {:.1} m{before}", self.range[0], self.range[1])?;
         write!(f, "voids      {} ({:.1} %)", self.voids, 100.0 * self.void_share())?;
         self.history.converted().iter().try_for_each(|clause| write!(f, "\nconverted  {}", told(clause)))?;
         let assumed = self.history.assumed().iter().chain(self.history.usual());

@@ -48,6 +48,22 @@ impl Reading {
     pub fn finish(self, _: &dyn Fn(Stage, f64)) -> Result<Dem> {
         match self {}
     }
+
+    /// Reads the samples.
+    ///
+    /// # Errors
+    /// None: nobody has one.
+    pub fn finish_as_read(self, _: &dyn Fn(Stage, f64)) -> Result<Dem> {
+        match self {}
+    }
+
+    /// Whether the samples are to be held in memory.
+    ///
+    /// # Errors
+    /// None: nobody has one.
+    pub fn check_held(&self) -> Result<()> {
+        match *self {}
+    }
 }
 
 impl Crs {

@@ -17,9 +17,10 @@ use super::limits::are_held;
 use super::part::Part;
 use super::smoothing::Smoothed;
 use super::target::Target;
-use crate::dem::focal::Worked;
+use crate::cache::Cache;
+use crate::dem::focal::{Focal, Worked};
 use crate::dem::scale::Scale;
-use crate::dem::{Dem, Georeference, History, Tiles};
+use crate::dem::{Dem, Georeference, History, Tiles, not_held};
 use crate::error::{Error, Result, Setting};
 use crate::geo::info::name_of;
 use crate::geo::{ReadOptions, Stage};
@@ -86,6 +87,28 @@ impl Reading {
     /// # Errors
     /// Those of [`read_all`](crate::geo::read_all()).
     pub fn finish(self, progress: &dyn Fn(Stage, f64)) -> Result<Dem> {
+        self.dem(true, progress)
+    }
+
+    /// The same for who asks for the range and the voids of files alone: heights that stay in their files are not smoothed,
+    /// though the history says how they are drawn.
+    ///
+    /// # Errors
+    /// As [`Self::finish`].
+    pub fn finish_as_read(self, progress: &dyn Fn(Stage, f64)) -> Result<Dem> {
+        self.dem(false, progress)
+    }
+
+    /// Whether the samples are to be held in memory.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] where they stay in their files.
+    pub fn check_held(&self) -> Result<()> {
+        let Grid { columns, rows, .. } = self.target.grid;
+        if self.held { Ok(()) } else { Err(not_held([columns, rows])) }
+    }
+
+    fn dem(self, smooth: bool, progress: &dyn Fn(Stage, f64)) -> Result<Dem> {
         let Self { layers, target, mut history, options, held } = self;
         let label = layers.label();
         let (files, world) = (layers.first().grid.crs.as_defined(), target.grid.crs.clone());
@@ -98,7 +121,11 @@ impl Reading {
             let heights = hold(layers, target, scale, &options, &mut history, progress)?;
             Dem::from_heights(columns, cell, origin, heights)
         } else {
-            let tiles = filed(layers, &target, scale, &options, &mut history, progress)?;
+            let part = looked(layers, &target, &options, &mut history, scale, progress)?;
+            let tiles = match smooth {
+                true => smoothed(Arc::new(part), scale, &options, label.clone(), &mut history, progress)?,
+                false => Arc::new(part),
+            };
             let budget = usize::try_from(options.memory).unwrap_or(usize::MAX);
             Dem::from_tiles(tiles, cell, origin, options.exaggeration, budget)
         };
@@ -109,34 +136,57 @@ impl Reading {
     }
 }
 
-/// The samples of the only layer as they are read from its files and worked on; what comes of all work is kept in the
-/// cache.
-fn filed(
+/// The samples of the only layer as they are read from its files, looked at for steps.
+fn looked(
     layers: Layers,
     target: &Target,
+    options: &ReadOptions,
+    history: &mut History,
+    scale: Option<Scale>,
+    progress: &dyn Fn(Stage, f64),
+) -> Result<Part> {
+    let label = layers.label();
+    let part = layers.into_parts(target, options.keep_steps).pop().ok_or_else(|| between(&target.grid))?;
+    part.look(&options.cache, label, &|done| progress(Stage::Look, done))?;
+    tell(std::slice::from_ref(&part), scale, history);
+    Ok(part)
+}
+
+/// The samples of `part` with all work done on them; what comes of it is kept in the cache.
+fn smoothed(
+    part: Arc<Part>,
     scale: Option<Scale>,
     options: &ReadOptions,
+    label: String,
     history: &mut History,
     progress: &dyn Fn(Stage, f64),
 ) -> Result<Arc<dyn Tiles>> {
-    let (budget, label) = (usize::try_from(options.memory).unwrap_or(usize::MAX), layers.label());
-    let part = layers.into_parts(target, options.keep_steps).pop().ok_or_else(|| between(&target.grid))?;
-    part.look(&options.cache, label.clone(), &|done| progress(Stage::Look, done))?;
-    tell(std::slice::from_ref(&part), scale, history);
-    let part = Arc::new(part);
-    let smoothed = part.smoothing().cloned().map(|smoothing| {
-        let part = part.clone();
-        Worked::new(part.clone(), Smoothed { part, smoothing }, budget)
-    });
-    let (cache, progress) = (&options.cache, |done| progress(Stage::Smooth, done));
-    Ok(match (smoothed, scale) {
-        (None, None) => part,
-        (Some(smoothed), None) => Arc::new(smoothed.kept_in(cache, label, &progress)?),
-        (None, Some(scale)) => Arc::new(Worked::new(part, scale, budget).kept_in(cache, label, &progress)?),
-        (Some(smoothed), Some(scale)) => {
-            Arc::new(Worked::new(Arc::new(smoothed), scale, budget).kept_in(cache, label, &progress)?)
-        }
-    })
+    let budget = usize::try_from(options.memory).unwrap_or(usize::MAX);
+    let smoothing = part.smoothing().cloned();
+    let within =
+        smoothing.map(|smoothing| Worked::new(part.clone(), Smoothed { part: part.clone(), smoothing }, budget));
+    let keep = Keep { cache: &options.cache, label, history, progress: &|done| progress(Stage::Smooth, done) };
+    match (within, scale) {
+        (None, None) => Ok(part),
+        (Some(within), None) => keep.keep(within),
+        (None, Some(scale)) => keep.keep(Worked::new(part, scale, budget)),
+        (Some(within), Some(scale)) => keep.keep(Worked::new(Arc::new(within), scale, budget)),
+    }
+}
+
+/// How what comes of work is kept.
+struct Keep<'a> {
+    cache: &'a Cache,
+    label: String,
+    history: &'a mut History,
+    progress: &'a dyn Fn(f64),
+}
+
+impl Keep<'_> {
+    fn keep<F: Focal + 'static>(self, worked: Worked<F>) -> Result<Arc<dyn Tiles>> {
+        worked.too_large_for(self.cache).into_iter().for_each(|why| self.history.convert(why));
+        Ok(Arc::new(worked.kept_in(self.cache, self.label, self.progress)?))
+    }
 }
 
 /// What is smoothed, in words.
