@@ -1,13 +1,15 @@
 //! The step of which all numbers of a file are multiples, found as they are read.
 //!
 //! Two ways, both of parts that make the whole exactly: the greatest common divisor in twentieths of the file's unit, for
-//! whole numbers, tenths and their multiples; and all distinct numbers, while they are few, for maps of 8 bits that were
-//! spread over the relief. Stored in 32 bits a tenth is no tenth: a number counts as a multiple that is one to within its
-//! rounding. Cost: a few operations a sample; after some hundred samples without a step a look at two flags. Not handled:
-//! steps finer than a twentieth, and others than twentieths or beside a constant part of more than [`MOST`] levels.
+//! whole numbers, tenths and their multiples, and in half feet of either kind, for feet that were stored as metres; and all
+//! distinct numbers, while they are few, for maps of 8 bits that were spread over the relief. Stored in 32 bits a tenth is no
+//! tenth: a number counts as a multiple that is one to within its rounding. Cost: a few operations a sample; after some
+//! hundred samples without a step a look at a few flags. Not handled: steps finer than these, and others or beside a
+//! constant part of more than [`MOST`] levels.
 
-/// The finest step that is looked for in all numbers: a twentieth.
-const FINEST: f64 = 0.05;
+/// The finest steps that are looked for in all numbers: a twentieth, half an international and half a US survey foot. The
+/// first counts that all numbers are multiples of.
+const FINEST: [f64; 3] = [0.05, 0.1524, 600.0 / 3937.0];
 /// Distinct numbers that are kept.
 const MOST: usize = 256;
 /// Fewer distinct numbers say nothing of a step: a plain and a tableland are multiples of their difference.
@@ -28,8 +30,8 @@ const TO_WHOLE: f64 = 6_755_399_441_055_744.0;
 /// Of which step the numbers of some samples may be multiples.
 #[derive(Debug, Clone)]
 pub(super) struct Grain {
-    /// In units of [`FINEST`]; 0 while all numbers are 0, `None` once one is no multiple.
-    divisor: Option<u64>,
+    /// In each of the units of [`FINEST`]; 0 while all numbers are 0, `None` once one is no multiple.
+    divisors: [Option<u64>; 3],
     /// All distinct numbers, the least first; `None` once they are more than [`MOST`].
     distinct: Option<Vec<f64>>,
     /// The least numbers, from the least on, and the greatest, from the greatest on; they count for nothing above.
@@ -53,7 +55,7 @@ impl Grain {
     /// Of no samples.
     pub fn new() -> Self {
         Self {
-            divisor: Some(0),
+            divisors: [Some(0); 3],
             distinct: Some(Vec::new()),
             ends: [(); 2].map(|()| Vec::with_capacity(ENDS + 1)),
             last: f64::NAN,
@@ -90,14 +92,18 @@ impl Grain {
     /// Counts a number that is no mark.
     #[inline]
     fn count(&mut self, number: f64) {
-        self.divisor = self.divisor.and_then(|divisor| common(divisor, number));
+        for (divisor, unit) in self.divisors.iter_mut().zip(FINEST) {
+            *divisor = divisor.and_then(|divisor| common(divisor, number / unit));
+        }
         self.distinct = self.distinct.take().and_then(|distinct| with(distinct, number));
     }
 
     /// Takes over other samples of the same file.
     pub fn merge(&mut self, other: &Self) {
         self.samples += other.samples;
-        self.divisor = self.divisor.zip(other.divisor).map(|(a, b)| greatest_common(a, b));
+        for (mine, theirs) in self.divisors.iter_mut().zip(other.divisors) {
+            *mine = mine.zip(theirs).map(|(a, b)| greatest_common(a, b));
+        }
         self.distinct = match (self.distinct.take(), &other.distinct) {
             (Some(mine), Some(theirs)) => theirs.iter().try_fold(mine, |list, number| with(list, *number)),
             _ => None,
@@ -108,7 +114,7 @@ impl Grain {
     /// Whether there may still be a step.
     #[inline]
     pub fn may_have(&self) -> bool {
-        self.divisor.is_some() || self.distinct.is_some()
+        self.distinct.is_some() || self.divisors.iter().any(Option::is_some)
     }
 
     /// What the samples say, `marks` left out; `is_whole`: their type holds whole numbers alone, so that 1 is a step where there are too few
@@ -125,7 +131,8 @@ impl Grain {
         let spread = || self.distinct.as_deref().and_then(evenly_spread);
         let fewer = |levels| self.distinct.as_ref().is_some_and(|distinct| distinct.len() < levels);
         let few = self.samples < SAMPLES || fewer(LEVELS);
-        match self.divisor.map(|divisor| divisor as f64 * FINEST) {
+        let units = self.divisors.into_iter().zip(FINEST);
+        match units.filter_map(|(divisor, unit)| Some(divisor? as f64 * unit)).next() {
             Some(_) if is_whole && few && self.samples >= SAMPLES && !fewer(WHOLE_LEVELS) => Found::Step(1.0),
             Some(step) if few => Found::Unsure(step),
             // Whole steps beside a constant part have a smaller divisor.
@@ -136,10 +143,9 @@ impl Grain {
     }
 }
 
-/// The greatest common divisor with a number, in units of [`FINEST`]; `None` where it is no multiple of that.
+/// The greatest common divisor with a number, both in the same unit; `None` where it is no multiple of that.
 #[inline]
-fn common(divisor: u64, number: f64) -> Option<u64> {
-    let times = number / FINEST;
+fn common(divisor: u64, times: f64) -> Option<u64> {
     let whole = (times + TO_WHOLE) - TO_WHOLE;
     // Beyond, there is nothing behind the point.
     let is_whole = times.abs() < 1e15 && (times - whole).abs() <= (times.abs() * ROUNDING).min(LARGEST_ROUNDING);
@@ -221,6 +227,18 @@ mod tests {
         for true_step in [777.7 / 255.0, 100.0 / 3.0, 10.0] {
             let found = step(&of(|height| f64::from((123.4 + (height / true_step).round() * true_step) as f32)));
             assert!(found.is_some_and(|found| (found - true_step).abs() < 1e-5), "{found:?}, not {true_step}");
+        }
+    }
+
+    #[test]
+    fn feet_are_found_in_metres() {
+        for foot in [0.3048, 1200.0 / 3937.0] {
+            let feet = of(rounded(foot));
+            assert!(feet.distinct.is_none(), "more levels than are kept");
+            let found = step(&feet).unwrap_or(0.0);
+            assert!((found - foot).abs() < 1e-9, "{found}, not {foot}");
+            let tens = step(&of(rounded(10.0 * foot))).unwrap_or(0.0);
+            assert!((tens - 10.0 * foot).abs() < 1e-5, "{tens}, not ten of {foot}");
         }
     }
 
