@@ -54,6 +54,15 @@ pub(super) fn doubts(tally: &Tally, elevation: &Elevation) -> Vec<Message> {
     wrapped.into_iter().chain(marked).chain(outside).collect()
 }
 
+/// The numbers that are heights as far as files say, and probably marks.
+pub(super) fn marks(tally: &Tally, elevation: &Elevation) -> Vec<f64> {
+    let mut trial = Trial::new(tally, elevation);
+    // Numbers that wrapped round are none.
+    trial.wrapped();
+    trial.take_marks();
+    trial.marks.into_iter().map(|(number, _)| number).collect()
+}
+
 /// What to ask for where numbers lost their sign.
 fn signed() -> Part {
     Setting::Encoding.at(Encoding::Signed.name())

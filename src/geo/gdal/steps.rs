@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use super::assumed::Tallied;
+use super::doubt::marks;
 use super::grain::Found;
 use crate::error::{Message, Setting};
 use crate::message;
@@ -20,7 +21,11 @@ impl Steps {
     /// Of `count` files, of which some numbers are tallied, each by its place; `None` where none has a step. A file that is
     /// too flat to tell has the step of another that its numbers are multiples of: a tile of sea beside others.
     pub fn of<'a>(count: usize, tallied: impl Iterator<Item = (usize, &'a Tallied<'a>)> + Clone) -> Option<Self> {
-        let found = |file: &Tallied<'_>| match file.tally.grain.found(file.elevation.is_whole()) {
+        let found = |file: &Tallied<'_>| match file
+            .tally
+            .grain
+            .found(&marks(file.tally, file.elevation), file.elevation.is_whole())
+        {
             Found::Step(step) => Found::Step(file.elevation.metres_between(step)),
             Found::Unsure(step) => Found::Unsure(file.elevation.metres_between(step)),
             Found::None => Found::None,
@@ -118,6 +123,15 @@ mod tests {
         assert_eq!(steps(&[&float, &sea, &plain]), None);
         let fine = tally(|i| (i % 40) as f64 * 0.01);
         assert_eq!(steps(&[&fine]), None, "nobody sees it");
+    }
+
+    #[test]
+    fn marks_that_nobody_declared_hide_no_step() {
+        let tens = |i: usize| (i % 40 * 10) as f64;
+        let marked = tally(|i| if i < 9 { -9999.0 } else { tens(i) });
+        assert_eq!(steps(&[&marked]), Some(vec![10.0]));
+        let odd = tally(|i| if i < 9 { 199.0 } else { tens(i) });
+        assert_eq!(steps(&[&odd]), Some(vec![1.0]), "these are heights");
     }
 
     #[test]

@@ -2,29 +2,20 @@
 //! rounded.
 //!
 //! Method: equal heights that share an edge are one region, found in one look over the rows (runs, and a union-find over the
-//! two rows at hand; He, Chao, Suzuki 2008, "A Run-Based Two-Scan Labeling Algorithm"). A region is water if it is large
-//! ([`LEAST`]), if hardly any of its shore leads down ([`OUTLETS`]: a lake has one), and if it is much wider than the
-//! terraces at its shores ([`WIDER`]). The floor of a rounded hollow is not, whatever step and slope: next to one with the
-//! section of a parabola lies a terrace of a fifth of its width at least. Widths are measured along rows alone, where the
-//! next terrace is the next run. Beyond the DEM and in voids nothing is known, that is no evidence of either kind. The sea, at
-//! exactly 0, may have more of its shore below; where none of its rows ends at a shore it is believed.
+//! two rows at hand; He, Chao, Suzuki 2008, "A Run-Based Two-Scan Labeling Algorithm"). Which of them are water is said in
+//! `regions`, by their shores and by the widths of the terraces there, along rows and along columns alike: the water of a DEM
+//! on its side is that of the DEM. Beyond the DEM and in voids nothing is known, that is no evidence of either kind.
 //!
-//! Cost: some nanoseconds a sample, more where runs are short. Memory: 16 bytes a run of the regions that are open at a row,
-//! and 8 a run of water. Not handled: lakes as wide as the DEM, water that no one made level, rivers: they fall, and the
-//! smoothest surface within their steps is right for them.
+//! Cost: some nanoseconds a sample, more where runs are short. Memory: 16 bytes a column and a run of the regions that are
+//! open at a row, and 8 a run of water. Not handled: lakes as wide as the DEM, water that no one made level, rivers: they
+//! fall, and the smoothest surface within their steps is right for them; reaches of those aslant to the grid are taken for
+//! lakes.
+
+mod regions;
+
+use regions::{Ending, NONE, Regions};
 
 use crate::dem::Window;
-
-/// Fewest samples of a body of water: smaller ones are gone on a page, and as likely a hollow.
-const LEAST: u64 = 64;
-/// One in so many edges of its shore may lead down.
-const OUTLETS: u64 = 16;
-/// The same of the sea: mud and noise lie below 0 along its shores. On a slope it is every other one.
-const MUD: u64 = 4;
-/// How many times as wide as the next terrace a row of water is.
-const WIDER: u32 = 8;
-/// No region, no run.
-const NONE: u32 = u32::MAX;
 
 /// Which samples of a window are flat water: runs of columns, row by row.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -40,9 +31,8 @@ pub(super) struct WaterBuilder {
     width: usize,
     row: u32,
     above: Vec<Run>,
+    columns: Vec<Column>,
     regions: Regions,
-    /// Row and columns of water that was found.
-    water: Vec<[u32; 3]>,
 }
 
 /// Equal heights side by side; NaN: voids.
@@ -54,35 +44,25 @@ struct Run {
     region: u32,
 }
 
-/// Equal heights that hang together, as far as rows were seen.
+/// What a column has shown by a row.
 #[derive(Debug, Clone, Copy)]
-struct Region {
-    /// The region that it became part of; itself otherwise.
-    parent: u32,
-    /// The last row that has a run of it.
-    row: u32,
-    height: f32,
-    /// First and last of its runs.
-    runs: [u32; 2],
-    samples: u64,
-    /// Edges to other heights, and those of them to lower ones.
-    shore: u64,
-    down: u64,
-    /// Samples of runs that end at higher ground, once for each end, and those much wider than the run there.
-    ends: u64,
-    steep: u64,
+struct Column {
+    /// The row where its run begins.
+    first: u32,
+    before: Before,
 }
 
-/// Regions that are open, with their runs; what is closed makes room for others.
-#[derive(Default)]
-struct Regions {
-    all: Vec<Region>,
-    free: Vec<u32>,
-    /// Those that became part of others since the last row.
-    joined: Vec<u32>,
-    /// Row, columns, and the next run of the region.
-    runs: Vec<[u32; 4]>,
-    free_runs: Vec<u32>,
+/// What lies before a run of a column.
+#[derive(Debug, Clone, Copy)]
+enum Before {
+    /// Voids or the DEM's edge.
+    Nothing,
+    /// Lower ground that is too narrow to tell anything.
+    Lower,
+    /// Lower ground to which the run is a terrace, and how long it is.
+    Region(u32, u32),
+    /// A terrace: how wide it is, and whether all of it was seen.
+    Terrace(u32, bool),
 }
 
 impl Water {
@@ -113,7 +93,8 @@ impl Water {
 impl WaterBuilder {
     /// Of a window so many columns wide, no row seen yet.
     pub fn new(width: usize) -> Self {
-        Self { width, row: 0, above: Vec::new(), regions: Regions::default(), water: Vec::new() }
+        let columns = vec![Column { first: 0, before: Before::Nothing }; width];
+        Self { width, row: 0, above: Vec::new(), columns, regions: Regions::default() }
     }
 
     /// Takes the next rows, whole ones: metres, NaN at voids.
@@ -123,11 +104,17 @@ impl WaterBuilder {
 
     /// The water, when all rows have been taken.
     pub fn finish(mut self) -> Water {
-        self.close(self.row);
-        self.water.sort_unstable();
-        let begins = |row| self.water.partition_point(|[of, ..]| *of < row) as u32;
+        for over in std::mem::take(&mut self.above) {
+            let beyond = Run { height: f32::NAN, region: NONE, ..over };
+            self.regions.shore([&over, &beyond], over.end - over.first);
+            self.below(&over, &beyond);
+            self.regions.close_before(over.region, self.row);
+        }
+        let mut water = self.regions.into_water();
+        water.sort_unstable();
+        let begins = |row| water.partition_point(|[of, ..]| *of < row) as u32;
         let rows = (0..=self.row).map(begins).collect();
-        Water { runs: self.water.iter().map(|[_, first, end]| [*first, *end]).collect(), rows }
+        Water { runs: water.iter().map(|[_, first, end]| [*first, *end]).collect(), rows }
     }
 
     fn take_row(&mut self, heights: &[f32]) {
@@ -135,10 +122,14 @@ impl WaterBuilder {
         for run in here.iter_mut().filter(|run| !run.height.is_nan()) {
             run.region = self.regions.add(self.row, *run);
         }
+        if self.row == 0 {
+            let edges = here.iter().map(|run| (run, Run { height: f32::NAN, region: NONE, ..*run }));
+            edges.for_each(|(run, beyond)| self.regions.shore([run, &beyond], run.end - run.first));
+        }
         self.meet(&here);
         self.beside(&here);
         here.iter_mut().filter(|run| run.region != NONE).for_each(|run| run.region = self.regions.root(run.region));
-        self.close(self.row);
+        self.above.iter().for_each(|run| self.regions.close_before(run.region, self.row));
         // Nobody names those that became part of others any more.
         self.regions.release();
         self.above = here;
@@ -148,158 +139,71 @@ impl WaterBuilder {
     /// Runs of this row and of the one above: equal heights become one region, others are each other's shore.
     fn meet(&mut self, here: &[Run]) {
         let (mut above, mut below) = (0, 0);
-        while let (Some(over), Some(run)) = (self.above.get(above), here.get(below)) {
+        while let (Some(&over), Some(&run)) = (self.above.get(above), here.get(below)) {
             let edges = over.end.min(run.end) - over.first.max(run.first);
             if over.height == run.height {
                 self.regions.join(over.region, run.region);
             } else {
-                self.regions.shore([over, run], edges);
+                self.regions.shore([&over, &run], edges);
+                if !(over.height.is_nan() && run.height.is_nan()) {
+                    self.below(&over, &run);
+                }
             }
             above += usize::from(over.end <= run.end);
             below += usize::from(run.end <= over.end);
         }
     }
 
-    /// Runs beside each other in a row: each is the other's shore, and the higher one a terrace whose width is seen if it ends
-    /// at another.
+    /// In the columns of both `run` lies below `over`, which is another height: the higher one is a terrace.
+    fn below(&mut self, over: &Run, run: &Run) {
+        for c in over.first.max(run.first)..over.end.min(run.end) {
+            let Column { first, before } = self.columns[c as usize];
+            let length = self.row - first;
+            match before {
+                Before::Region(region, of) => {
+                    let terrace = Ending { length: of, width: length, is_seen: !run.height.is_nan() };
+                    self.regions.end(region, 1, terrace);
+                    self.regions.let_go(region);
+                }
+                Before::Terrace(width, is_seen) => {
+                    self.regions.end(over.region, 1, Ending { length, width, is_seen });
+                }
+                Before::Nothing | Before::Lower => {}
+            }
+            let before = if over.height < run.height {
+                match self.regions.hold(over.region, length) {
+                    Some(region) => Before::Region(region, length),
+                    None => Before::Lower,
+                }
+            } else if over.height > run.height {
+                Before::Terrace(length, !matches!(before, Before::Nothing))
+            } else {
+                Before::Nothing
+            };
+            self.columns[c as usize] = Column { first: self.row, before };
+        }
+    }
+
+    /// Runs beside each other in a row: each is the other's shore, and the higher one a terrace.
     fn beside(&mut self, here: &[Run]) {
+        let beyond = Run { first: 0, end: 0, height: f32::NAN, region: NONE };
+        for run in here.first().into_iter().chain(here.last()) {
+            self.regions.shore([run, &beyond], 1);
+        }
         for (i, pair) in here.windows(2).enumerate() {
             let [west, east] = [&pair[0], &pair[1]];
             self.regions.shore([west, east], 1);
-            let seen = |beyond: Option<&Run>| beyond.is_some_and(|run| !run.height.is_nan());
-            if east.height > west.height && seen(here.get(i + 2)) {
-                self.regions.end(west, east);
-            } else if west.height > east.height && seen(i.checked_sub(1).and_then(|before| here.get(before))) {
-                self.regions.end(east, west);
+            let is_seen = |beyond: Option<&Run>| beyond.is_some_and(|run| !run.height.is_nan());
+            let ending = |run: &Run, terrace: &Run, beyond| {
+                let [length, width] = [run, terrace].map(|run| run.end - run.first);
+                Ending { length, width, is_seen: is_seen(beyond) }
+            };
+            if east.height > west.height {
+                self.regions.end(west.region, 0, ending(west, east, here.get(i + 2)));
+            } else if west.height > east.height {
+                let beyond = i.checked_sub(1).and_then(|before| here.get(before));
+                self.regions.end(east.region, 0, ending(east, west, beyond));
             }
-        }
-    }
-
-    /// Closes the regions of the row above that have no run in row `row`.
-    fn close(&mut self, row: u32) {
-        for i in 0..self.above.len() {
-            let region = self.above[i].region;
-            if region != NONE && self.regions.is_open_before(region, row) {
-                self.regions.close(region, &mut self.water);
-            }
-        }
-    }
-}
-
-impl Region {
-    fn is_water(&self) -> bool {
-        let is_sea = self.height == 0.0;
-        let level = self.samples >= LEAST && self.down * if is_sea { MUD } else { OUTLETS } <= self.shore;
-        let wide = if self.ends == 0 { is_sea } else { 2 * self.steep >= self.ends };
-        level && wide
-    }
-}
-
-impl Regions {
-    /// A region of this run alone.
-    fn add(&mut self, row: u32, run: Run) -> u32 {
-        let node = [row, run.first, run.end, NONE];
-        let node = put(&mut self.runs, &mut self.free_runs, node);
-        let (runs, samples) = ([node; 2], u64::from(run.end - run.first));
-        let region =
-            Region { parent: NONE, row, height: run.height, runs, samples, shore: 0, down: 0, ends: 0, steep: 0 };
-        put(&mut self.all, &mut self.free, region)
-    }
-
-    /// The region that this one is part of by now.
-    fn root(&mut self, mut region: u32) -> u32 {
-        while self.all[region as usize].parent != NONE {
-            let parent = self.all[region as usize].parent;
-            let beyond = self.all[parent as usize].parent;
-            if beyond != NONE {
-                self.all[region as usize].parent = beyond;
-            }
-            region = parent;
-        }
-        region
-    }
-
-    /// Makes two regions one.
-    fn join(&mut self, one: u32, other: u32) {
-        let [one, other] = [one, other].map(|region| self.root(region));
-        if one == other {
-            return;
-        }
-        let from = self.all[other as usize];
-        let onto = &mut self.all[one as usize];
-        self.runs[onto.runs[1] as usize][3] = from.runs[0];
-        onto.runs[1] = from.runs[1];
-        onto.row = onto.row.max(from.row);
-        onto.samples += from.samples;
-        onto.shore += from.shore;
-        onto.down += from.down;
-        onto.ends += from.ends;
-        onto.steep += from.steep;
-        self.all[other as usize].parent = one;
-        self.joined.push(other);
-    }
-
-    /// Counts so many edges between two runs of different heights, unless one is void.
-    fn shore(&mut self, runs: [&Run; 2], edges: u32) {
-        if runs.iter().any(|run| run.region == NONE) {
-            return;
-        }
-        for (run, other) in [(runs[0], runs[1]), (runs[1], runs[0])] {
-            let root = self.root(run.region);
-            let region = &mut self.all[root as usize];
-            region.shore += u64::from(edges);
-            region.down += if other.height < run.height { u64::from(edges) } else { 0 };
-        }
-    }
-
-    /// Counts an end of a run at a higher terrace.
-    fn end(&mut self, run: &Run, terrace: &Run) {
-        let [length, width] = [run, terrace].map(|run| run.end - run.first);
-        let root = self.root(run.region);
-        let region = &mut self.all[root as usize];
-        region.ends += u64::from(length);
-        region.steep += if length / WIDER >= width { u64::from(length) } else { 0 };
-    }
-
-    /// Whether it is no part of another, and ended before row `row`.
-    fn is_open_before(&self, region: u32, row: u32) -> bool {
-        let region = &self.all[region as usize];
-        region.parent == NONE && region.row < row
-    }
-
-    /// Closes a region: its runs go to `water` if it is some.
-    fn close(&mut self, region: u32, water: &mut Vec<[u32; 3]>) {
-        let closed = &mut self.all[region as usize];
-        let is_water = closed.is_water();
-        // It may be named by several runs.
-        closed.row = NONE;
-        let mut run = closed.runs[0];
-        while run != NONE {
-            let [row, first, end, next] = self.runs[run as usize];
-            if is_water {
-                water.push([row, first, end]);
-            }
-            self.free_runs.push(run);
-            run = next;
-        }
-        self.free.push(region);
-    }
-
-    fn release(&mut self) {
-        self.free.append(&mut self.joined);
-    }
-}
-
-/// Puts an item in a free place, or in a new one, and says where.
-fn put<T>(list: &mut Vec<T>, free: &mut Vec<u32>, item: T) -> u32 {
-    match free.pop() {
-        Some(place) => {
-            list[place as usize] = item;
-            place
-        }
-        None => {
-            list.push(item);
-            list.len() as u32 - 1
         }
     }
 }
@@ -384,7 +288,9 @@ mod tests {
     fn the_sea_is_water_where_no_shore_is_seen_in_a_row() {
         let coast = |_: f64, y: f64| if y < 30.0 { 0.0 } else { (y - 29.0) * 0.7 };
         assert_eq!(count(&water_of(coast)), 130 * SIDE);
-        assert_eq!(count(&water_of(|x, y| coast(x, y) + 5.0)), 0, "a plain may be a slope");
+        assert_eq!(count(&water_of(|x, y| coast(x, y) + 5.0)), 130 * SIDE, "a lake that the edge cuts");
+        let plain = |_: f64, y: f64| 5.0 + ((y - 29.0) * 0.05).max(0.0);
+        assert_eq!(count(&water_of(plain)), 0, "a plain may be a slope");
         assert_eq!(count(&water_of(|_, y| y * 0.1)), 0, "a slope through 0");
         // Mud along the coast.
         let mud = |x: f64, y: f64| if y == 30.0 && x % 8.0 == 0.0 { -1.0 } else { coast(x, y) };
@@ -400,5 +306,51 @@ mod tests {
         let lake = |x: f64, y: f64| if x.abs() < 40.0 && y.abs() < 20.0 { 450.0 } else { slope(x, y) };
         let half = |x: f64, y: f64| if x > 10.0 { f64::NAN } else { lake(x, y) };
         assert_eq!(count(&water_of(half)), 50 * 39, "seen from the west alone");
+    }
+
+    /// As many samples of `height` are water as expected, and those of its transpose are the transposed ones.
+    fn both_ways(height: impl Fn(f64, f64) -> f64) -> usize {
+        let (water, transposed) = (water_of(&height), water_of(|x, y| height(y, x)));
+        assert!((0..SIDE * SIDE).all(|i| water[i] == transposed[i % SIDE * SIDE + i / SIDE]), "not symmetric");
+        count(&water)
+    }
+
+    #[test]
+    fn lakes_are_found_whichever_way_they_lie() {
+        let lake = |half: [f64; 2], rise: f64| {
+            move |x: f64, y: f64| {
+                let away = (x.abs() - half[0]).max(0.0).hypot((y.abs() - half[1]).max(0.0));
+                300.0 + away * rise + if away > 0.0 { 0.6 } else { 0.0 }
+            }
+        };
+        assert_eq!(both_ways(lake([12.0, 80.0], 0.3)), 25 * 161, "gentle");
+        assert_eq!(both_ways(lake([3.0, 80.0], 1.5)), 7 * 161, "narrow");
+        assert_eq!(both_ways(lake([40.0, 40.0], 0.15)), 81 * 81, "square");
+        // 1 m in 60 samples, steep banks.
+        let river = |x: f64, y: f64| 300.0 - y / 60.0 + (x.abs() - 5.0).max(0.0);
+        assert_eq!(both_ways(river), 0, "the reaches of a river fall");
+    }
+
+    #[test]
+    fn water_of_random_land_transposed_is_the_transposed() {
+        let mut state = 1_u64;
+        let mut random = move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 40) as f64 / f64::from(1 << 24)
+        };
+        let mut found = 0;
+        for _ in 0..24 {
+            let waves: Vec<_> =
+                (0..6).map(|k| [0.3 * random(), 0.3 * random(), 6.3 * random(), 24.0 / f64::from(k + 1)]).collect();
+            let (level, void) = (20.0 * random() - 24.0, 160.0 * random() - 80.0);
+            let land = |x: f64, y: f64| {
+                let height: f64 = waves.iter().map(|[a, b, phase, high]| high * (a * x + b * y + phase).sin()).sum();
+                let is_void = (x - void).abs() < 2.0 && y < void || x == 60.0 && y * y < 50.0;
+                // The floor of whatever lies below the level, and its outlets.
+                if is_void { f64::NAN } else { height.max(level) }
+            };
+            found += usize::from(both_ways(land) > 0);
+        }
+        assert!(found > 12, "water in {found} of 24 lands");
     }
 }
