@@ -163,17 +163,37 @@ fn a_sheared_map_is_warped_and_kept_whole() {
     }
     // Of the parallelogram, not of the rectangle inside it, which holds a quarter. The shear makes cubic waves coarser.
     assert!(worst < 10.0 * WARP_METRES && seen > n * n * 3 / 4, "{worst} m, {seen} samples");
+    // A crop is obeyed though it is a parallelogram there.
+    let crop = [centre.x - 900.0, centre.y - 300.0, centre.x + 900.0, centre.y + 300.0];
+    let part = read(&path, &cropped(crop)).unwrap();
+    assert!(converted(&part).contains("all inside the crop, voids beside it"), "{}", converted(&part));
+    let (file, mut seen) = (part.georeference().file(), 0);
+    for (c, r) in (0..part.rows()).flat_map(|r| (0..part.columns()).map(move |c| (c, r))) {
+        let place = part.georeference().place_in(file, part.position(c, r).truncate()).unwrap();
+        let off = (place - centre).abs() - DVec2::new(900.0, 300.0);
+        if part.height(c, r).is_some() {
+            seen += 1;
+            assert!(off.max_element() < 1e-3, "{c}, {r} is {off} m outside the crop");
+        }
+    }
+    assert!((1150..1260).contains(&seen), "{seen} samples of 60 x 20 cells");
     // Left as it is where that is asked, or where the warp has no room; then it is said.
     let asked = read(&path, &ReadOptions { warp: false, ..Default::default() }).unwrap();
     let short = read(&path, &ReadOptions { memory: 1 << 17, ..Default::default() }).unwrap();
     assert_eq!(asked.held().unwrap().heights(), heights);
     assert!(short.is_filed() && short.georeference().file() == short.georeference().world());
+    let said_of_short = words(short.history().assumed()).join("\n");
     for (dem, remedy) in [(asked, "leave out --no-warp, or warp it first"), (short, "cannot be warped here")] {
         let said = words(dem.history().assumed()).join("\n");
         let named = ["scale 0.53", "shear 53.", remedy, "`gdalwarp -t_srs EPSG:32612 -r cubic"];
         assert!(named.iter().all(|part| said.contains(part)), "{said}");
         assert_eq!(converted(&dem), "");
     }
+    // With the memory that is named it is warped.
+    let more = said_of_short.split("give --memory ").nth(1).and_then(|rest| rest.split("MiB").next()).unwrap();
+    let memory = more.parse::<u64>().unwrap() << 20;
+    let dem = read(&path, &ReadOptions { memory, ..Default::default() }).unwrap();
+    assert!(converted(&dem).contains("warped"), "{said_of_short}");
     // Resampled, too, and then in its own system only where that is asked.
     for (warp, epsg) in [(true, Some(32612)), (false, None)] {
         let dem = read(&path, &ReadOptions { resample: Some(60.0), warp, ..Default::default() }).unwrap();

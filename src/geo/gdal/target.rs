@@ -9,6 +9,7 @@
 use std::path::Path;
 
 use glam::DVec2;
+use rayon::prelude::*;
 
 use super::crop::carried;
 use super::crs::Way;
@@ -16,8 +17,9 @@ use super::grid::{Grid, span};
 use super::ground::{Ground, places};
 use super::inscribed::largest;
 use super::layer::reach;
-use super::limits::{Whole, can_be_held, too_many};
+use super::limits::{Whole, more_room, too_many};
 use super::metric::{degrees, is_polar, metric};
+use super::raster::Raster;
 use super::source::MIN_SIDE;
 use crate::dem::{Crs, History, MAX_SAMPLES, Window};
 use crate::error::{Error, Message, Result, Setting};
@@ -33,6 +35,8 @@ const WARPED_SIDE: usize = 5;
 /// Widest and highest DEM in degrees that a zone of UTM shows within two percent of its true size.
 const WIDEST: f64 = 20.0;
 const HIGHEST: f64 = 30.0;
+/// Rows that are cut at once.
+const CUT_ROWS: usize = 64;
 /// Least share of a map off the ground that the rectangle inside its data must hold, for the rest to be left out.
 const INSIDE: f64 = 0.75;
 
@@ -45,6 +49,15 @@ pub(super) struct Target {
     pub window: Window,
     /// Whether it must be warped; else `window` is the grid.
     pub warps: bool,
+    /// What of it is drawn, where that is not all.
+    pub cut: Option<Cut>,
+}
+
+/// A crop of a system in which it is a rectangle, on a grid of another where it is none.
+#[derive(Debug)]
+pub(super) struct Cut {
+    crop: [f64; 4],
+    crs: Crs,
 }
 
 /// What is asked of the files' grid; `path` is the first file, for messages.
@@ -80,19 +93,22 @@ impl Target {
         let off = Ground::of(files, window).filter(Ground::is_off);
         let truer = off.as_ref().and_then(|off| asked.truer(off));
         let warped = truer.as_ref().zip(off.as_ref()).filter(|_| options.warp);
+        let held = warped.map(|(crs, off)| asked.held(crs, off, history));
+        let (held, more) =
+            held.map_or((None, None), |held| held.map_or_else(|more| (None, more), |held| (Some(held), None)));
         let target = if files.crs.is_geographic() {
             asked.onto(&asked.zone()?, None, history)?
-        } else if let Some(target) = warped.and_then(|(crs, off)| asked.held(crs, off, history)) {
+        } else if let Some(target) = held {
             target
         } else if files.is_north_up() && options.resample.is_none() {
-            Self { grid: files.part(window), window, warps: false }
+            Self { grid: files.part(window), window, warps: false, cut: None }
         } else {
             asked.onto(&files.crs, None, history)?
         };
         check_sides([target.grid.columns, target.grid.rows], files, path)?;
         if let Some(off) = Ground::of(&target.grid, target.grid.whole()).filter(Ground::is_off) {
             let truer = truer.filter(|truer| *truer != target.grid.crs);
-            history.assume(off_the_ground(&off, truer.as_ref(), options));
+            history.assume(off_the_ground(&off, truer.as_ref(), more, options));
         }
         Ok(target)
     }
@@ -116,15 +132,18 @@ impl Asked<'_> {
         (Ground::at(&truer, &places)?.off() < off.off()).then_some(truer)
     }
 
-    /// Warped from a map `off` the ground to `crs`; `None` where the outcome cannot be held.
-    fn held(&self, crs: &Crs, off: &Ground, history: &mut History) -> Option<Target> {
+    /// Warped from a map `off` the ground to `crs`; where the outcome cannot be held, what would make it fit instead, if
+    /// anything but a smaller part would.
+    fn held(&self, crs: &Crs, off: &Ground, history: &mut History) -> std::result::Result<Target, Option<Message>> {
         let mut own = History::default();
-        let target = self.onto(crs, Some(off), &mut own).ok()?;
-        let held = can_be_held(&target, self.options);
-        if held {
+        let target = self.onto(crs, Some(off), &mut own).map_err(|error| match error {
+            Error::Limit { .. } => Some(message!["use larger cells with ", Setting::Resample.with_value()]),
+            _ => None,
+        })?;
+        more_room(&target, self.options).map_or_else(Err, |()| {
             history.take(own, None);
-        }
-        held.then_some(target)
+            Ok(target)
+        })
     }
 
     /// Warped to `crs`, from a map that may be `off` the ground.
@@ -147,9 +166,12 @@ impl Asked<'_> {
         let part = largest(all.columns, all.rows, inside).ok_or_else(|| too_small(files, path, cell * unit, crs))?;
         let [across, down] = window.size.map(|samples| (samples as f64 - 2.0 * BORDER).max(1.0));
         let share = part.samples() as f64 * cell * cell / (area * across * down);
-        let (part, kept) = match off {
-            Some(_) if share < INSIDE => (all.whole(), "all of the data, voids beside them"),
-            _ => (part, "the largest rectangle inside the data"),
+        let (part, kept, cut) = match (off, crop) {
+            (Some(_), None) if share < INSIDE => (all.whole(), "all of the data, voids beside them", None),
+            (Some(_), Some(crop)) if share < INSIDE => {
+                (all.whole(), "all inside the crop, voids beside it", Some(Cut { crop, crs: files.crs.clone() }))
+            }
+            _ => (part, "the largest rectangle inside the data", None),
         };
         let grid = all.part(part);
         let window = reach(&grid, files).ok_or_else(|| lost(path))?;
@@ -164,7 +186,7 @@ impl Asked<'_> {
             grid.rows,
             rounded(cell * unit, 6),
         ));
-        Ok(Target { grid, window, warps: true })
+        Ok(Target { grid, window, warps: true, cut })
     }
 
     /// The system in metres for degrees. Fails where they span too much of the globe for one.
@@ -190,8 +212,9 @@ impl Asked<'_> {
     }
 }
 
-/// What is said of a map that is drawn though it is `off` the ground; `truer` is one that would be better.
-fn off_the_ground(off: &Ground, truer: Option<&Crs>, options: &ReadOptions) -> Message {
+/// What is said of a map that is drawn though it is `off` the ground; `truer` is one that would be better,
+/// and `more` what would let it be warped here.
+fn off_the_ground(off: &Ground, truer: Option<&Crs>, more: Option<Message>, options: &ReadOptions) -> Message {
     let what = format!(
         "map metres are metres on the ground (this map is off it: {}, slopes are drawn {}; ",
         off.words(),
@@ -200,15 +223,16 @@ fn off_the_ground(off: &Ground, truer: Option<&Crs>, options: &ReadOptions) -> M
     let first = |crs: &Crs| format!("warp it first: `gdalwarp -t_srs {} -r cubic IN OUT.tif`)", crs.typed());
     match truer {
         None => message![what, "take a smaller part with ", Setting::Crop, ")"],
-        Some(crs) if options.warp => message![
-            what,
-            "it cannot be warped here; take a part with ",
-            Setting::Crop,
-            ", allow more with ",
-            Setting::Memory,
-            ", or ",
-            first(crs)
-        ],
+        Some(crs) if options.warp => {
+            let mut remedy = message![what, "it cannot be warped here; take a part with ", Setting::Crop, ", "];
+            if let Some(more) = more {
+                remedy.push(more);
+                remedy.push(", ");
+            }
+            remedy.push("or ");
+            remedy.push(first(crs));
+            remedy
+        }
         Some(crs) => message![what, "leave out ", Setting::Warp, ", or ", first(crs)],
     }
 }
@@ -224,18 +248,35 @@ impl Region<'_> {
     /// Which of `places` in the target's system lie where cubic convolution has all its samples, and inside the crop.
     fn holds(&self, mut places: Vec<DVec2>) -> Vec<bool> {
         self.back.carry(&mut places);
-        let cropped = |place: &DVec2| {
-            self.crop.is_none_or(|[west, south, east, north]| {
-                let x = self.files.crs.near(place.x, (west + east) / 2.0);
-                (west..=east).contains(&x) && (south..=north).contains(&place.y)
-            })
-        };
+        let cropped = |place: &DVec2| self.crop.is_none_or(|crop| is_inside(crop, *place, &self.files.crs));
         let cropped: Vec<_> = places.iter().map(cropped).collect();
         self.files.pixels(&mut places);
         let low = DVec2::splat(BORDER);
         let far = DVec2::new(self.files.columns as f64, self.files.rows as f64) - BORDER;
         let within = |place: &DVec2| place.cmpge(low).all() && place.cmple(far).all();
         places.iter().zip(cropped).map(|(place, cropped)| cropped && within(place)).collect()
+    }
+}
+
+/// Whether a place in `crs` is inside a crop there.
+fn is_inside([west, south, east, north]: [f64; 4], place: DVec2, crs: &Crs) -> bool {
+    let x = crs.near(place.x, (west + east) / 2.0);
+    (west..=east).contains(&x) && (south..=north).contains(&place.y)
+}
+
+impl Cut {
+    /// Makes void what is outside, on every core: a place of PROJ a sample.
+    pub fn cut(&self, raster: &mut Raster) {
+        let grid = &raster.grid;
+        let bands = raster.metres.par_chunks_mut(grid.columns * CUT_ROWS).enumerate();
+        bands.for_each(|(band, metres)| {
+            let Some(way) = Way::between(&grid.crs, &self.crs) else { return };
+            let sample = |i: usize| grid.sample((i % grid.columns) as f64, (band * CUT_ROWS + i / grid.columns) as f64);
+            let mut places: Vec<_> = (0..metres.len()).map(sample).collect();
+            way.carry(&mut places);
+            let outside = metres.iter_mut().zip(places).filter(|(_, place)| !is_inside(self.crop, *place, &self.crs));
+            outside.for_each(|(metres, _)| *metres = f32::NAN);
+        });
     }
 }
 
