@@ -3,23 +3,22 @@
 //! A projected north-up grid is taken as it is, where its map is true to the ground within a percent. Degrees and maps that
 //! are not are warped to the map that is true around the middle of what is drawn (see `metric`), turned grids and grids to
 //! be resampled in their own system; square cells, at whole multiples of their size, as many as fit into the largest
-//! rectangle inside the data. A map so sheared that this leaves little is kept whole, with voids beside it. Not handled:
-//! DEMs so wide that one map cannot show them.
+//! rectangle inside the data. A map so sheared that this leaves little is kept whole, with voids beside it and outside the
+//! crop. Not handled: DEMs so wide that one map cannot show them.
 
 use std::path::Path;
 
 use glam::DVec2;
-use rayon::prelude::*;
 
 use super::crop::carried;
 use super::crs::Way;
+use super::cut::{Cut, is_inside};
 use super::grid::{Grid, span};
 use super::ground::{Ground, places};
 use super::inscribed::largest;
 use super::layer::reach;
 use super::limits::{Whole, more_room, too_many};
 use super::metric::{degrees, is_polar, metric};
-use super::raster::Raster;
 use super::source::MIN_SIDE;
 use crate::dem::{Crs, History, MAX_SAMPLES, Window};
 use crate::error::{Error, Message, Result, Setting};
@@ -35,8 +34,6 @@ const WARPED_SIDE: usize = 5;
 /// Widest and highest DEM in degrees that a zone of UTM shows within two percent of its true size.
 const WIDEST: f64 = 20.0;
 const HIGHEST: f64 = 30.0;
-/// Rows that are cut at once.
-const CUT_ROWS: usize = 64;
 /// Least share of a map off the ground that the rectangle inside its data must hold, for the rest to be left out.
 const INSIDE: f64 = 0.75;
 
@@ -51,13 +48,6 @@ pub(super) struct Target {
     pub warps: bool,
     /// What of it is drawn, where that is not all.
     pub cut: Option<Cut>,
-}
-
-/// A crop of a system in which it is a rectangle, on a grid of another where it is none.
-#[derive(Debug)]
-pub(super) struct Cut {
-    crop: [f64; 4],
-    crs: Crs,
 }
 
 /// What is asked of the files' grid; `path` is the first file, for messages.
@@ -255,28 +245,6 @@ impl Region<'_> {
         let far = DVec2::new(self.files.columns as f64, self.files.rows as f64) - BORDER;
         let within = |place: &DVec2| place.cmpge(low).all() && place.cmple(far).all();
         places.iter().zip(cropped).map(|(place, cropped)| cropped && within(place)).collect()
-    }
-}
-
-/// Whether a place in `crs` is inside a crop there.
-fn is_inside([west, south, east, north]: [f64; 4], place: DVec2, crs: &Crs) -> bool {
-    let x = crs.near(place.x, (west + east) / 2.0);
-    (west..=east).contains(&x) && (south..=north).contains(&place.y)
-}
-
-impl Cut {
-    /// Makes void what is outside, on every core: a place of PROJ a sample.
-    pub fn cut(&self, raster: &mut Raster) {
-        let grid = &raster.grid;
-        let bands = raster.metres.par_chunks_mut(grid.columns * CUT_ROWS).enumerate();
-        bands.for_each(|(band, metres)| {
-            let Some(way) = Way::between(&grid.crs, &self.crs) else { return };
-            let sample = |i: usize| grid.sample((i % grid.columns) as f64, (band * CUT_ROWS + i / grid.columns) as f64);
-            let mut places: Vec<_> = (0..metres.len()).map(sample).collect();
-            way.carry(&mut places);
-            let outside = metres.iter_mut().zip(places).filter(|(_, place)| !is_inside(self.crop, *place, &self.crs));
-            outside.for_each(|(metres, _)| *metres = f32::NAN);
-        });
     }
 }
 
