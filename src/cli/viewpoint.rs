@@ -17,8 +17,9 @@ use crate::view::{Camera, Fixed, choose, direction};
 pub const FOV: f64 = 60.0;
 /// Decimals of printed degrees of longitude and latitude: a millimetre.
 const DEGREE_DECIMALS: i32 = 8;
-/// Decimals of an eye on the globe: so many that it is brought to the same millimetre.
-const LONLAT_DECIMALS: i32 = 9;
+/// Decimals of an eye on the globe: the least that bring it to the same millimetre nearly everywhere, and the most that f64
+/// has.
+const LONLAT_DECIMALS: std::ops::RangeInclusive<i32> = 9..=13;
 /// Decimals of other printed coordinates.
 const METRE_DECIMALS: i32 = 3;
 /// Longitude and latitude on Earth, in the register of EPSG.
@@ -74,6 +75,8 @@ pub struct View {
     pub file: DVec2,
     /// Degrees of longitude and latitude, where the DEM's CRS is of a globe.
     pub lonlat: Option<DVec2>,
+    /// The same with few decimals, where typing them leads to the same eye.
+    typed: Option<DVec2>,
     /// Whether that is the Earth.
     on_earth: bool,
 }
@@ -151,9 +154,12 @@ impl ViewArguments {
         let azimuth = self.azimuth.unwrap_or_else(|| norths.counted(camera.azimuth));
         camera.azimuth = norths.in_world(azimuth);
         let lonlat = georeference.lonlat(camera.eye.truncate())?;
-        let on_earth = georeference.globe()?.is_some_and(|globe| globe.epsg() == Some(WGS84));
+        let globe = georeference.globe()?;
+        let eye = (camera.eye.truncate(), file);
+        let typed = lonlat.zip(globe.as_ref()).and_then(|(lonlat, globe)| repeating(georeference, globe, lonlat, eye));
+        let on_earth = globe.is_some_and(|globe| globe.epsg() == Some(WGS84));
         surface.dem().check()?;
-        Ok(View { camera, azimuth, norths, file, lonlat, on_earth })
+        Ok(View { camera, azimuth, norths, file, lonlat, typed, on_earth })
     }
 
     /// What azimuths are counted from: people who think in degrees know no grid.
@@ -218,9 +224,9 @@ impl View {
         self.flags_from(&format!("--eye {x},{y},{}", self.camera.eye.z))
     }
 
-    /// The same with the eye on the globe, where the DEM's CRS is known.
+    /// The same with the eye on the globe, where the DEM's CRS is known and some degrees lead to the very eye.
     pub fn lonlat_flags(&self) -> Option<String> {
-        let DVec2 { x, y } = rounded(self.lonlat?, LONLAT_DECIMALS);
+        let DVec2 { x, y } = self.typed?;
         Some(self.flags_from(&format!("--lonlat {x},{y},{}", self.camera.eye.z)))
     }
 
@@ -321,6 +327,20 @@ fn settled(georeference: &Georeference, world: DVec2) -> Result<(DVec2, DVec2)> 
     })
 }
 
+/// Degrees near `lonlat` that lead to an eye in the world and in the file, when they are typed: of some maps, Krovak's for
+/// one, PROJ's way back is a millimetre off, and what that makes is taken off.
+fn repeating(georeference: &Georeference, globe: &Crs, lonlat: DVec2, eye: (DVec2, DVec2)) -> Option<DVec2> {
+    let again = |lonlat: DVec2| georeference.place_in(globe, georeference.world_place(globe, lonlat)?);
+    let righted = again(lonlat).map(|off| lonlat + (lonlat - off));
+    let candidates = [Some(lonlat), righted].into_iter().flatten();
+    let mut typed = candidates.flat_map(|place| LONLAT_DECIMALS.map(move |decimals| rounded(place, decimals)));
+    let leads = |place: &DVec2| {
+        let world = georeference.world_place(globe, *place);
+        world.and_then(|world| settled(georeference, world).ok()) == Some(eye)
+    };
+    typed.find(leads)
+}
+
 fn rounded(place: DVec2, decimals: i32) -> DVec2 {
     let scale = 10f64.powi(decimals);
     // No -0 is printed.
@@ -349,7 +369,8 @@ fn no_ground(surface: &Surface, place: DVec2, setting: Setting) -> Error {
     let georeference = surface.dem().georeference();
     let [west, south, east, north] = surface.dem().extent();
     let corner = |x, y| georeference.place_in(georeference.file(), DVec2::new(x, y)).unwrap_or(DVec2::new(x, y));
-    let (low, high, at) = (corner(west, south), corner(east, north), corner(place.x, place.y));
+    let (one, other, at) = (corner(west, south), corner(east, north), corner(place.x, place.y));
+    let [low, high] = [one.min(other), one.max(other)];
     let height = if setting == Setting::LookAt { "add a height Z" } else { "give a height without +" };
     Error::setting(
         setting,

@@ -51,7 +51,8 @@ impl Crs {
 
     /// The same with coordinates turned and flipped: `axes` holds 0, 1 and -1, each row and column one that is not 0.
     pub fn with_axes(self, axes: DMat2) -> Self {
-        Self { axes, ..self }
+        // No -0 is written.
+        Self { axes: axes + DMat2::ZERO, ..self }
     }
 
     /// What leads from the coordinates of the definition to these: one by default, another where the map's own axes run

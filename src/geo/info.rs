@@ -3,6 +3,8 @@
 use std::fmt::{self, Display, Formatter, Write};
 use std::path::PathBuf;
 
+use glam::{DMat2, DVec2};
+
 use super::{ReadOptions, Reading, Stage};
 use crate::dem::{Crs, History, convergence_in_words};
 use crate::error::{Message, Result, shown};
@@ -68,7 +70,7 @@ pub fn info(paths: &[PathBuf], options: &ReadOptions, progress: &dyn Fn(Stage, f
     let mut history = dem.history().clone();
     survey.assumed.iter().for_each(|clause| history.assume(clause.clone()));
     let [west, south, east, north] = dem.extent();
-    let middle = glam::DVec2::new((west + east) / 2.0, (south + north) / 2.0);
+    let middle = DVec2::new((west + east) / 2.0, (south + north) / 2.0);
     let lonlat = dem.georeference().lonlat(middle)?;
     let globe = dem.georeference().globe()?;
     Ok(Info {
@@ -105,6 +107,16 @@ impl Info {
         lines
     }
 
+    /// Least and greatest coordinates in the files, where their axes are turned.
+    fn extent_in_file(&self) -> Option<[DVec2; 2]> {
+        let axes = self.crs.axes();
+        let metres = self.crs.metres_per_unit().filter(|_| axes != DMat2::IDENTITY)?;
+        let [west, south, east, north] = self.extent;
+        let corner = |x, y| axes.transpose() * DVec2::new(x, y) / metres;
+        let (one, other) = (corner(west, south), corner(east, north));
+        Some([one.min(other), one.max(other)])
+    }
+
     fn write(&self, f: &mut impl Write, told: &dyn Fn(&Message) -> String) -> fmt::Result {
         let [west, south, east, north] = self.extent;
         let crs = name_of(&self.crs);
@@ -115,7 +127,20 @@ impl Info {
         self.source.iter().try_for_each(|source| writeln!(f, "source     {source}"))?;
         writeln!(f, "size       {} columns x {} rows = {} samples", self.columns, self.rows, self.columns * self.rows)?;
         writeln!(f, "crs        {crs}")?;
-        writeln!(f, "extent     W {west:.2}  S {south:.2}  E {east:.2}  N {north:.2} m (outermost samples)")?;
+        match self.extent_in_file() {
+            None => {
+                writeln!(f, "extent     W {west:.2}  S {south:.2}  E {east:.2}  N {north:.2} m (outermost samples)")?
+            }
+            Some([low, high]) => writeln!(
+                f,
+                "extent     x {:.2} to {:.2}  y {:.2} to {:.2} {} of the file (outermost samples)",
+                low.x,
+                high.x,
+                low.y,
+                high.y,
+                self.crs.units()
+            )?,
+        }
         if let (Some([longitude, latitude]), Some(globe)) = (self.middle, &self.globe) {
             writeln!(
                 f,

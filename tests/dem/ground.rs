@@ -2,12 +2,13 @@
 
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use gdal::spatial_ref::SpatialRef;
 use gdal::{Dataset, DatasetOptions, GdalOpenFlags};
 use glam::DVec2;
 use hachure::dem::{Crs, Dem};
-use hachure::geo::{ReadOptions, read, read_all as read_files};
+use hachure::geo::{ReadOptions, info, read, read_all as read_files};
 
 use super::{Raster, cropped, folder, read_all, with_steps};
 use crate::common::{shared_dems, words};
@@ -87,6 +88,15 @@ fn axes_that_run_south_and_west_are_those_of_the_map_to_east_and_north() {
     let expected: Vec<_> =
         [2, 3].iter().flat_map(|r| (4..7).map(move |c| r * columns + c)).map(|i| heights[i]).collect();
     assert_eq!(part.held().unwrap().heights(), expected);
+    // The extent is printed so that it may be typed as a crop, and no coordinate is -0.
+    let said = info(std::slice::from_ref(&path), &ReadOptions::default(), &|_, _| ()).unwrap().to_string();
+    let line = said.lines().find(|line| line.starts_with("extent ")).unwrap();
+    let edges: Vec<f64> = line.split_whitespace().filter_map(|word| word.parse().ok()).collect();
+    let [x0, x1, y0, y1] = edges.try_into().expect(line);
+    let typed = read(&path, &cropped([x0, y0, x1, y1])).unwrap();
+    assert_eq!(typed.held().unwrap().heights(), truth.held().unwrap().heights(), "{line}");
+    let axes = dem.georeference().world().axes().to_cols_array();
+    assert!(axes.iter().all(|v| *v != 0.0 || v.is_sign_positive()), "{axes:?}");
     // Beside a file of the other system nothing is warped.
     let both = read_files(&[path, dir.path().join("east-north.tif")], &ReadOptions::default(), &|_, _| ()).unwrap();
     assert_eq!(both.held().unwrap().heights(), truth.held().unwrap().heights());
@@ -113,6 +123,33 @@ fn axes_that_run_west_and_south_or_west_alone_are_flipped() {
             assert!(east.x > corner.x && south.y < corner.y, "EPSG:{epsg}: {corner} {east} {south}");
         }
         assert!(converted(&dem).contains("axes of"), "{}", converted(&dem));
+    }
+}
+
+#[test]
+fn degrees_that_are_printed_for_an_eye_on_krovaks_map_lead_to_that_eye() {
+    let dir = folder();
+    let place = on_map(5514, 15.0, 50.0);
+    let transform = Some([place.x, 30.0, 0.0, place.y, 0.0, -20.0]);
+    let raster = Raster { transform, epsg: Some(5514), ..Raster::new(40, told_apart(40, 25)) };
+    let file = raster.write("GTiff", &dir.path().join("krovak.tif"));
+    let [page, json] = ["page.png", "view.json"].map(|name| dir.path().join(name));
+    let draw = |flags: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_hachure"));
+        command.arg("draw").arg(&file).arg("-o").arg(&page).arg("--json").arg(&json).args(flags);
+        let ran = command.output().unwrap();
+        let said = [ran.stdout, ran.stderr].map(|said| String::from_utf8_lossy(&said).into_owned()).concat();
+        assert!(ran.status.success(), "{said}");
+        let report: serde_json::Value = serde_json::from_slice(&std::fs::read(&json).unwrap()).unwrap();
+        (said, report["view"]["eye"].clone(), std::fs::read(&page).unwrap())
+    };
+    for step in 0..4 {
+        let eye = format!("{:.3},{:.3},2000", place.x + 321.123 + 37.031 * f64::from(step), place.y - 211.077);
+        let (said, at, drawn) = draw(&["--size", "64x36", "--azimuth", "30", "--altitude", "-20", "--eye", &eye]);
+        let flags = said.lines().find_map(|line| line.split_once("or with: ")).expect(&said).1;
+        let (_, again, repeated) = draw(&flags.split_whitespace().collect::<Vec<_>>());
+        assert_eq!(again, at, "{flags}");
+        assert!(repeated == drawn, "{flags}");
     }
 }
 
@@ -163,17 +200,37 @@ fn a_sheared_map_is_warped_and_kept_whole() {
     }
     // Of the parallelogram, not of the rectangle inside it, which holds a quarter. The shear makes cubic waves coarser.
     assert!(worst < 10.0 * WARP_METRES && seen > n * n * 3 / 4, "{worst} m, {seen} samples");
+    // A crop is obeyed though it is a parallelogram there.
+    let crop = [centre.x - 900.0, centre.y - 300.0, centre.x + 900.0, centre.y + 300.0];
+    let part = read(&path, &cropped(crop)).unwrap();
+    assert!(converted(&part).contains("all inside the crop, voids beside it"), "{}", converted(&part));
+    let (file, mut seen) = (part.georeference().file(), 0);
+    for (c, r) in (0..part.rows()).flat_map(|r| (0..part.columns()).map(move |c| (c, r))) {
+        let place = part.georeference().place_in(file, part.position(c, r).truncate()).unwrap();
+        let off = (place - centre).abs() - DVec2::new(900.0, 300.0);
+        if part.height(c, r).is_some() {
+            seen += 1;
+            assert!(off.max_element() < 1e-3, "{c}, {r} is {off} m outside the crop");
+        }
+    }
+    assert!((1150..1260).contains(&seen), "{seen} samples of 60 x 20 cells");
     // Left as it is where that is asked, or where the warp has no room; then it is said.
     let asked = read(&path, &ReadOptions { warp: false, ..Default::default() }).unwrap();
     let short = read(&path, &ReadOptions { memory: 1 << 17, ..Default::default() }).unwrap();
     assert_eq!(asked.held().unwrap().heights(), heights);
     assert!(short.is_filed() && short.georeference().file() == short.georeference().world());
+    let said_of_short = words(short.history().assumed()).join("\n");
     for (dem, remedy) in [(asked, "leave out --no-warp, or warp it first"), (short, "cannot be warped here")] {
         let said = words(dem.history().assumed()).join("\n");
         let named = ["scale 0.53", "shear 53.", remedy, "`gdalwarp -t_srs EPSG:32612 -r cubic"];
         assert!(named.iter().all(|part| said.contains(part)), "{said}");
         assert_eq!(converted(&dem), "");
     }
+    // With the memory that is named it is warped.
+    let more = said_of_short.split("give --memory ").nth(1).and_then(|rest| rest.split("MiB").next()).unwrap();
+    let memory = more.parse::<u64>().unwrap() << 20;
+    let dem = read(&path, &ReadOptions { memory, ..Default::default() }).unwrap();
+    assert!(converted(&dem).contains("warped"), "{said_of_short}");
     // Resampled, too, and then in its own system only where that is asked.
     for (warp, epsg) in [(true, Some(32612)), (false, None)] {
         let dem = read(&path, &ReadOptions { resample: Some(60.0), warp, ..Default::default() }).unwrap();

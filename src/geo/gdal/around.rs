@@ -37,22 +37,29 @@ pub(super) fn around(layers: &Layers, base: &Layer, crop: Option<[f64; 4]>) -> R
     let kept = own.map(|crop| kept(&base.grid, crop));
     let mut bounds = whole;
     for layer in layers.all().iter().filter(|layer| !std::ptr::eq(*layer, base)) {
+        // Of parts on both sides of where degrees begin anew together: the land between them is whole.
+        let mut own: Option<Bounds> = None;
         for part in parts(layers, layer, crop) {
-            let (low, end) = on(&part, &base.grid).ok_or_else(|| cannot_show(base, layer))?;
-            let (low, end) = match kept {
-                Some((least, most)) => ([0, 1].map(|i| low[i].max(least[i])), [0, 1].map(|i| end[i].min(most[i]))),
-                None => (low, end),
-            };
-            if (0..2).all(|i| low[i] < end[i]) {
-                bounds.0 = [0, 1].map(|i| bounds.0[i].min(low[i]));
-                bounds.1 = [0, 1].map(|i| bounds.1[i].max(end[i]));
-            }
+            let bounds = on(&part, &base.grid).ok_or_else(|| cannot_show(base, layer))?;
+            own = Some(own.map_or(bounds, |own| around_both(own, bounds)));
+        }
+        let clipped = own.map(|own| kept.map_or(own, |kept| shared(own, kept)));
+        if let Some(own) = clipped.filter(|(low, end)| (0..2).all(|i| low[i] < end[i])) {
+            bounds = around_both(bounds, own);
         }
     }
     let (low, end) = bounds;
     let to_crs = base.grid.to_crs * DAffine2::from_translation(DVec2::new(low[0] as f64, low[1] as f64));
     let [columns, rows] = [0, 1].map(|i| end[i].saturating_sub(low[i]) as usize);
     Ok(Grid { to_crs, columns, rows, crs: base.grid.crs.clone() })
+}
+
+fn around_both(one: Bounds, other: Bounds) -> Bounds {
+    ([0, 1].map(|i| one.0[i].min(other.0[i])), [0, 1].map(|i| one.1[i].max(other.1[i])))
+}
+
+fn shared(one: Bounds, other: Bounds) -> Bounds {
+    ([0, 1].map(|i| one.0[i].max(other.0[i])), [0, 1].map(|i| one.1[i].min(other.1[i])))
 }
 
 /// The columns and rows of `grid` run on that `crop` and a margin hold.

@@ -2,7 +2,7 @@
 //!
 //! The grid of that layer runs on over all others before it is cut or warped, so that what holds for one file holds for
 //! all together. Where the finest does not fit, the next one is drawn, with a warning that says which part would be drawn
-//! in the finest: that part is tried before it is named.
+//! in the finest, and where none fits, the error says so: that part is tried before it is named.
 
 use glam::DVec2;
 
@@ -124,14 +124,16 @@ fn warn(layers: &Layers, finest: &Layer, drawn: &Layer, options: &ReadOptions, h
 /// A crop around the finest layer, with as much land around it as fits or as much of it, in units of the first file; one
 /// that was tried.
 fn crop_to_fit(layers: &Layers, finest: &Layer, options: &ReadOptions) -> Option<String> {
-    let all = || {
-        around(layers, finest, None)
-            .map_or([-f64::INFINITY, -f64::INFINITY, f64::INFINITY, f64::INFINITY], |all| all.extent())
-    };
-    let [low, high] = corners(layers.crop_on(&finest.grid, options.crop).ok()?.unwrap_or_else(all));
+    let asked = layers.crop_on(&finest.grid, options.crop).ok()?;
+    // Where its map cannot show all, nothing bounds it but what fits.
+    let all = asked.or_else(|| Some(around(layers, finest, None).ok()?.extent()));
+    let [low, high] = all.map_or([-DVec2::INFINITY, DVec2::INFINITY], corners);
     let [own_low, own_high] = corners(finest.grid.extent());
     let (own_low, own_high) = (own_low.max(low), own_high.min(high));
     let (mut middle, half) = ((own_low + own_high) / 2.0, (own_high - own_low) / 2.0);
+    if half.min_element() <= 0.0 {
+        return None;
+    }
     let mut share = (most(options.memory) / finest.grid.whole().samples() as f64).sqrt();
     if share < 1.0 {
         // The middle of several files may be between them.

@@ -28,7 +28,7 @@ pub(super) fn hold(
 ) -> Result<Vec<f32>> {
     let alone = layers.all().len() == 1;
     let parts = layers.into_parts(&target, options.keep_steps);
-    let Target { grid, warps, .. } = target;
+    let Target { grid, warps, cut, .. } = target;
     let (mut raster, lie) = match parts.as_slice() {
         [part] if alone => (taken(part, warps.then_some(&grid), progress)?, None),
         parts => laid(parts, &grid, progress).map(|(raster, lie)| (raster, Some(lie)))?,
@@ -41,6 +41,7 @@ pub(super) fn hold(
         raster.fill(&|done| progress(Stage::Fill, done))?;
         history.convert(filled(before, raster.voids()));
     }
+    cut.iter().for_each(|cut| cut.cut(&mut raster));
     let (size, mut metres) = ([raster.grid.columns, raster.grid.rows], raster.metres);
     if let (true, Some(part)) = (metres.iter().all(|height| height.is_nan()), parts.first()) {
         return Err(part.void(metres.len() as u64));

@@ -31,14 +31,26 @@ pub(super) enum Whole {
     Filled,
 }
 
-/// Whether a warp to `target` has room: within the limits, the budget and the memory that is free.
-pub(super) fn can_be_held(target: &Target, options: &ReadOptions) -> bool {
-    let (samples, read) = (target.grid.whole().samples(), target.window.samples());
-    let bytes = ((read + samples) * READ_BYTES).max(held_bytes(samples));
-    samples <= MAX_SAMPLES as u64
-        && held_bytes(samples) <= options.memory
-        && read <= MAX_READ
-        && available_memory().is_none_or(|available| bytes <= available)
+/// Whether a warp to `target` has room within the limits and the budget, whatever memory is free, so that a DEM is the same
+/// on every run; else what would give it room, if anything but a smaller part would.
+pub(super) fn more_room(target: &Target, options: &ReadOptions) -> std::result::Result<(), Option<Message>> {
+    let samples = target.grid.whole().samples();
+    if target.window.samples() > MAX_READ {
+        return Err(None);
+    }
+    if samples > MAX_SAMPLES as u64 {
+        let metres = target.metres_to_fit((MAX_SAMPLES as u64).min(samples_in(options.memory)));
+        return Err(Some(message!["use ", Setting::Resample.at(metres), format!(" for cells of {metres} m")]));
+    }
+    if held_bytes(samples) > options.memory {
+        return Err(Some(message!["give ", mebibytes(held_bytes(samples).div_ceil(1 << 20))]));
+    }
+    Ok(())
+}
+
+/// Samples that fit into so many bytes.
+fn samples_in(memory: u64) -> u64 {
+    memory / held_bytes(8) * 8
 }
 
 /// Whether the samples of `target` are to be held. Fails where they can be neither held nor filed, or memory is short.
@@ -132,8 +144,13 @@ fn over_budget(path: &Path, grid: &Grid, why: &Whole, memory: u64) -> Error {
             Setting::Memory,
             " allows"
         ],
-        message!["give ", mebibytes(needed), format!(" (it is {} MiB), or {}", memory >> 20, why.remedy(grid))],
+        message!["give ", mebibytes(needed), format!(" (it is {}), or {}", in_words(memory), why.remedy(grid))],
     )
+}
+
+/// So many bytes, in whole MiB from a few on.
+fn in_words(bytes: u64) -> String {
+    if bytes < 4 << 20 { format!("{} KiB", bytes >> 10) } else { format!("{} MiB", bytes >> 20) }
 }
 
 fn check_longest(path: &Path, grid: &Grid, metres: f64) -> Result<()> {
@@ -202,5 +219,28 @@ mod tests {
         assert!(check_memory(path, 100 << 20, None).is_ok());
         let said = check_memory(path, 200 << 20, Some(100 << 20)).unwrap_err().to_string();
         assert_eq!(said.split(';').next(), Some("a.tif: needs 200 MiB of memory, 100 MiB are free"));
+    }
+    /// What more room a warp to squares of 10 m, so many along a side, needs with so much memory.
+    fn room(side: usize, memory: u64) -> std::result::Result<(), Option<String>> {
+        let matrix = glam::DMat2::from_diagonal(glam::DVec2::new(10.0, -10.0));
+        let to_crs = glam::DAffine2::from_mat2_translation(matrix, glam::DVec2::ZERO);
+        let grid = Grid { crs: crate::dem::Crs::unknown(), to_crs, columns: side, rows: side };
+        let window = crate::dem::Window { first: [0; 2], size: [side; 2] };
+        let target = Target { grid, window, warps: true, cut: None };
+        let options = ReadOptions { memory, ..Default::default() };
+        more_room(&target, &options).map_err(|more| more.map(|more| more.to_string()))
+    }
+
+    #[test]
+    fn what_would_make_room_for_a_warp_is_named() {
+        assert_eq!(room(2000, 1 << 30), Ok(()));
+        assert_eq!(room(2000, 47 << 20), Ok(()));
+        assert_eq!(room(2000, 46 << 20), Err(Some("give memory 47MiB".into())));
+        // Beyond the limit no memory helps; cells of which no more than fit.
+        let said = room(6000, 1 << 40).unwrap_err().unwrap_or_default();
+        assert_eq!(said, "use resample 11 for cells of 11 m");
+        assert!(room(6000 * 10 / 11, 1 << 40).is_ok());
+        assert_eq!(room(17_000, 1 << 40), Err(None), "more than are read at once");
+        assert_eq!([in_words(500 << 10), in_words(100 << 20)], ["500 KiB", "100 MiB"]);
     }
 }

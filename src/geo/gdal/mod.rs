@@ -6,6 +6,7 @@ mod assumed;
 mod choice;
 mod crop;
 mod crs;
+mod cut;
 mod depth;
 mod distance;
 mod doubt;

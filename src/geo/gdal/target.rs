@@ -3,8 +3,8 @@
 //! A projected north-up grid is taken as it is, where its map is true to the ground within a percent. Degrees and maps that
 //! are not are warped to the map that is true around the middle of what is drawn (see `metric`), turned grids and grids to
 //! be resampled in their own system; square cells, at whole multiples of their size, as many as fit into the largest
-//! rectangle inside the data. A map so sheared that this leaves little is kept whole, with voids beside it. Not handled:
-//! DEMs so wide that one map cannot show them.
+//! rectangle inside the data. A map so sheared that this leaves little is kept whole, with voids beside it and outside the
+//! crop. Not handled: DEMs so wide that one map cannot show them.
 
 use std::path::Path;
 
@@ -12,11 +12,12 @@ use glam::DVec2;
 
 use super::crop::carried;
 use super::crs::Way;
+use super::cut::{Cut, is_inside};
 use super::grid::{Grid, span};
 use super::ground::{Ground, places};
 use super::inscribed::largest;
 use super::layer::reach;
-use super::limits::{Whole, can_be_held, too_many};
+use super::limits::{Whole, more_room, too_many};
 use super::metric::{degrees, is_polar, metric};
 use super::source::MIN_SIDE;
 use crate::dem::{Crs, History, MAX_SAMPLES, Window};
@@ -45,6 +46,8 @@ pub(super) struct Target {
     pub window: Window,
     /// Whether it must be warped; else `window` is the grid.
     pub warps: bool,
+    /// What of it is drawn, where that is not all.
+    pub cut: Option<Cut>,
 }
 
 /// What is asked of the files' grid; `path` is the first file, for messages.
@@ -80,19 +83,22 @@ impl Target {
         let off = Ground::of(files, window).filter(Ground::is_off);
         let truer = off.as_ref().and_then(|off| asked.truer(off));
         let warped = truer.as_ref().zip(off.as_ref()).filter(|_| options.warp);
+        let held = warped.map(|(crs, off)| asked.held(crs, off, history));
+        let (held, more) =
+            held.map_or((None, None), |held| held.map_or_else(|more| (None, more), |held| (Some(held), None)));
         let target = if files.crs.is_geographic() {
             asked.onto(&asked.zone()?, None, history)?
-        } else if let Some(target) = warped.and_then(|(crs, off)| asked.held(crs, off, history)) {
+        } else if let Some(target) = held {
             target
         } else if files.is_north_up() && options.resample.is_none() {
-            Self { grid: files.part(window), window, warps: false }
+            Self { grid: files.part(window), window, warps: false, cut: None }
         } else {
             asked.onto(&files.crs, None, history)?
         };
         check_sides([target.grid.columns, target.grid.rows], files, path)?;
         if let Some(off) = Ground::of(&target.grid, target.grid.whole()).filter(Ground::is_off) {
             let truer = truer.filter(|truer| *truer != target.grid.crs);
-            history.assume(off_the_ground(&off, truer.as_ref(), options));
+            history.assume(off_the_ground(&off, truer.as_ref(), more, options));
         }
         Ok(target)
     }
@@ -116,15 +122,18 @@ impl Asked<'_> {
         (Ground::at(&truer, &places)?.off() < off.off()).then_some(truer)
     }
 
-    /// Warped from a map `off` the ground to `crs`; `None` where the outcome cannot be held.
-    fn held(&self, crs: &Crs, off: &Ground, history: &mut History) -> Option<Target> {
+    /// Warped from a map `off` the ground to `crs`; where the outcome cannot be held, what would make it fit instead, if
+    /// anything but a smaller part would.
+    fn held(&self, crs: &Crs, off: &Ground, history: &mut History) -> std::result::Result<Target, Option<Message>> {
         let mut own = History::default();
-        let target = self.onto(crs, Some(off), &mut own).ok()?;
-        let held = can_be_held(&target, self.options);
-        if held {
+        let target = self.onto(crs, Some(off), &mut own).map_err(|error| match error {
+            Error::Limit { .. } => Some(message!["use larger cells with ", Setting::Resample.with_value()]),
+            _ => None,
+        })?;
+        more_room(&target, self.options).map_or_else(Err, |()| {
             history.take(own, None);
-        }
-        held.then_some(target)
+            Ok(target)
+        })
     }
 
     /// Warped to `crs`, from a map that may be `off` the ground.
@@ -147,9 +156,12 @@ impl Asked<'_> {
         let part = largest(all.columns, all.rows, inside).ok_or_else(|| too_small(files, path, cell * unit, crs))?;
         let [across, down] = window.size.map(|samples| (samples as f64 - 2.0 * BORDER).max(1.0));
         let share = part.samples() as f64 * cell * cell / (area * across * down);
-        let (part, kept) = match off {
-            Some(_) if share < INSIDE => (all.whole(), "all of the data, voids beside them"),
-            _ => (part, "the largest rectangle inside the data"),
+        let (part, kept, cut) = match (off, crop) {
+            (Some(_), None) if share < INSIDE => (all.whole(), "all of the data, voids beside them", None),
+            (Some(_), Some(crop)) if share < INSIDE => {
+                (all.whole(), "all inside the crop, voids beside it", Some(Cut { crop, crs: files.crs.clone() }))
+            }
+            _ => (part, "the largest rectangle inside the data", None),
         };
         let grid = all.part(part);
         let window = reach(&grid, files).ok_or_else(|| lost(path))?;
@@ -164,7 +176,7 @@ impl Asked<'_> {
             grid.rows,
             rounded(cell * unit, 6),
         ));
-        Ok(Target { grid, window, warps: true })
+        Ok(Target { grid, window, warps: true, cut })
     }
 
     /// The system in metres for degrees. Fails where they span too much of the globe for one.
@@ -190,8 +202,9 @@ impl Asked<'_> {
     }
 }
 
-/// What is said of a map that is drawn though it is `off` the ground; `truer` is one that would be better.
-fn off_the_ground(off: &Ground, truer: Option<&Crs>, options: &ReadOptions) -> Message {
+/// What is said of a map that is drawn though it is `off` the ground; `truer` is one that would be better,
+/// and `more` what would let it be warped here.
+fn off_the_ground(off: &Ground, truer: Option<&Crs>, more: Option<Message>, options: &ReadOptions) -> Message {
     let what = format!(
         "map metres are metres on the ground (this map is off it: {}, slopes are drawn {}; ",
         off.words(),
@@ -200,15 +213,16 @@ fn off_the_ground(off: &Ground, truer: Option<&Crs>, options: &ReadOptions) -> M
     let first = |crs: &Crs| format!("warp it first: `gdalwarp -t_srs {} -r cubic IN OUT.tif`)", crs.typed());
     match truer {
         None => message![what, "take a smaller part with ", Setting::Crop, ")"],
-        Some(crs) if options.warp => message![
-            what,
-            "it cannot be warped here; take a part with ",
-            Setting::Crop,
-            ", allow more with ",
-            Setting::Memory,
-            ", or ",
-            first(crs)
-        ],
+        Some(crs) if options.warp => {
+            let mut remedy = message![what, "it cannot be warped here; take a part with ", Setting::Crop, ", "];
+            if let Some(more) = more {
+                remedy.push(more);
+                remedy.push(", ");
+            }
+            remedy.push("or ");
+            remedy.push(first(crs));
+            remedy
+        }
         Some(crs) => message![what, "leave out ", Setting::Warp, ", or ", first(crs)],
     }
 }
@@ -224,12 +238,7 @@ impl Region<'_> {
     /// Which of `places` in the target's system lie where cubic convolution has all its samples, and inside the crop.
     fn holds(&self, mut places: Vec<DVec2>) -> Vec<bool> {
         self.back.carry(&mut places);
-        let cropped = |place: &DVec2| {
-            self.crop.is_none_or(|[west, south, east, north]| {
-                let x = self.files.crs.near(place.x, (west + east) / 2.0);
-                (west..=east).contains(&x) && (south..=north).contains(&place.y)
-            })
-        };
+        let cropped = |place: &DVec2| self.crop.is_none_or(|crop| is_inside(crop, *place, &self.files.crs));
         let cropped: Vec<_> = places.iter().map(cropped).collect();
         self.files.pixels(&mut places);
         let low = DVec2::splat(BORDER);
