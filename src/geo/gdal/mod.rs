@@ -28,6 +28,7 @@ mod lie;
 mod limits;
 mod listed;
 mod lossless;
+mod membrane;
 mod metric;
 mod mistaken;
 mod name;
