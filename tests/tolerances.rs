@@ -312,6 +312,11 @@ pub const FINE_METRES: f64 = 0.1;
 /// Example: on a hill of 1 200 m with flanks of 2 km 0.3 m.
 pub const ENLARGED_METRES: f64 = 1.0;
 
+/// How far a slope may be off where two files with other cells meet, m: a membrane between their outermost samples.
+///
+/// Example: on a slope of 0.15 cells of 10 and 30 m leave a gap of 20 m, and half a cell of clamped heights 2.2 m.
+pub const NEIGHBOURS_METRES: f64 = 0.1;
+
 /// Steepest step of a seam's weight, as a multiple of an even one: 1.875 for the smooth step of fifth degree, and one more
 /// sample of rounding.
 ///

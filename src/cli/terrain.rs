@@ -27,7 +27,8 @@ pub struct TerrainArguments {
     /// Metres between samples, for a DEM that does not say where it lies (an image)
     #[arg(long, value_name = "M", value_parser = values::metres, allow_hyphen_values = true, help_heading = "Surface")]
     cell: Option<f64>,
-    /// Which of several files lie on top where their grids differ: the finest, or the last of those given
+    /// Which of several files lie on top where their grids differ: the finest, blended along its edges, or the last of those
+    /// given, as it is
     #[arg(long, value_name = "finest|given", value_parser = values::order, default_value_t = Order::default(), help_heading = "Surface")]
     order: Order,
     /// The file, one of the DEM, whose cells are drawn [default: the finest whose samples fit --memory]

@@ -59,10 +59,10 @@ pub struct ReadOptions {
 /// How files on several grids lie on one another. Of those whose samples fall on one grid the last is on top anyway.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Order {
-    /// The finest on top, the last of those with like cells.
+    /// The finest on top, the last of those with like cells, blended along their seams.
     #[default]
     FinestOnTop,
-    /// As they are given, the last on top.
+    /// As they are given, the last on top as it is: nothing is blended.
     Given,
 }
 
@@ -137,7 +137,7 @@ pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Dem> {
 /// Voids are the declared nodata value and those of the options, masked and transparent samples, numbers that are not finite, and marks for no
 /// data that the file forgot to declare: at or below -32767, above 100 000 m. Of files that overlap on one grid the last
 /// wins. Files on several grids are warped, cubic, to that of the finest whose samples fit; the finest lies on top, and
-/// seams are blended over four cells of the coarser. Degrees and turned grids are warped to square cells in metres.
+/// seams are blended over four cells of the coarser, less where the finer is narrow. Degrees and turned grids are warped to square cells in metres.
 /// Where all numbers of a file are multiples of a step (whole metres, feet, tenths), its heights become the smoothest surface
 /// within half a step of them, before any warp; flat water stays flat.
 /// What was converted and what had to be assumed stands in [`Dem::history`]. A path may name one grid of a container as

@@ -11,6 +11,9 @@ use crate::dem::{Crs, Window};
 use crate::error::{Error, Result, Setting};
 use crate::message;
 
+/// Turns beyond which a globe may not begin or end, to be laid beside itself there.
+const FARTHEST: f64 = 0.75;
+
 /// `crop`, in the coordinates of the file, with its west below its east in those of `grid`. Fails where it is no rectangle there.
 pub(super) fn on(grid: &Grid, crop: Option<[f64; 4]>) -> Result<Option<[f64; 4]>> {
     let Some([west, south, east, north]) = crop else { return Ok(None) };
@@ -45,6 +48,9 @@ pub(super) fn round_the_globe(grid: &Grid, crop: Option<[f64; 4]>) -> Option<i64
     let (west, east) = (west + moved, east + moved);
     let beside = columns.round() as i64;
     match (west < first, east > last) {
+        // Which side is the same to all but longitudes so large that systems refuse them.
+        (true, false) | (false, true) if last > FARTHEST * turn => Some(-beside),
+        (true, false) | (false, true) if first < -FARTHEST * turn => Some(beside),
         (true, false) => Some(-beside),
         (false, true) => Some(beside),
         _ => None,

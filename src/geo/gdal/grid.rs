@@ -111,6 +111,11 @@ impl Grid {
         DVec2::new(self.to_crs.matrix2.x_axis.length(), self.to_crs.matrix2.y_axis.length())
     }
 
+    /// The same in metres, of 1 where the unit is unknown.
+    pub fn step(&self) -> [f64; 2] {
+        (self.cell() * self.crs.metres_per_unit().unwrap_or(1.0)).to_array()
+    }
+
     /// Place of sample (c, r).
     pub fn sample(&self, c: f64, r: f64) -> DVec2 {
         self.to_crs.transform_point2(DVec2::new(c + 0.5, r + 0.5))

@@ -11,7 +11,7 @@ use crate::dem::History;
 use crate::dem::filed::exaggerate;
 use crate::dem::scale::Scale;
 use crate::error::{Message, Result, Setting};
-use crate::geo::{ReadOptions, Stage};
+use crate::geo::{Order, ReadOptions, Stage};
 use crate::message;
 
 /// Layers that are named.
@@ -31,7 +31,7 @@ pub(super) fn hold(
     let Target { grid, warps, cut, .. } = target;
     let (mut raster, lie) = match parts.as_slice() {
         [part] if alone => (taken(part, warps.then_some(&grid), progress)?, None),
-        parts => laid(parts, &grid, progress).map(|(raster, lie)| (raster, Some(lie)))?,
+        parts => laid(parts, &grid, options.order, progress).map(|(raster, lie)| (raster, Some(lie)))?,
     };
     Part::assumed_of(&parts).into_iter().for_each(|clause| history.assume(clause));
     tell(&parts, scale, history);
@@ -62,9 +62,9 @@ fn taken(part: &Part, warped: Option<&Grid>, progress: &dyn Fn(Stage, f64)) -> R
 
 /// All samples of `parts` of several layers, from the bottom to the top, on `grid`, and how
 /// they lie, in words.
-fn laid(parts: &[Part], grid: &Grid, progress: &dyn Fn(Stage, f64)) -> Result<(Raster, String)> {
+fn laid(parts: &[Part], grid: &Grid, order: Order, progress: &dyn Fn(Stage, f64)) -> Result<(Raster, String)> {
     let [bottom, ..] = parts else { return Err(between(grid)) };
-    let (raster, seams) = seams::lay(parts, grid, progress)?;
+    let (raster, seams) = seams::lay(parts, grid, order, progress)?;
     let names: Vec<_> = parts.iter().rev().take(NAMED).map(|part| part.layer().name()).collect();
     let more = match parts.len() - names.len() {
         0 => String::new(),

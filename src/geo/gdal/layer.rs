@@ -102,7 +102,7 @@ impl Layer {
     /// Its files by their names alone, in a few words.
     pub fn name(&self) -> String {
         let path = self.path();
-        and_more(&shown(path.file_name().map_or(path, Path::new)), self.sources.len())
+        and_more(&shown(path.file_name().map_or(path, Path::new)), self.numbers.len())
     }
 
     /// Numbers of its files among all that are named.

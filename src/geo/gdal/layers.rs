@@ -6,7 +6,7 @@
 
 use std::path::{Path, PathBuf};
 
-use glam::DVec2;
+use glam::{DAffine2, DVec2};
 
 use super::crop;
 use super::crs::Way;
@@ -60,8 +60,9 @@ impl Layers {
             history.take(own, (i > 0).then_some(path));
             sort_in(placed, i, options.order, &mut groups);
         }
-        if let ([path], [group]) = (paths, groups.as_mut_slice()) {
-            group.beside_itself(path, options, &mut opening)?;
+        if let (Some(first), Some(_)) = (groups.first().map(|first| first.base.clone()), options.crop) {
+            let crop = crop::on(&first, options.crop)?;
+            groups.iter_mut().try_for_each(|group| group.beside_itself(&first.crs, crop, options, &mut opening))?;
         }
         if groups.iter().any(|group| group.base.to_crs != group.files[0].0.grid.to_crs && group.base.is_north_up()) {
             history.convert("rows and columns are read backwards, north up");
@@ -114,7 +115,7 @@ impl Layers {
 
     /// What it was opened from, in a few words.
     pub fn label(&self) -> String {
-        and_more(&shown(self.first().path()), self.all.iter().map(Layer::count).sum())
+        and_more(&shown(self.first().path()), self.all.iter().map(|layer| layer.numbers().len()).sum())
     }
 
     /// The crop in the units of `grid`: the smallest rectangle around it where these are not those of the first file.
@@ -147,15 +148,37 @@ impl Layers {
 }
 
 impl Group {
-    /// The only file a second time, a turn farther, where it runs round the globe and the crop crosses its outer edges.
-    fn beside_itself(&mut self, path: &Path, options: &ReadOptions, opening: &mut Opening) -> Result<()> {
-        let [(first, lie)] = self.files.as_slice() else { return Ok(()) };
-        let crop = crop::on(&self.base, options.crop)?;
-        let Some(columns) = crop::round_the_globe(&self.base, crop) else { return Ok(()) };
-        let beside = lie.moved([lie.bounds(&first.grid).0[0] - columns, 0]);
-        let twin = Placed::open(path, options, true, Some(&self.base.crs), opening, &mut History::default())?;
-        self.files.push((twin, beside));
+    /// Its files a second time, a turn farther, where they run round the globe and the crop, in the units of `crs`, crosses
+    /// their outer edges.
+    fn beside_itself(
+        &mut self,
+        crs: &Crs,
+        crop: Option<[f64; 4]>,
+        options: &ReadOptions,
+        opening: &mut Opening,
+    ) -> Result<()> {
+        let own = |crop| if *crs == self.base.crs { Some(crop) } else { crop::carried(crop, crs, &self.base.crs) };
+        let Some(columns) = crop::round_the_globe(&self.whole(), crop.and_then(own)) else { return Ok(()) };
+        let count = self.files.len();
+        for i in 0..count {
+            let (placed, lie) = &self.files[i];
+            let (beside, path, alone) = (lie.moved([-columns, 0]), placed.path().to_owned(), count == 1);
+            let twin = Placed::open(&path, options, alone, Some(&self.base.crs), opening, &mut History::default())?;
+            self.files.push((twin, beside));
+        }
         Ok(())
+    }
+
+    /// The grid of all its files.
+    fn whole(&self) -> Grid {
+        let bounds = self.files.iter().map(|(placed, lie)| lie.bounds(&placed.grid));
+        let wider = |(low, end): ([i64; 2], [i64; 2]), (first, last): ([i64; 2], [i64; 2])| {
+            ([0, 1].map(|i| low[i].min(first[i])), [0, 1].map(|i| end[i].max(last[i])))
+        };
+        let (low, end) = bounds.reduce(wider).unwrap_or_default();
+        let to_crs = self.base.to_crs * DAffine2::from_translation(DVec2::new(low[0] as f64, low[1] as f64));
+        let [columns, rows] = [0, 1].map(|i| (end[i] - low[i]) as usize);
+        Grid { to_crs, columns, rows, crs: self.base.crs.clone() }
     }
 }
 

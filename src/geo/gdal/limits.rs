@@ -19,7 +19,7 @@ const MAX_READ: u64 = 1 << 28;
 /// Bytes a sample of the files at work.
 const READ_BYTES: u64 = 4;
 /// Bytes a sample of the DEM at work while layers are blended, see `seams`.
-const SEAM_BYTES: u64 = 20;
+const SEAM_BYTES: u64 = 28;
 
 /// Why GDAL must have all samples at once.
 pub(super) enum Whole {
