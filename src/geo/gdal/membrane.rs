@@ -52,7 +52,8 @@ fn means(values: &[f32], size: [usize; 2], half: [usize; 2]) -> Vec<f32> {
 fn between(coarse: &[f32], size: [usize; 2], at: [usize; 2]) -> f32 {
     let near = [0, 1].map(|i| {
         let own = at[i] / 2;
-        let other = if at[i] % 2 == 0 { own.checked_sub(1) } else { Some(own + 1).filter(|next| *next < size[i]) };
+        let other =
+            if at[i].is_multiple_of(2) { own.checked_sub(1) } else { Some(own + 1).filter(|next| *next < size[i]) };
         [Some((own, 0.75)), other.map(|other| (other, 0.25))]
     });
     let columns = |(r, down): (usize, f32)| {
