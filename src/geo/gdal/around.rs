@@ -2,12 +2,11 @@
 //!
 //! With a crop only what lies in it counts, with a few samples around it, for the outline of a whole globe says nothing of
 //! where its land lies on a map of a part of it. What is left of a layer must lie inside its own outline on that map; else
-//! the map cannot show it, which is an error. Cost: some thousand places a layer. Not handled: a crop
-//! across the outer edges of a grid round the globe that is to be drawn itself; that is an error, too.
+//! the map cannot show it, which is an error. Cost: some thousand places a layer. A grid round the globe was laid
+//! beside itself before, where the crop crosses its outer edges.
 
 use glam::{DAffine2, DVec2};
 
-use super::crop;
 use super::crs::Way;
 use super::grid::{Grid, span};
 use super::layer::Layer;
@@ -31,9 +30,6 @@ type Bounds = ([i64; 2], [i64; 2]);
 pub(super) fn around(layers: &Layers, base: &Layer, crop: Option<[f64; 4]>) -> Result<Grid> {
     let whole = ([0; 2], [base.grid.columns as i64, base.grid.rows as i64]);
     let own = layers.crop_on(&base.grid, crop)?;
-    if crop::round_the_globe(&base.grid, own).is_some() {
-        return Err(ends_inside(base));
-    }
     let kept = own.map(|crop| kept(&base.grid, crop));
     let mut bounds = whole;
     for layer in layers.all().iter().filter(|layer| !std::ptr::eq(*layer, base)) {
@@ -127,11 +123,4 @@ fn cannot_show(base: &Layer, layer: &Layer) -> Error {
         format!("reaches too far for the map of {} ({})", shown(base.path()), base.grid.crs.label()),
         message!["use ", Setting::Crop, " to take a part"],
     )
-}
-
-/// The error for a grid round the globe whose outer edges cross the crop.
-fn ends_inside(base: &Layer) -> Error {
-    let what = message!["begins and ends inside ", Setting::Crop, ", so its own cells cannot be drawn there"];
-    let edge = base.grid.extent()[0] - base.grid.cell().x / 2.0;
-    Error::input(base.path(), what, format!("take a part on one side of longitude {edge}"))
 }
