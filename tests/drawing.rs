@@ -82,10 +82,12 @@ fn every_kind_of_line_stands_in_a_layer() {
     let (seen, raster) = ridge(80);
     let point = |x: f64| {
         let (place, depth) = (DVec2::new(x, 10.0), 0.01);
-        ChainPoint { place, depth, world: seen.unproject(place, depth.into()), crowd: 0 }
+        let world = seen.unproject(place, depth.into());
+        ChainPoint { place, line: Line::Own, depth, behind: 0.0, world, crowd: 0 }
     };
     let layer_of = |line: Line| {
-        let chain = Chain { line, points: vec![point(10.0), point(20.0)], closed: false };
+        let points = [10.0, 20.0].map(|x| ChainPoint { line, ..point(x) }).to_vec();
+        let chain = Chain { id: None, points, closed: false };
         let layers = draw(&lines(vec![chain], &raster, &seen), &Style::for_page(100)).layers;
         layers.into_iter().map(|layer| layer.name).collect::<Vec<_>>()
     };

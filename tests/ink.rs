@@ -268,7 +268,7 @@ fn border_and_silhouette_go_to_layers_of_their_own() {
 #[test]
 fn what_mostly_lies_beside_the_sky_is_skyline() {
     let mut raster = picture(&["....................", "####################", "...................."]);
-    let line = |raster: &InkRaster| trace(raster)[0].line;
+    let line = |raster: &InkRaster| trace(raster)[0].line();
     assert_eq!(line(&raster), Line::Occluding);
     let sky = Pixel::new(Kind::Sky, DVec2::ZERO, 0.0);
     raster.pixels[..8].fill(sky);

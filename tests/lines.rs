@@ -54,7 +54,7 @@ fn off_surface(chains: &[Chain]) -> f64 {
         let metres = (p.z - (GAUSSIAN.height)(p.truncate())).abs() / (1.0 + slope).sqrt();
         metres * camera.focal() / camera.project(world).1
     };
-    let silhouettes = chains.iter().filter(|chain| chain.line != Line::Border);
+    let silhouettes = chains.iter().filter(|chain| chain.line() != Line::Border);
     silhouettes.flat_map(|chain| &chain.points).map(|point| off(point.world)).fold(0.0, f64::max)
 }
 
@@ -78,7 +78,7 @@ fn traced_chains_lie_on_the_surface_where_the_page_shows_them() {
 #[test]
 fn land_against_the_sky_is_skyline_and_its_rim_is_border() {
     let found = chains(1.0);
-    let length = |line: Line| found.iter().filter(|c| c.line == line).map(|c| c.points.len()).sum::<usize>();
+    let length = |line: Line| found.iter().filter(|c| c.line() == line).map(|c| c.points.len()).sum::<usize>();
     let [skyline, border] = [Line::Skyline, Line::Border].map(length);
     println!("{skyline} points of skyline, {border} of border, {} of occluding lines", length(Line::Occluding));
     assert!(skyline > 20 && border > 0, "{skyline} points of skyline, {border} of border");

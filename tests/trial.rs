@@ -75,10 +75,10 @@ impl Yield for Seen {
         let point = |place: DVec2, distance: f64| {
             let depth = NEAR / distance;
             let world: DVec3 = self.perspective.unproject(place, depth);
-            ChainPoint { place, depth: depth as f32, world, crowd: 0 }
+            ChainPoint { place, line: Line::Occluding, depth: depth as f32, behind: 0.0, world, crowd: 0 }
         };
         let chain = |piece: &Piece| Chain {
-            line: Line::Occluding,
+            id: None,
             points: piece.ends.map(|end| point(end, piece.distance)).to_vec(),
             closed: false,
         };

@@ -113,7 +113,7 @@ pub struct StrokePoint {
 /// Layers from bottom to top: `border`, `silhouette`, `crease`; one without a line is left out.
 pub fn draw(lines: &Lines, style: &Style) -> Drawing {
     let of = |name: &str| {
-        let chains = lines.chains.iter().filter(|chain| layer(chain.line) == name);
+        let chains = lines.chains.iter().filter(|chain| layer(chain.line()) == name);
         let drawn = chains.filter(|chain| style.dots || chain.points.len() > 1);
         drawn.map(|chain| stroke(chain, style, &lines.recession)).collect()
     };

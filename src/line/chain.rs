@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 use crate::view::Perspective;
 
 /// What a chain draws.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Line {
     /// Where land hides farther land: the silhouette between toward and away surface.
     Occluding,
@@ -30,8 +30,12 @@ pub enum Line {
 pub struct ChainPoint {
     /// Pixels from the page's top left corner, x right, y down; pixel centres are at halves.
     pub place: DVec2,
+    /// What the chain draws from here on.
+    pub line: Line,
     /// Near / distance along the view axis; larger is nearer.
     pub depth: f32,
+    /// The same of what lies behind, on the far side of the line; 0 is sky, and where nobody has looked.
+    pub behind: f32,
     /// Metres of the exaggerated world: east, north, up.
     pub world: DVec3,
     /// Pixels of ink in the square of 9 x 9 about it; 0 where none were [counted](super::crowded).
@@ -40,8 +44,8 @@ pub struct ChainPoint {
 
 impl ChainPoint {
     /// The point at a place on the page, by its depth.
-    pub(super) fn seen(place: DVec2, depth: f32, perspective: &Perspective) -> Self {
-        Self { place, depth, world: perspective.unproject(place, depth.into()), crowd: 0 }
+    pub(super) fn seen(place: DVec2, line: Line, depth: f32, perspective: &Perspective) -> Self {
+        Self { place, line, depth, behind: 0.0, world: perspective.unproject(place, depth.into()), crowd: 0 }
     }
 
     /// ln depth, in which equal steps are equal ratios of distance; finite for sky too.
@@ -50,13 +54,27 @@ impl ChainPoint {
     }
 }
 
+/// What a chain is called: by a place on the lattice that it passes, so that the next frame's chain there is called the same.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Id(pub u64);
+
 /// An ordered polyline on the page; one point is a dot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chain {
-    /// What it draws.
-    pub line: Line,
+    /// Unique in a frame; `None` of chains traced from pixels, which do not know where they were in the last one.
+    pub id: Option<Id>,
     /// At least one point, about a pixel apart while unsmoothed.
     pub points: Vec<ChainPoint>,
     /// Whether the last point is joined to the first, which is not repeated.
     pub closed: bool,
+}
+
+impl Chain {
+    /// What most of its points draw; of equals the first in the order of [`Line`].
+    pub fn line(&self) -> Line {
+        let mut lines: Vec<Line> = self.points.iter().map(|point| point.line).collect();
+        lines.sort_unstable();
+        let runs = lines.chunk_by(|a, b| a == b);
+        runs.rev().max_by_key(|run| run.len()).map_or(Line::Own, |run| run[0])
+    }
 }

@@ -29,7 +29,7 @@ fn stepped(chain: &Chain, perspective: &Perspective) -> impl Iterator<Item = Cha
         (0..steps).map(move |s| {
             let t = f64::from(s) / f64::from(steps);
             let log = a.log_depth() + (b.log_depth() - a.log_depth()) * t;
-            ChainPoint::seen(a.place.lerp(b.place, t), log.exp() as f32, perspective)
+            ChainPoint::seen(a.place.lerp(b.place, t), a.line, log.exp() as f32, perspective)
         })
     })
 }

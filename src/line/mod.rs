@@ -8,6 +8,7 @@
 
 pub mod chain;
 pub mod crowd;
+pub mod curve;
 mod graph;
 mod grid;
 mod join;
@@ -19,8 +20,9 @@ pub mod smooth;
 mod thin;
 pub mod trace;
 
-pub use chain::{Chain, ChainPoint, Line};
+pub use chain::{Chain, ChainPoint, Id, Line};
 pub use crowd::crowded;
+pub use curve::{Bound, Curve, CurvePoint, Sight, Stretch};
 pub use marks::{Mark, Marks};
 pub use overlay::{Cover, project_polyline};
 pub use raster::{InkRaster, Kind, Pixel};

@@ -41,27 +41,27 @@ pub fn project_polyline(
         let samples = clip_near(segment[0], segment[1], perspective)
             .map(|ends| ends.map(|p| perspective.project(p)))
             .and_then(|[a, b]| clip_page(a, b, perspective.size()))
-            .map_or(Vec::new(), |(a, b)| samples(a, b, perspective));
+            .map_or(Vec::new(), |(a, b)| samples(a, b, line, perspective));
         for point in samples {
             if run.last().is_some_and(|last| last.place.distance(point.place) > 2.0 * SAMPLE) {
-                finish(&mut run, line, &mut chains);
+                finish(&mut run, &mut chains);
             }
             if cover == Cover::On && hidden(raster, point) {
-                finish(&mut run, line, &mut chains);
+                finish(&mut run, &mut chains);
             } else if run.last().is_none_or(|last| last.place != point.place) {
                 run.push(point);
             }
         }
     }
-    finish(&mut run, line, &mut chains);
+    finish(&mut run, &mut chains);
     chains
 }
 
 /// Makes a chain of a run of visible samples, unless it is a single one.
-fn finish(run: &mut Vec<ChainPoint>, line: Line, chains: &mut Vec<Chain>) {
+fn finish(run: &mut Vec<ChainPoint>, chains: &mut Vec<Chain>) {
     let points = std::mem::take(run);
     if points.len() > 1 {
-        chains.push(Chain { line, points, closed: false });
+        chains.push(Chain { id: None, points, closed: false });
     }
 }
 
@@ -98,10 +98,10 @@ fn clip_page(a: (DVec2, f64), b: (DVec2, f64), page: DVec2) -> Option<((DVec2, f
 }
 
 /// Points from a to b, both included, at most [`SAMPLE`] px apart.
-fn samples(a: (DVec2, f64), b: (DVec2, f64), perspective: &Perspective) -> Vec<ChainPoint> {
+fn samples(a: (DVec2, f64), b: (DVec2, f64), line: Line, perspective: &Perspective) -> Vec<ChainPoint> {
     let steps = (a.0.distance(b.0) / SAMPLE).ceil().max(1.0);
     let at = |i: u64| i as f64 / steps;
-    let point = |t: f64| ChainPoint::seen(a.0.lerp(b.0, t), (a.1 + (b.1 - a.1) * t) as f32, perspective);
+    let point = |t: f64| ChainPoint::seen(a.0.lerp(b.0, t), line, (a.1 + (b.1 - a.1) * t) as f32, perspective);
     (0..=steps as u64).map(|i| point(at(i))).collect()
 }
 

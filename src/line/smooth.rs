@@ -49,9 +49,11 @@ pub fn smooth(chains: &[Chain], perspective: &Perspective, tolerance: f64) -> Ve
     for (chain, places) in chains.iter().zip(&mut places).filter(|(chain, _)| !chain.closed) {
         follow(chain, places, radius, &moved);
     }
-    let seen = |point: DVec3| ChainPoint::seen(point.truncate(), point.z.exp() as f32, perspective);
+    let seen = |point: DVec3, line| ChainPoint::seen(point.truncate(), line, point.z.exp() as f32, perspective);
     let simplify = |(chain, places): (&Chain, &Vec<DVec2>)| {
-        let points = simplified(chain, places, tolerance * SIMPLIFY_SHARE).into_iter().map(seen).collect();
+        let line = chain.line();
+        let simplified = simplified(chain, places, tolerance * SIMPLIFY_SHARE).into_iter();
+        let points = simplified.map(|point| seen(point, line)).collect();
         Chain { points, ..*chain }
     };
     chains.iter().zip(&places).map(simplify).collect()

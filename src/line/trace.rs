@@ -36,7 +36,7 @@ pub fn trace(marks: &Marks, perspective: &Perspective) -> Vec<Chain> {
         let pixel = mark(cell).map(|mark| mark.pixel);
         // A filled hole has no line of its own.
         let offset = pixel.filter(|pixel| pixel.is_ink()).map_or(DVec2::ZERO, Pixel::place);
-        ChainPoint::seen(centre + offset, pixel.map_or(0.0, Pixel::depth), perspective)
+        ChainPoint::seen(centre + offset, Line::Occluding, pixel.map_or(0.0, Pixel::depth), perspective)
     };
     let points: Vec<Vec<ChainPoint>> = graph.branches.iter().map(|branch| branch.iter().map(point).collect()).collect();
     let partners = partners(&graph.branches, &points);
@@ -127,7 +127,7 @@ fn cut(mut points: Vec<ChainPoint>, drawn: &[Line], closed: bool, chains: &mut V
         _ => Line::Occluding,
     };
     if cuts.is_empty() {
-        chains.push(Chain { line: line(0, n), points, closed: closed && n > 2 });
+        chains.push(chain(&points, line(0, n), closed && n > 2));
         return;
     }
     if closed {
@@ -136,9 +136,14 @@ fn cut(mut points: Vec<ChainPoint>, drawn: &[Line], closed: bool, chains: &mut V
     cuts.push(points.len() - 1);
     let mut start = 0;
     for end in cuts {
-        chains.push(Chain { line: line(start, end + 1), points: points[start..=end].to_vec(), closed: false });
+        chains.push(chain(&points[start..=end], line(start, end + 1), false));
         start = end;
     }
+}
+
+/// The chain of these points that draws a line.
+fn chain(points: &[ChainPoint], line: Line, closed: bool) -> Chain {
+    Chain { id: None, points: points.iter().map(|point| ChainPoint { line, ..*point }).collect(), closed }
 }
 
 /// Whether more than half of the pixels draw this line.

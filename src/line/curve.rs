@@ -1,0 +1,74 @@
+//! Curves on the surface: where it turns from toward to away, and where it ends.
+//!
+//! What faces the eye is bounded by contours and by the rim: its boundary, walked with the surface that faces the eye on
+//! the left (seen from above), is a set of curves that neither branch nor cross. A curve has open ends only where what is
+//! certainly hidden or beside the page was left out.
+
+use glam::{DVec2, DVec3};
+
+/// A place on the lattice, in 1/256 of its finest step, x east and y south of the north-west sample.
+pub type Place = [i32; 2];
+
+/// A point of a curve.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CurvePoint {
+    /// Pixels from the page's top left corner, x right, y down.
+    pub place: DVec2,
+    /// Near / distance along the view axis; larger is nearer.
+    pub depth: f64,
+    /// Metres of the exaggerated world: east, north, up.
+    pub world: DVec3,
+    /// Where it lies on the lattice.
+    pub at: Place,
+}
+
+/// Which boundary of the toward surface a stretch is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Bound {
+    /// The surface turns away.
+    Contour,
+    /// The surface ends.
+    Rim,
+}
+
+/// What is known of whether the eye sees a stretch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Sight {
+    /// From all four pixel centres about its middle nothing stands before it.
+    Free,
+    /// From all four something does.
+    Hidden,
+    /// They differ; what the nearest says.
+    Doubt {
+        /// Nothing stands before it there.
+        free: bool,
+    },
+}
+
+/// What lies between a point of a curve and the next, at most about a pixel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stretch {
+    /// What it bounds.
+    pub bound: Bound,
+    /// Whether it is seen.
+    pub sight: Sight,
+    /// Depth of what lies behind it, on the far side; 0 is sky.
+    pub behind: f32,
+    /// How steeply facing falls along the view direction: sine of the angle between the stretch and the ray through it, seen
+    /// from the outside of the surface. Above 0: convex, the surface folds out of sight behind it; below 0: concave, it hides
+    /// itself. 0 at a cusp. 1 for the rim.
+    pub fall: f32,
+    /// On the page, the unit vector from the surface outwards, to what lies behind.
+    pub outward: DVec2,
+}
+
+/// A curve on the surface: `points.len() - 1` stretches, as many as points where it is closed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Curve {
+    /// At least two.
+    pub points: Vec<CurvePoint>,
+    /// Stretch `i` leads from point `i` to the next.
+    pub stretches: Vec<Stretch>,
+    /// Whether the last stretch leads to the first point.
+    pub closed: bool,
+}
