@@ -50,21 +50,24 @@ impl<'a> Crossings<'a> {
                 crossings.buckets(curve, stretch).for_each(|bucket| is_asked[bucket] = true);
             }
         }
-        // Two looks at all stretches: how many each bucket holds, then which.
-        let mut counts = vec![0; crossings.starts.len()];
-        crossings.each(&is_asked, |bucket, _| counts[bucket] += 1);
-        let mut sum = 0;
-        for (start, count) in crossings.starts.iter_mut().zip(counts) {
-            *start = sum;
-            sum += count;
+        let mut listed = Vec::new();
+        for (c, curve) in curves.iter().enumerate() {
+            for s in 0..curve.stretches.len() {
+                let buckets = crossings.buckets(curve, s).filter(|&bucket| is_asked[bucket]);
+                listed.extend(buckets.map(|bucket| (bucket, [c as u32, s as u32])));
+            }
+        }
+        listed.iter().for_each(|&(bucket, _)| crossings.starts[bucket + 1] += 1);
+        for bucket in 1..crossings.starts.len() {
+            crossings.starts[bucket] += crossings.starts[bucket - 1];
         }
         let mut next = crossings.starts.clone();
-        let mut held = vec![[0; 2]; sum as usize];
-        crossings.each(&is_asked, |bucket, stretch| {
-            held[next[bucket] as usize] = stretch;
+        crossings.held = vec![[0; 2]; listed.len()];
+        for (bucket, stretch) in listed {
+            crossings.held[next[bucket] as usize] = stretch;
             next[bucket] += 1;
-        });
-        Self { held, ..crossings }
+        }
+        crossings
     }
 
     /// Where a stretch passes under nearer ones, in order along it.
@@ -87,23 +90,12 @@ impl<'a> Crossings<'a> {
         found
     }
 
-    /// Calls `hold` with each stretch and each asked bucket that lists it.
-    fn each(&self, is_asked: &[bool], mut hold: impl FnMut(usize, [u32; 2])) {
-        for (c, curve) in self.curves.iter().enumerate() {
-            for s in 0..curve.stretches.len() {
-                let buckets = self.buckets(curve, s).filter(|&bucket| is_asked[bucket]);
-                buckets.for_each(|bucket| hold(bucket, [c as u32, s as u32]));
-            }
-        }
-    }
-
     /// The buckets of the cells that a stretch may touch; none beside the page.
     fn buckets(&self, curve: &Curve, stretch: usize) -> impl Iterator<Item = usize> + use<> {
         let [a, b] = curve.ends(stretch).map(|end| end.place);
         let cells = |a: f64, b: f64, size: f64| -> RangeInclusive<u64> {
             // `as` takes what is left of the page to its first cell; a stretch beside it has an empty range.
-            let last = (size / CELL).ceil();
-            (a.min(b) / CELL).floor() as u64..=(a.max(b) / CELL).floor().min(last) as u64
+            (a.min(b) / CELL) as u64..=(a.max(b).min(size) / CELL) as u64
         };
         let (columns, rows) = (cells(a.x, b.x, self.page.x), cells(a.y, b.y, self.page.y));
         let mask = self.starts.len() as u64 - 2;
