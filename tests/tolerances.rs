@@ -358,3 +358,13 @@ pub const NOISE_LEFT: f64 = 0.02;
 ///
 /// Example: a plane at 1 000 m comes back to 1 mm.
 pub const PLANE_M: f64 = 1e-3;
+
+/// How far a chain may end from the nearer line it ends on, px: rounding of places on the page in f64.
+///
+/// Example: at x = 2000 a place is rounded to 2.3e-13; an intersection loses some digits more.
+pub const ON_LINE_PX: f64 = 1e-9;
+
+/// Least share of the length of chains that keeps its name when what the chains hold changes by some 3 %.
+///
+/// Example: of chains of 1 000 px in all, at most 100 px are called otherwise in the next frame.
+pub const NAMES_KEPT: f64 = 0.9;
