@@ -83,7 +83,7 @@ fn every_kind_of_line_stands_in_a_layer() {
     let point = |x: f64| {
         let (place, depth) = (DVec2::new(x, 10.0), 0.01);
         let world = seen.unproject(place, depth.into());
-        ChainPoint { place, line: Line::Own, depth, behind: 0.0, world, crowd: 0 }
+        ChainPoint { place, line: Line::Own, depth, behind: 0.0, world, crowd: 0, weight: 1.0 }
     };
     let layer_of = |line: Line| {
         let points = [10.0, 20.0].map(|x| ChainPoint { line, ..point(x) }).to_vec();
