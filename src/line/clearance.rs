@@ -53,16 +53,13 @@ pub fn weights(samples: &[Sample], gap: f32) -> Vec<f32> {
     let cells = Cells::new(samples, &order, gap);
     for &i in &order {
         let sample = &samples[i as usize];
-        let mut pressure = 0.0_f32;
-        if sample.yields > 0.0 && gap > 0.0 {
-            for &j in cells.about(sample.place) {
-                let weight = weights[j as usize];
-                // Those to come have none yet.
-                if weight > pressure {
-                    pressure = pressure.max(weight * sample.pressed_by(&samples[j as usize], gap));
-                }
-            }
-        }
+        // Those to come have no weight yet.
+        let harder = |pressure: f32, j: usize| match weights[j] > pressure {
+            true => pressure.max(weights[j] * sample.pressed_by(&samples[j], gap)),
+            false => pressure,
+        };
+        let is_pressed = sample.yields > 0.0 && gap > 0.0;
+        let pressure = if is_pressed { cells.near(sample.place).fold(0.0, harder) } else { 0.0 };
         weights[i as usize] = sample.alone * (1.0 - sample.yields * pressure);
     }
     weights
@@ -71,13 +68,15 @@ pub fn weights(samples: &[Sample], gap: f32) -> Vec<f32> {
 impl Sample {
     /// How hard a stronger sample of full weight presses, 0 to 1.
     fn pressed_by(&self, other: &Self, gap: f32) -> f32 {
-        let nearer = 1.0 - smoothstep([gap / 2.0, gap], self.distance(other));
-        if nearer <= 0.0 {
+        // Most of what is near goes on along the same line.
+        let strange = self.strangeness(other, gap);
+        if strange <= 0.0 {
             return 0.0;
         }
+        let nearer = 1.0 - smoothstep([gap / 2.0, gap], self.distance(other));
         let parallel = smoothstep(SIDE_BY_SIDE, self.along.dot(other.along).abs());
         let stronger = smoothstep([0.0, RANK], other.rank - self.rank);
-        nearer * parallel * stronger * self.strangeness(other, gap)
+        strange * nearer * parallel * stronger
     }
 
     /// Distance on the page to the other piece, where what lies ahead counts as farther, px.
@@ -108,11 +107,13 @@ pub fn smoothstep([low, high]: [f32; 2], x: f32) -> f32 {
 struct Cells {
     low: Vec2,
     side: f32,
+    /// Between places farther apart than this nothing presses, px.
+    reach: f32,
     columns: usize,
     rows: usize,
     /// Where each cell's samples begin in `list`, and where the last ends.
     starts: Vec<u32>,
-    list: Vec<u32>,
+    list: Vec<(Vec2, u32)>,
 }
 
 impl Cells {
@@ -124,10 +125,18 @@ impl Cells {
         let longest = order.iter().map(|&i| samples[i as usize].half).fold(0.0, f32::max);
         // No more cells than twice the samples, however large the page.
         let fewest = (size.x * size.y / (2.0 * order.len() as f32 + 1.0)).sqrt().max(size.max_element() / 10_000.0);
-        let side = (gap + longest).max(fewest).max(LEAST_CELL);
+        let reach = gap + longest;
+        let side = reach.max(fewest).max(LEAST_CELL);
         let [columns, rows] = [size.x, size.y].map(|size| (size / side) as usize + 1);
-        let mut cells =
-            Self { low, side, columns, rows, starts: vec![0; columns * rows + 1], list: vec![0; order.len()] };
+        let mut cells = Self {
+            low,
+            side,
+            reach,
+            columns,
+            rows,
+            starts: vec![0; columns * rows + 1],
+            list: vec![(low, 0); order.len()],
+        };
         let cell = |cells: &Self, i: u32| {
             let [column, row] = cells.at(samples[i as usize].place);
             row * columns + column
@@ -140,7 +149,7 @@ impl Cells {
         let mut ends = cells.starts.clone();
         for &i in order {
             let end = &mut ends[cell(&cells, i)];
-            cells.list[*end as usize] = i;
+            cells.list[*end as usize] = (samples[i as usize].place, i);
             *end += 1;
         }
         cells
@@ -152,13 +161,16 @@ impl Cells {
         [(at[0] as usize).min(self.columns - 1), (at[1] as usize).min(self.rows - 1)]
     }
 
-    /// The samples in the cell of a place and in the 8 about it.
-    fn about(&self, place: Vec2) -> impl Iterator<Item = &u32> {
+    /// The samples that may press on one at a place.
+    fn near(&self, place: Vec2) -> impl Iterator<Item = usize> {
         let [column, row] = self.at(place);
         let columns = column.saturating_sub(1)..(column + 2).min(self.columns);
-        (row.saturating_sub(1)..(row + 2).min(self.rows)).flat_map(move |row| {
+        let rows = row.saturating_sub(1)..(row + 2).min(self.rows);
+        let about = rows.flat_map(move |row| {
             let [first, last] = [columns.start, columns.end].map(|column| self.starts[row * self.columns + column]);
             &self.list[first as usize..last as usize]
-        })
+        });
+        let is_near = move |&&(other, _): &&(Vec2, u32)| other.distance_squared(place) < self.reach * self.reach;
+        about.filter(is_near).map(|&(_, i)| i as usize)
     }
 }
