@@ -145,7 +145,7 @@ fn strokes(chain: &Chain, style: &Style, recession: &Recession) -> Vec<Stroke> {
     let width = |point: &ChainPoint| {
         let receding = 1.0 - (1.0 - style.far_width) * recession.share(point);
         let roomy = (receding * (ROOM / f64::from(point.crowd.max(1))).sqrt().min(1.0)).max(style.far_width);
-        roomy * f64::from(point.weight) * (FLAT + (1.0 - FLAT) * point.relief())
+        roomy * f64::from(point.weight) * (FLAT + (1.0 - FLAT) * point.relief().sqrt())
     };
     let point = |point: &ChainPoint| StrokePoint { place: point.place, width: width(point) };
     let mut points: Vec<StrokePoint> = chain.points.iter().map(point).collect();

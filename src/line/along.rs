@@ -82,22 +82,28 @@ impl<'a> Along<'a> {
         sums.into_iter().map(|(sum, total)| sum.map(|sum| sum / total)).collect()
     }
 
-    /// 1 where `is_in` holds for what the chain draws from a point on, or up to it; falls to 0 within `reach` px beside.
-    pub fn nearness(&self, is_in: impl Fn(&ChainPoint) -> bool, reach: f64) -> Vec<f64> {
-        let n = self.steps.len();
-        let drawn = |i: usize| is_in(&self.chain.points[i]);
-        let ends = |i: usize| drawn(i) || (i > 0 || self.chain.closed) && drawn((i + n - 1) % n);
-        let mut near: Vec<f64> = (0..n).map(|i| f64::from(u8::from(ends(i)))).collect();
+    /// Values at the points, 0 to 1, where each spreads to both sides and falls by 1 in `reach` px: the largest counts.
+    pub fn spread(&self, values: &[f64], reach: f64) -> Vec<f64> {
+        let n = values.len();
+        let mut spread = values.to_vec();
         for backward in [false, true] {
             let mut last = 0.0;
+            // Round a closed chain twice, so that its first point knows its last.
             for turn in 0..if self.chain.closed { 2 * n } else { n } {
                 let i = if backward { n - 1 - turn % n } else { turn % n };
                 let step = if backward { self.steps[i] } else { self.before(i) };
-                last = near[i].max(last - step / reach);
-                near[i] = last;
+                last = spread[i].max(last - step / reach);
+                spread[i] = last;
             }
         }
-        near
+        spread
+    }
+
+    /// Whether what the chain draws from a point on, or up to it, is such.
+    pub fn draws(&self, i: usize, is_such: impl Fn(&ChainPoint) -> bool) -> bool {
+        let points = &self.chain.points;
+        let before = if i > 0 || self.chain.closed { (i + points.len() - 1) % points.len() } else { i };
+        is_such(&points[i]) || is_such(&points[before])
     }
 
     /// From the point before to this one, px.

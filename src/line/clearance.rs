@@ -12,11 +12,14 @@
 use glam::Vec2;
 
 /// Samples differ in rank by this where the weaker yields wholly: a factor of 1.6 in jump.
-const RANK: f32 = 0.5;
+const RANK: f32 = 0.35;
 /// Cosines of the angle between two lines up to which they cross, and from which they run side by side: 60 and 30 degrees.
 const SIDE_BY_SIDE: [f32; 2] = [0.5, 0.866];
+/// Differences in ln depth up to which a skyline is the same, and from which the farther one says that the nearer has land
+/// behind it, not sky.
+const COVERED: [f32; 2] = [0.0005, 0.002];
 /// What lies ahead on the line's own way counts as this many times as far: it is not beside.
-const AHEAD: f32 = 3.0;
+const AHEAD: f32 = 6.0;
 /// Along one line, gaps between samples up to which they are neighbours, and from which they are strangers.
 const STRANGERS: [f32; 2] = [3.0, 6.0];
 /// Least side of a cell of the page in which samples are looked up, px.
@@ -41,8 +44,10 @@ pub struct Sample {
     pub rank: f32,
     /// Its weight where it is alone, 0 to 1.
     pub alone: f32,
-    /// The share of it that yields to others, 0 to 1.
-    pub yields: f32,
+    /// How far it is skyline, 0 to 1: that share yields to no one.
+    pub skyline: f32,
+    /// ln depth: larger is nearer.
+    pub log_depth: f32,
 }
 
 /// Weights of samples whose lines keep `gap` px apart, 0 to 1, in the order of the samples.
@@ -58,9 +63,8 @@ pub fn weights(samples: &[Sample], gap: f32) -> Vec<f32> {
             true => pressure.max(weights[j] * sample.pressed_by(&samples[j], gap)),
             false => pressure,
         };
-        let is_pressed = sample.yields > 0.0 && gap > 0.0;
-        let pressure = if is_pressed { cells.near(sample.place).fold(0.0, harder) } else { 0.0 };
-        weights[i as usize] = sample.alone * (1.0 - sample.yields * pressure);
+        let pressure = if gap > 0.0 { cells.near(sample.place).fold(0.0, harder) } else { 0.0 };
+        weights[i as usize] = sample.alone * (1.0 - pressure);
     }
     weights
 }
@@ -73,18 +77,22 @@ impl Sample {
         if strange <= 0.0 {
             return 0.0;
         }
-        let nearer = 1.0 - smoothstep([gap / 2.0, gap], self.distance(other));
-        let parallel = smoothstep(SIDE_BY_SIDE, self.along.dot(other.along).abs());
-        let stronger = smoothstep([0.0, RANK], other.rank - self.rank);
-        strange * nearer * parallel * stronger
+        let to = self.way_to(other);
+        let nearer = 1.0 - smoothstep([gap / 2.0, gap], to.length());
+        let cos = self.along.dot(other.along);
+        let stronger = smoothstep([0.0, RANK], other.rank - self.rank) * smoothstep(SIDE_BY_SIDE, cos.abs());
+        // The surface lies on the left, what is behind on the right.
+        let outside = smoothstep([gap / 8.0, gap / 4.0], to.y) * smoothstep(SIDE_BY_SIDE, cos);
+        let covered = other.skyline * outside * smoothstep(COVERED, self.log_depth - other.log_depth);
+        strange * nearer * (stronger + (covered - stronger) * self.skyline)
     }
 
-    /// Distance on the page to the other piece, where what lies ahead counts as farther, px.
-    fn distance(&self, other: &Self) -> f32 {
-        let own = |v: Vec2| Vec2::new(v.dot(self.along) * AHEAD, v.perp_dot(self.along));
+    /// The shortest way on the page to the other piece: along the line, counted as farther than it is, and to its right; px.
+    fn way_to(&self, other: &Self) -> Vec2 {
+        let own = |v: Vec2| Vec2::new(v.dot(self.along) * AHEAD, self.along.perp_dot(v));
         let (to, half) = (own(other.place - self.place), own(other.along * other.half));
         let t = (-to.dot(half) / half.length_squared().max(f32::MIN_POSITIVE)).clamp(-1.0, 1.0);
-        (to + half * t).length()
+        to + half * t
     }
 
     /// 0 for neighbours along one line, 1 for samples of two.
