@@ -6,6 +6,7 @@
 
 use glam::DVec2;
 
+use super::clearance::smoothstep;
 use super::{Chain, ChainPoint};
 
 /// A chain with the lengths along it.
@@ -45,6 +46,11 @@ impl<'a> Along<'a> {
         }
     }
 
+    /// To the nearer end, px; infinite in a closed chain.
+    pub fn end(&self, i: usize) -> f64 {
+        if self.chain.closed { f64::INFINITY } else { self.arcs[i].min(self.length - self.arcs[i]) }
+    }
+
     /// The direction from the point before to the one after, as long as the way between.
     pub fn direction(&self, i: usize) -> DVec2 {
         let (points, n) = (&self.chain.points, self.steps.len());
@@ -82,21 +88,36 @@ impl<'a> Along<'a> {
         sums.into_iter().map(|(sum, total)| sum.map(|sum| sum / total)).collect()
     }
 
-    /// Values at the points, 0 to 1, where each spreads to both sides and falls by 1 in `reach` px: the largest counts.
-    pub fn spread(&self, values: &[f64], reach: f64) -> Vec<f64> {
-        let n = values.len();
-        let mut spread = values.to_vec();
-        for backward in [false, true] {
-            let mut last = 0.0;
-            // Round a closed chain twice, so that its first point knows its last.
-            for turn in 0..if self.chain.closed { 2 * n } else { n } {
-                let i = if backward { n - 1 - turn % n } else { turn % n };
-                let step = if backward { self.steps[i] } else { self.before(i) };
-                last = spread[i].max(last - step / reach);
-                spread[i] = last;
+    /// Values at the points, each spread along the chain: whole up to `near` px, fading until `far`; the largest counts.
+    pub fn spread(&self, values: &[f64], [near, far]: [f64; 2]) -> Vec<f64> {
+        let fading = |way: f64| 1.0 - fade([near, far], way);
+        let most = values.iter().copied().fold(0.0, f64::max);
+        let from = |i: usize| {
+            // Most points have the most there is.
+            if values[i] >= most {
+                return most;
             }
-        }
-        spread
+            let sides = [false, true].map(|backward| self.from(i, backward).take_while(|(_, way)| *way < far));
+            let spread = sides.into_iter().flatten().map(|(j, way)| values[j] * fading(way));
+            spread.fold(values[i], f64::max)
+        };
+        (0..values.len()).map(from).collect()
+    }
+
+    /// The points before or after one, with the way there, px.
+    fn from(&self, i: usize, backward: bool) -> impl Iterator<Item = (usize, f64)> {
+        let n = self.steps.len();
+        let most = match (self.chain.closed, backward) {
+            (true, _) => n - 1,
+            (false, true) => i,
+            (false, false) => n - 1 - i,
+        };
+        let mut way = 0.0;
+        (1..=most).map(move |k| {
+            let j = if backward { (i + n - k) % n } else { (i + k) % n };
+            way += if backward { self.steps[j] } else { self.before(j) };
+            (j, way)
+        })
     }
 
     /// Whether what the chain draws from a point on, or up to it, is such.
@@ -140,4 +161,9 @@ fn between(a: &ChainPoint, b: &ChainPoint, t: f64) -> ChainPoint {
 fn step(chain: &Chain, i: usize) -> f64 {
     let next = chain.points.get(i + 1).or(chain.points.first().filter(|_| chain.closed));
     next.map_or(0.0, |next| next.place.distance(chain.points[i].place))
+}
+
+/// 0 up to the first edge, 1 from the second on, smooth between.
+pub fn fade([low, high]: [f64; 2], x: f64) -> f64 {
+    f64::from(smoothstep([low as f32, high as f32], x as f32))
 }

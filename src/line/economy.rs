@@ -10,11 +10,11 @@
 //! Cost: 40 000 points in some 10 ms. Does not handle: chains that fall apart or join from one frame to the next, beyond
 //! what their length says.
 
-use glam::FloatExt;
+use glam::{DVec2, FloatExt};
 use rayon::prelude::*;
 
-use super::along::{Along, stepped};
-use super::clearance::{self, Sample, smoothstep};
+use super::along::{Along, fade, stepped};
+use super::clearance::{self, Sample};
 use super::{Chain, ChainPoint, Line};
 
 /// Lengths of line, in gaps, up to which it is left out and from which it is whole.
@@ -31,13 +31,18 @@ const BORDER_RANK: f64 = 0.1;
 const SKYLINE_RANK: f64 = 1.0;
 /// How much stronger a skyline is for being farther, for each unit of ln depth.
 const SKYLINE_SHARE: f64 = 0.01;
-/// How far a line runs on where its jump ends or the sky does, of the length over which it is averaged.
-const RUN_OUT: f64 = 3.0;
-/// Along a chain, measures are averaged over about this many gaps to either side.
-const SOFT: f64 = 1.0;
+/// Where its jump or the sky ends, a line runs on whole for the first of these and fades until the second, gaps.
+const RUN_OUT: [f64; 2] = [1.0, 3.0];
+/// Along a chain, directions are averaged over about the first of these to either side, jumps over the second, gaps.
+const SOFT: [f64; 2] = [1.0, 0.5];
+/// Averages of 0 and 1 up to which all is 0, and from which all is 1.
+const TAILS: [f64; 2] = [0.05, 0.95];
+/// Least length of either, px.
+const LEAST_SOFT: f64 = 1.5;
 /// Longest piece of a chain between two points with weights: gaps, and px where the gap is small.
-const STEP: f64 = 0.5;
-const LEAST_STEP: f64 = 1.5;
+const STEP: f64 = 0.75;
+const LEAST_STEP: f64 = 2.0;
+/// Least unit of lengths, px.
 const LEAST_GAP: f64 = 0.1;
 
 /// How sparing lines are.
@@ -54,12 +59,15 @@ impl Economy {
     /// Jumps under this say little of the land, as a share of the distance.
     pub const MIN_JUMP: f64 = 0.01;
 
-    /// Gap on a page of 1600 px across, px; wider pages have wider pens and gaps, in proportion.
+    /// Gap on a page [`Self::WIDTH`] wide, px; wider pages have wider pens and gaps, in proportion.
     pub const MIN_GAP: f64 = 3.0;
+
+    /// Width of the page with that gap, px.
+    pub const WIDTH: f64 = 1600.0;
 
     /// The economy of a page this many pixels wide.
     pub fn for_page(width: u32) -> Self {
-        Self { min_jump: Self::MIN_JUMP, min_gap: Self::MIN_GAP * f64::from(width) / 1600.0 }
+        Self { min_jump: Self::MIN_JUMP, min_gap: Self::MIN_GAP * f64::from(width) / Self::WIDTH }
     }
 }
 
@@ -79,41 +87,42 @@ pub fn economised(chains: &[Chain], economy: &Economy) -> Vec<Chain> {
 fn samples(chain: &Chain, index: u32, economy: &Economy) -> Vec<Sample> {
     let Economy { min_jump, min_gap } = *economy;
     let along = Along::new(chain);
+    let soft = SOFT.map(|gaps| (gaps * min_gap).max(LEAST_SOFT));
+    let runs_out = RUN_OUT.map(|gaps| (gaps * min_gap).max(LEAST_SOFT));
+    let direction = |i: usize| along.direction(i).to_array();
+    let directions: Vec<_> = (0..chain.points.len()).map(direction).collect();
+    let directions = along.averaged(&directions, soft[0]);
+    let measures = |point: &ChainPoint| {
+        let by_jump = if min_jump > 0.0 { fade([min_jump, 2.0 * min_jump], point.jump()) } else { 1.0 };
+        [by_jump, rank(point, min_jump)]
+    };
+    let measures: Vec<_> = chain.points.iter().map(measures).collect();
+    let measures = along.averaged(&measures, soft[1]);
+    // Averages have long tails.
+    let by_jump: Vec<f64> = measures.iter().map(|measures| fade(TAILS, measures[0])).collect();
+    let by_jump = along.spread(&by_jump, runs_out);
+    let is_skyline = |i: usize| f64::from(u8::from(along.draws(i, |point| point.behind == 0.0)));
+    let skyline: Vec<f64> = (0..chain.points.len()).map(is_skyline).collect();
+    let skyline = along.spread(&skyline, runs_out);
     // Lengths are told in gaps, were they ever so narrow.
     let unit = min_gap.max(LEAST_GAP);
-    let soft = (SOFT * min_gap).max(LEAST_STEP);
-    let measures = |(i, point): (usize, &ChainPoint)| {
-        let direction = along.direction(i);
-        let by_jump = if min_jump > 0.0 { fade([min_jump, 2.0 * min_jump], point.jump()) } else { 1.0 };
-        [by_jump, rank(point, min_jump), direction.x, direction.y]
-    };
-    let measured: Vec<_> = chain.points.iter().enumerate().map(measures).collect();
-    let averaged = along.averaged(&measured, soft);
-    // A line runs on for some pixels where its jump ends, and fades there.
-    let jumps: Vec<f64> = averaged.iter().map(|measures| measures[0]).collect();
-    let jumps = along.spread(&jumps, RUN_OUT * soft);
-    let is_skyline = |i: usize| f64::from(u8::from(along.draws(i, |point| point.behind == 0.0)));
-    let skylines: Vec<f64> = (0..jumps.len()).map(is_skyline).collect();
-    let skylines = along.spread(&skylines, RUN_OUT * soft);
     let sample = |(i, point): (usize, &ChainPoint)| {
-        let [_, by_rank, x, y] = averaged[i];
         let long = along.reach(i, LONG * unit).max(unit / 2.0);
-        let by_jump = fade([0.0, 1.0], jumps[i]);
         let by_length = fade(LENGTHS.map(|gaps| gaps * unit), long);
-        let skyline = fade([0.0, 1.0], skylines[i]);
-        let by_length_rank = LENGTH_SHARE * (long / (2.0 * LONG * unit)).ln();
+        let rank = measures[i][1] + LENGTH_SHARE * (long / (2.0 * LONG * unit)).ln();
         // Of skylines the farthest is the true one.
-        let by_sky = SKYLINE_RANK - SKYLINE_SHARE * point.log_depth();
+        let rank_of_sky = SKYLINE_RANK - SKYLINE_SHARE * point.log_depth();
         Sample {
             place: point.place.as_vec2(),
-            along: glam::DVec2::new(x, y).normalize_or_zero().as_vec2(),
+            along: DVec2::from(directions[i]).normalize_or_zero().as_vec2(),
             half: along.half(i) as f32,
             chain: index,
             arc: along.arcs[i] as f32,
             round: if chain.closed { along.length as f32 } else { f32::INFINITY },
-            rank: (by_rank + by_length_rank).lerp(by_sky, skyline) as f32,
-            alone: 1.0.lerp(by_jump * by_length, 1.0 - skyline) as f32,
-            skyline: skyline as f32,
+            end: along.end(i) as f32,
+            rank: rank.lerp(rank_of_sky, skyline[i]) as f32,
+            alone: (by_jump[i] * by_length).lerp(1.0, skyline[i]) as f32,
+            skyline: skyline[i] as f32,
             log_depth: point.log_depth() as f32,
         }
     };
@@ -126,9 +135,4 @@ fn rank(point: &ChainPoint, min_jump: f64) -> f64 {
     let kind = if point.line == Line::Border { BORDER_RANK } else { 0.0 };
     // What falls under half the least jump is not drawn.
     kind + DEPTH_SHARE * point.log_depth() + point.relief().max(min_jump / 2.0).max(1e-6).ln()
-}
-
-/// 0 up to the first edge, 1 from the second on, smooth between.
-fn fade([low, high]: [f64; 2], x: f64) -> f64 {
-    f64::from(smoothstep([low as f32, high as f32], x as f32))
 }
