@@ -368,3 +368,13 @@ pub const WEIGHT_STEP: f32 = 0.2;
 ///
 /// Example: of 100 px of line with weight 1 on 60, 0.3 on 20 and 0.1 on 20 px, 80 px are drawn.
 pub const VISIBLE_WEIGHT: f32 = 0.25;
+
+/// How far a chain may end from the nearer line it ends on, px: rounding of places on the page in f64.
+///
+/// Example: at x = 2000 a place is rounded to 2.3e-13; an intersection loses some digits more.
+pub const ON_LINE_PX: f64 = 1e-9;
+
+/// Least share of the length of chains that keeps its name when what the chains hold changes by some 3 %.
+///
+/// Example: of chains of 1 000 px in all, at most 100 px are called otherwise in the next frame.
+pub const NAMES_KEPT: f64 = 0.9;
