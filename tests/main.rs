@@ -16,6 +16,7 @@ mod crossings;
 mod dem;
 mod depth_draw;
 mod drawing;
+mod economy;
 mod examples;
 mod facets;
 mod forms;

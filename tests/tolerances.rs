@@ -359,6 +359,16 @@ pub const NOISE_LEFT: f64 = 0.02;
 /// Example: a plane at 1 000 m comes back to 1 mm.
 pub const PLANE_M: f64 = 1e-3;
 
+/// Most that the weight of a line may change where points move by 0.05 px, or jumps by 1 %.
+///
+/// Example: a line of 1 px that lies between two others is 0.8 to 1.2 px wide in the next frame.
+pub const WEIGHT_STEP: f32 = 0.2;
+
+/// Weight from which a line counts as drawn: 0.25 px of a pen of 1 px, a gray line.
+///
+/// Example: of 100 px of line with weight 1 on 60, 0.3 on 20 and 0.1 on 20 px, 80 px are drawn.
+pub const VISIBLE_WEIGHT: f32 = 0.25;
+
 /// How far a chain may end from the nearer line it ends on, px: rounding of places on the page in f64.
 ///
 /// Example: at x = 2000 a place is rounded to 2.3e-13; an intersection loses some digits more.

@@ -75,7 +75,7 @@ impl Yield for Seen {
         let point = |place: DVec2, distance: f64| {
             let depth = NEAR / distance;
             let world: DVec3 = self.perspective.unproject(place, depth);
-            ChainPoint { place, line: Line::Occluding, depth: depth as f32, behind: 0.0, world, crowd: 0 }
+            ChainPoint { place, line: Line::Occluding, depth: depth as f32, behind: 0.0, world, crowd: 0, weight: 1.0 }
         };
         let chain = |piece: &Piece| Chain {
             id: None,
