@@ -3,5 +3,7 @@
 
 mod closed;
 mod cusps;
+mod device;
+mod linked;
 mod topology;
 pub mod twin;

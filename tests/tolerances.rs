@@ -378,3 +378,24 @@ pub const CUSP_PX: f64 = 0.25;
 ///
 /// Example: three cells of 20 m along the ray are half a pixel.
 pub const CUSP_RUN_PX: f64 = 0.5;
+
+/// Sine of the angle between surface and ray at a vertex up to which rounding decides which way it faces.
+///
+/// Example: seen from 1 km a vertex 1 cm off turns a surface by 1e-5.
+pub const TURNING_SINE: f64 = 1e-5;
+
+/// How far ends of pieces of contour may lie from those of the twin on the page, px.
+///
+/// Example: of a facet of 5 m.
+pub const CROSSING_PX: f64 = 0.01;
+
+/// Share of pieces of contour that one program alone may find, on facets with such a vertex.
+///
+/// Example: of 10 000 pieces at most 20.
+pub const TURNING_SHARE: f64 = 0.002;
+
+/// How far the end of a part of a curve may lie from the start of the next on the page, px: on either side of a lattice edge
+/// its place is found anew.
+///
+/// Example: f32 shares of a facet of 10 px are off by 1e-6 px; vertices of two chunks are the same.
+pub const JOINT_PX: f64 = 1e-3;

@@ -94,7 +94,7 @@ fn mathematical(form: &Form, camera: &Camera) -> Truth {
 }
 
 /// Mean distances from the one to the other and back, px, by length.
-fn means(a: &Truth, b: &Truth) -> [f64; 2] {
+pub fn means(a: &Truth, b: &Truth) -> [f64; 2] {
     let mean = |from: &Truth, to| Judge::new(to).expect("a line").offsets_of(from).expect("a line").mean;
     [mean(a, b), mean(b, a)]
 }

@@ -9,7 +9,7 @@ use hachure::line::Bound;
 use hachure::view::Camera;
 
 use super::closed::{CASES, LEVELS, PAGE, twin};
-use super::twin::{Piece, Strung, Twin};
+use super::twin::{Node, Piece, Strung, Twin, string_pieces};
 use crate::forms::{Form, about_middle, from_middle};
 use crate::tolerances::{CUSP_PX, CUSP_RUN_PX};
 
@@ -50,7 +50,7 @@ struct Run {
 }
 
 /// The runs of a curve: in its order if it is open or meets the rim, else from the longest on. Its rim is passed over.
-fn runs(twin: &Twin, pieces: &[Piece], curve: &Strung, camera: &Camera) -> Vec<Run> {
+fn runs(twin: &Twin, pieces: &[Piece], curve: &Strung<Node>, camera: &Camera) -> Vec<Run> {
     let mut runs: Vec<Run> = Vec::new();
     for piece in contours(pieces, curve) {
         let [start, end] = piece.ends.map(|node| camera.project(twin.place(node)).0);
@@ -72,11 +72,11 @@ fn runs(twin: &Twin, pieces: &[Piece], curve: &Strung, camera: &Camera) -> Vec<R
     runs
 }
 
-fn contours<'a>(pieces: &'a [Piece], curve: &'a Strung) -> impl Iterator<Item = &'a Piece> {
+fn contours<'a>(pieces: &'a [Piece], curve: &'a Strung<Node>) -> impl Iterator<Item = &'a Piece> {
     curve.pieces.iter().map(|i| &pieces[*i]).filter(|piece| piece.bound() == Bound::Contour)
 }
 
-fn is_ring(pieces: &[Piece], curve: &Strung) -> bool {
+fn is_ring(pieces: &[Piece], curve: &Strung<Node>) -> bool {
     curve.closed && contours(pieces, curve).count() == curve.pieces.len()
 }
 
@@ -95,6 +95,12 @@ fn closed(mut runs: Vec<Run>, least: f64) -> Vec<Run> {
     }
 }
 
+/// Cusps of a form on the page, px.
+pub fn cusps_on_page(form: &Form, camera: &Camera) -> Vec<DVec2> {
+    let page = |p: &DVec2| camera.project(from_middle(form.point(*p))).0;
+    cusps(form, camera).iter().map(page).filter(|p| on_page(*p)).collect()
+}
+
 fn on_page(place: DVec2) -> bool {
     place.cmpge(DVec2::ZERO).all() && place.cmplt(PAGE.map(f64::from).into()).all()
 }
@@ -102,14 +108,14 @@ fn on_page(place: DVec2) -> bool {
 /// Where on the page contours turn from convex to concave or back, runs under `least` px closed; px.
 fn turns(twin: &Twin, camera: &Camera, least: f64) -> Vec<DVec2> {
     let pieces = twin.pieces();
-    let of_curve = |curve: Strung| {
+    let of_curve = |curve: Strung<Node>| {
         let mut runs = closed(runs(twin, &pieces, &curve, camera), least);
         // The first of a ring is a turn unless the last is of its kind.
         let turns_first = is_ring(&pieces, &curve) && runs.len() % 2 == 0;
         runs.drain(..usize::from(!turns_first && !runs.is_empty()));
         runs.into_iter().map(|run| run.start).filter(|place| on_page(*place))
     };
-    Twin::string(&pieces).into_iter().flat_map(of_curve).collect()
+    string_pieces(&pieces).into_iter().flat_map(of_curve).collect()
 }
 
 /// Not of the sphere and the cone that touches it, where curvature jumps: facets turn there, for a pixel or two.
@@ -118,8 +124,7 @@ fn contours_turn_once_at_each_cusp() {
     let mut met = 0;
     for case in &CASES[1..] {
         let (camera, surface, name) = (case.camera(), case.surface(), case.form.name);
-        let page = |p: &DVec2| camera.project(from_middle(case.form.point(*p))).0;
-        let expected: Vec<DVec2> = cusps(&case.form, &camera).iter().map(page).filter(|p| on_page(*p)).collect();
+        let expected = cusps_on_page(&case.form, &camera);
         for n in LEVELS {
             let twin = twin(&surface, n, &camera);
             let found = turns(&twin, &camera, CUSP_RUN_PX);

@@ -9,7 +9,7 @@ use hachure::line::Bound;
 use hachure::plan::{Thrift, detail};
 use hachure::surface::{Lattice, LatticePoint, Surface};
 
-use super::twin::{Edge, Node, Piece, Twin};
+use super::twin::{Edge, Node, Piece, Twin, string_pieces};
 use crate::mixed::{Kind, lattice, variety};
 use crate::quadtrees::above;
 use crate::scenes::{Random, level, rough};
@@ -122,7 +122,7 @@ fn check(twin: &Twin, pieces: &[Piece], what: &str) -> usize {
     assert!(wrong.is_none(), "{what}: {wrong:?}");
     let wrong = wrong_side(twin, pieces);
     assert!(wrong.is_none(), "{what}: what faces the eye is not on the left of {wrong:?}");
-    let curves = Twin::string(pieces);
+    let curves = string_pieces(pieces);
     let strung: usize = curves.iter().map(|curve| curve.pieces.len()).sum();
     assert_eq!(strung, pieces.len(), "{what}: pieces in curves");
     curves.len()
@@ -165,7 +165,7 @@ fn contours_of_one_level_are_closed_curves() {
         let pieces = twin.pieces();
         let what = format!("{columns} x {rows}, level {n}");
         let curves = check(&twin, &pieces, &what);
-        assert!(Twin::string(&pieces).iter().all(|curve| curve.closed), "{what}");
+        assert!(string_pieces(&pieces).iter().all(|curve| curve.closed), "{what}");
         assert_eq!(curves as i64, curves_by_counting(&twin), "{what}");
         met[0] += curves;
         met[1] += pieces.len();
@@ -180,7 +180,7 @@ fn contours_of_several_levels_are_closed_curves() {
     for (seed, twin, seams) in random_twins(0) {
         let pieces = twin.pieces();
         let curves = check(&twin, &pieces, &format!("seed {seed}"));
-        assert!(Twin::string(&pieces).iter().all(|curve| curve.closed), "seed {seed}");
+        assert!(string_pieces(&pieces).iter().all(|curve| curve.closed), "seed {seed}");
         assert_eq!(curves as i64, curves_by_counting(&twin), "seed {seed}");
         met = [met[0] + curves, met[1] + pieces.len(), met[2] + seams];
     }
@@ -194,7 +194,7 @@ fn contours_end_only_where_chunks_are_left_out() {
     for (seed, twin, _) in random_twins(5) {
         let pieces = twin.pieces();
         check(&twin, &pieces, &format!("seed {seed}"));
-        open += Twin::string(&pieces).iter().filter(|curve| !curve.closed).count();
+        open += string_pieces(&pieces).iter().filter(|curve| !curve.closed).count();
     }
     let surface = Surface::new(rough(150, 140, 1.0, 5.0, false));
     let mut random = Random::new(11);
@@ -204,7 +204,7 @@ fn contours_end_only_where_chunks_are_left_out() {
         let twin = Twin::new(&surface, &lattice, camera.eye);
         let pieces = twin.pieces();
         check(&twin, &pieces, &format!("{camera:?}"));
-        open += Twin::string(&pieces).iter().filter(|curve| !curve.closed).count();
+        open += string_pieces(&pieces).iter().filter(|curve| !curve.closed).count();
     }
     println!("{open} open curves");
     assert!(open > 50, "only {open} curves end");
@@ -228,7 +228,7 @@ fn a_wrong_boundary_is_noticed() {
     let rim = |pieces: &[Piece]| pieces.iter().filter(|p| p.bound() == Bound::Rim).copied().collect::<Vec<_>>();
     assert_ne!(rim(&pieces), rim(&swapped));
     let counted = curves_by_counting(&twin);
-    assert_eq!(counted, Twin::string(&pieces).len() as i64);
+    assert_eq!(counted, string_pieces(&pieces).len() as i64);
     // Without one facet there is a hole more, or a part less.
     let surface = Surface::new(rough(40, 30, 2.0, 5.0, false));
     let chunks = Lattice::uniform(surface.dem(), level(4)).expect("few chunks");

@@ -6,8 +6,9 @@
 //! are strung together by lattice vertices alone. Brute force: every chunk, every facet, no look at what may be left out.
 //! Cost: about a microsecond a facet.
 
-use std::collections::HashMap;
-use std::collections::hash_map::Entry;
+use std::collections::{HashMap, HashSet};
+use std::fmt::Debug;
+use std::hash::Hash;
 
 use glam::DVec3;
 use hachure::dem::Dem;
@@ -19,7 +20,7 @@ use rayon::prelude::*;
 use crate::mixed::exists;
 use crate::quadtrees::on_rim;
 
-/// Two ends of a lattice edge, the lower first.
+/// Two ends of a lattice edge, the lower first unless said otherwise.
 pub type Edge = [LatticePoint; 2];
 
 /// A facet by its vertices, counter-clockwise seen from above.
@@ -42,24 +43,37 @@ pub struct Piece {
     pub ends: [Node; 2],
     /// The facet on which, or along which, it runs.
     pub facet: Corners,
+    /// Along which side of it, with the facet on the left; `None` across it.
+    pub side: Option<Edge>,
 }
 
 impl Piece {
-    /// What it is: a side of the facet or a way across it.
+    /// What it bounds.
     pub fn bound(&self) -> Bound {
-        match self.ends {
-            [Node::Crossing(a), Node::Crossing(b)] if a != b => Bound::Contour,
-            _ => Bound::Rim,
-        }
+        if self.side.is_some() { Bound::Rim } else { Bound::Contour }
     }
+
+    /// What no other piece is called.
+    pub fn name(&self) -> Name {
+        self.side.map_or(Name::Across(self.facet), Name::Along)
+    }
+}
+
+/// What a piece is called.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Name {
+    /// The one across a facet.
+    Across(Corners),
+    /// The one along a side of the rim, from its first vertex on.
+    Along(Edge),
 }
 
 /// Pieces strung together.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Strung {
+pub struct Strung<N> {
     /// Where they meet, in their order; of a closed one the first is not repeated.
-    pub nodes: Vec<Node>,
-    /// The pieces by their place in [`Twin::pieces`], each from the node of its place to the next.
+    pub nodes: Vec<N>,
+    /// The pieces by their number, each from the node of its place to the next.
     pub pieces: Vec<usize>,
     /// Whether the last piece leads to the first node.
     pub closed: bool,
@@ -192,7 +206,7 @@ impl Twin {
         let leaves = |from: bool| (0..3).find(|k| toward[*k] == from && toward[(k + 1) % 3] != from);
         let end = |k: usize| self.crossing([facet[k], facet[(k + 1) % 3]]);
         let ends = [end(leaves(true)?), end(leaves(false)?)];
-        Some(Piece { ends, facet: facet.map(|v| self.points[v]) })
+        Some(Piece { ends, facet: facet.map(|v| self.points[v]), side: None })
     }
 
     /// The piece along a side where the land ends.
@@ -205,7 +219,7 @@ impl Twin {
             [false, true] => [self.crossing([a, b]), self.corner(f, k, beside)],
             [false, false] => return None,
         };
-        Some(Piece { ends, facet: self.facets[f].map(|v| self.points[v]) })
+        Some(Piece { ends, facet: self.facets[f].map(|v| self.points[v]), side: Some([a, b].map(|v| self.points[v])) })
     }
 
     fn crossing(&self, [a, b]: [usize; 2]) -> Node {
@@ -235,40 +249,6 @@ impl Twin {
         }
     }
 
-    /// Strings pieces together: those with an open start first, then the closed ones, each from its first piece.
-    ///
-    /// # Panics
-    /// Where two pieces start at one node.
-    pub fn string(pieces: &[Piece]) -> Vec<Strung> {
-        let mut starts: HashMap<Node, usize> = HashMap::new();
-        for (i, piece) in pieces.iter().enumerate() {
-            let Entry::Vacant(entry) = starts.entry(piece.ends[0]) else { panic!("a branch at {:?}", piece.ends[0]) };
-            entry.insert(i);
-        }
-        let reached: std::collections::HashSet<Node> = pieces.iter().map(|piece| piece.ends[1]).collect();
-        let (closed, open): (Vec<usize>, Vec<usize>) =
-            (0..pieces.len()).partition(|i| reached.contains(&pieces[*i].ends[0]));
-        let mut curves = Vec::new();
-        for first in open.into_iter().chain(closed) {
-            let mut curve = Strung { nodes: Vec::new(), pieces: Vec::new(), closed: false };
-            let mut at = pieces[first].ends[0];
-            while let Some(i) = starts.remove(&at) {
-                curve.nodes.push(at);
-                curve.pieces.push(i);
-                at = pieces[i].ends[1];
-            }
-            if curve.pieces.is_empty() {
-                continue;
-            }
-            curve.closed = at == curve.nodes[0];
-            if !curve.closed {
-                curve.nodes.push(at);
-            }
-            curves.push(curve);
-        }
-        curves
-    }
-
     /// World place of a node, metres.
     pub fn place(&self, node: Node) -> DVec3 {
         self.eye
@@ -293,6 +273,42 @@ impl Twin {
             }
         }
     }
+}
+
+/// Strings pieces together by where they start and end: those with an open start first, then the closed ones, each from its
+/// first piece.
+///
+/// # Panics
+/// Where two pieces start at one place.
+pub fn string<N: Copy + Eq + Hash + Debug>(ends: &[[N; 2]]) -> Vec<Strung<N>> {
+    let mut starts: HashMap<N, usize> = HashMap::new();
+    for (i, [start, _]) in ends.iter().enumerate() {
+        assert!(starts.insert(*start, i).is_none(), "a branch at {start:?}");
+    }
+    let reached: HashSet<N> = ends.iter().map(|[_, end]| *end).collect();
+    let (closed, open): (Vec<usize>, Vec<usize>) = (0..ends.len()).partition(|i| reached.contains(&ends[*i][0]));
+    let mut curves = Vec::new();
+    for first in open.into_iter().chain(closed) {
+        let mut curve = Strung { nodes: Vec::new(), pieces: Vec::new(), closed: false };
+        let mut at = ends[first][0];
+        while let Some(i) = starts.remove(&at) {
+            curve.nodes.push(at);
+            curve.pieces.push(i);
+            at = ends[i][1];
+        }
+        let Some(start) = curve.nodes.first() else { continue };
+        curve.closed = at == *start;
+        if !curve.closed {
+            curve.nodes.push(at);
+        }
+        curves.push(curve);
+    }
+    curves
+}
+
+/// The same of pieces of a twin.
+pub fn string_pieces(pieces: &[Piece]) -> Vec<Strung<Node>> {
+    string(&pieces.iter().map(|piece| piece.ends).collect::<Vec<_>>())
 }
 
 /// Facets of a chunk that exist, counter-clockwise seen from above.
