@@ -379,6 +379,11 @@ pub const CUSP_PX: f64 = 0.25;
 /// Example: three cells of 20 m along the ray are half a pixel.
 pub const CUSP_RUN_PX: f64 = 0.5;
 
+/// How far a chain may end from a cusp of mathematics on the page, px.
+///
+/// Example: where the last hundredth of the contour runs along the ray, it ends half a pixel early.
+pub const CHAIN_END_PX: f64 = 1.0;
+
 /// Sine of the angle between surface and ray at a vertex up to which rounding decides which way it faces.
 ///
 /// Example: seen from 1 km a vertex 1 cm off turns a surface by 1e-5.
@@ -386,7 +391,7 @@ pub const TURNING_SINE: f64 = 1e-5;
 
 /// How far ends of pieces of contour may lie from those of the twin on the page, px.
 ///
-/// Example: of a facet of 5 m.
+/// Example: on a facet of 4 px seen nearly edge-on a crossing may slide by a four-hundredth of its edge.
 pub const CROSSING_PX: f64 = 0.01;
 
 /// Share of pieces of contour that one program alone may find, on facets with such a vertex.
@@ -399,3 +404,13 @@ pub const TURNING_SHARE: f64 = 0.002;
 ///
 /// Example: f32 shares of a facet of 10 px are off by 1e-6 px; vertices of two chunks are the same.
 pub const JOINT_PX: f64 = 1e-3;
+
+/// How far a chain may end from the nearer line it ends on, px: rounding of places on the page in f64.
+///
+/// Example: at x = 2000 a place is rounded to 2.3e-13; an intersection loses some digits more.
+pub const ON_LINE_PX: f64 = 1e-9;
+
+/// Least share of the length of chains that keeps its name when what the chains hold changes by some 3 %.
+///
+/// Example: of chains of 1 000 px in all, at most 100 px are called otherwise in the next frame.
+pub const NAMES_KEPT: f64 = 0.9;

@@ -1,8 +1,8 @@
 //! All that a frame works with on a device, and what a pass of it dispatches there.
 
 use super::buffers::Buffers;
-use super::device::Gpu;
 use super::curves::CurveBuffers;
+use super::device::Gpu;
 use super::page::PageBuffers;
 use super::pass::Pass;
 use super::scene::Scene;
@@ -118,10 +118,7 @@ impl<'a> OnDevice<'a> {
             PassName::Turn => turn::invocations(chunks),
             PassName::Segments => segments::invocations(chunks),
             PassName::Compose => compose::invocations(size),
-            PassName::RasterizeLarge
-            | PassName::Pairs
-            | PassName::Walk
-            | PassName::WalkRest => {
+            PassName::RasterizeLarge | PassName::Pairs | PassName::Walk | PassName::WalkRest => {
                 return Err(Error::mistake(format!("pass {} goes over a list", name.name())));
             }
         })

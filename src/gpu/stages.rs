@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use super::buffers::{Buffers, upload};
-use super::device::Gpu;
 use super::curves::CurveBuffers;
+use super::device::Gpu;
 use super::page::PageBuffers;
 use super::pass::Pass;
 use super::scene::Scene;
@@ -158,7 +158,8 @@ impl Bound<'_> {
 /// Compiles passes of a frame: those of batches beside those of a piece.
 fn compile(gpu: &Gpu, frame: &Frame, passes: &[PlannedPass]) -> Result<Vec<Arc<Pass>>> {
     let constants = constants(frame);
-    let of_piece = passes.iter().position(|pass| matches!(pass.often, Often::Once | Often::ForCurves | Often::OnReading));
+    let of_piece =
+        passes.iter().position(|pass| matches!(pass.often, Often::Once | Often::ForCurves | Often::OnReading));
     let (of_batches, of_piece) = passes.split_at(of_piece.unwrap_or(passes.len()));
     let all = |passes: &[PlannedPass]| passes.iter().map(|p| pass(gpu, frame, p.name, &constants)).collect();
     let (of_batches, of_piece): (Result<Vec<_>>, Result<Vec<_>>) = rayon::join(|| all(of_batches), || all(of_piece));

@@ -68,9 +68,8 @@ fn keys(segment: &Segment, lattice: &Lattice) -> [Key; 2] {
     let corner = |k: u32| facet[((code & code::CORNER) + k) as usize % 3];
     let part = code >> code::PART_SHIFT;
     let line = code & (code::CORNER | code::AWAY_CORNER | code::OF_RIM);
-    let between = |part: u32| {
-        1 << BETWEEN_PARTS | Key::from(segment.facet) << 64 | Key::from(line) << 32 | Key::from(part)
-    };
+    let between =
+        |part: u32| 1 << BETWEEN_PARTS | Key::from(segment.facet) << 64 | Key::from(line) << 32 | Key::from(part);
     let own = if code & code::OF_RIM != 0 {
         let at = |turns: u32, k: u32| {
             if code & turns != 0 { edge(corner(0), corner(1)) } else { edge(corner(k), corner(k)) }

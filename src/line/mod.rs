@@ -3,23 +3,30 @@
 //! What a frame of a mask method leaves behind is an [`InkRaster`]: ink, kind, sub-pixel place and depth a pixel. Its ink
 //! as a list, [`Marks`], from one raster or the pieces of a large page, is traced to [`Chain`]s, these are smoothed
 //! within a stated tolerance, and the ink about their points is counted: the [`Lines`] of the page, all that stroking
-//! needs. Chains may come from elsewhere too: [`project_polyline`] makes them from polylines of the world, hidden by the
-//! cover.
+//! needs. Chains may come from elsewhere too: [`visible::chains`] are what the eye sees of [`Curve`]s on the surface,
+//! [`project_polyline`] makes them from polylines of the world, hidden by the cover.
 
 pub mod chain;
+mod crossing;
 pub mod crowd;
 pub mod curve;
+mod doubt;
+mod folds;
 mod graph;
 mod grid;
+pub mod identity;
 mod join;
+mod labels;
 pub mod link;
 pub mod marks;
 pub mod overlay;
 pub mod raster;
 pub mod recession;
+mod simplify;
 pub mod smooth;
 mod thin;
 pub mod trace;
+pub mod visible;
 
 pub use chain::{Chain, ChainPoint, Id, Line};
 pub use crowd::crowded;

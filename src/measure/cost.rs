@@ -180,7 +180,9 @@ impl Quantities {
         match pass.over {
             Over::FreshChunks => self.made > 0,
             Over::RimEdges => self.rim > 0,
-            Over::Chunks | Over::AllChunks | Over::SeenChunks | Over::Segments | Over::List(_) | Over::Pixels => pass.often != Often::OnReading,
+            Over::Chunks | Over::AllChunks | Over::SeenChunks | Over::Segments | Over::List(_) | Over::Pixels => {
+                pass.often != Often::OnReading
+            }
         }
     }
 

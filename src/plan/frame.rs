@@ -145,7 +145,9 @@ impl Frame {
         let runs = |often| match often {
             Often::EachRound => true,
             Often::ForVertices => round == 0 || !self.keeps_vertices(),
-            Often::EachBatch | Often::Once | Often::ForCurves | Often::ForCurvesOfBatch | Often::OnReading => round == 0,
+            Often::EachBatch | Often::Once | Often::ForCurves | Often::ForCurvesOfBatch | Often::OnReading => {
+                round == 0
+            }
         };
         self.passes.iter().find(|pass| pass.name == name && runs(pass.often))
     }

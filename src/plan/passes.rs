@@ -147,7 +147,9 @@ impl PassName {
 
 /// The passes that frames of a plan may run, in their order.
 pub fn passes(plan: &Plan) -> Vec<PlannedPass> {
-    use PassName::{Compose, Facing, Project, Rasterize, RasterizeLarge, RimSegments, Seam, Segments, Sight, Tessellate};
+    use PassName::{
+        Compose, Facing, Project, Rasterize, RasterizeLarge, RimSegments, Seam, Segments, Sight, Tessellate,
+    };
     use PassName::{Turn, Turning};
     let seam: &[_] = if let Detail::Adaptive { .. } = plan.detail { &[Seam] } else { &[] };
     let entry = plan.method.entry();
