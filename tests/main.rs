@@ -9,6 +9,7 @@ mod cli;
 mod closed_forms;
 mod common;
 mod compare;
+mod contours;
 mod costs;
 mod cover;
 mod coverage;
