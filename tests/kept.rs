@@ -137,6 +137,8 @@ fn chains_without_names_have_no_share() {
         ids_kept(Seen { camera: &cameras[0], chains: first }, Seen { camera: &cameras[1], chains: &next })
     };
     near(share(&first), 0.5);
+    first[0].id = None;
+    near(share(&first), 0.0);
     first[1].id = None;
     assert_eq!(share(&first), None);
     assert_eq!(share(&[]), None);

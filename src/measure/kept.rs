@@ -42,10 +42,10 @@ struct Look {
     id: Option<Id>,
 }
 
-/// Share of the length of chains over 12 px whose id the next frame keeps; `None` where chains have no ids, and where none
-/// is so long.
+/// Share of the length of chains over 12 px whose id the next frame keeps; `None` where no chain has an id, and where
+/// none is so long.
 pub fn ids_kept(frame: Seen<'_>, next: Seen<'_>) -> Option<f64> {
-    if frame.chains.iter().any(|chain| chain.id.is_none()) {
+    if frame.chains.iter().all(|chain| chain.id.is_none()) {
         return None;
     }
     let [here, there] = [&frame, &next].map(|seen| Perspective::new(seen.camera, 1.0));

@@ -210,7 +210,7 @@ impl Trial<'_> {
     fn chains(&self, first: &impl Yield, next: &impl Yield) -> ChainFigures {
         let chains = first.chains();
         // To trace the next frame's ink would take long, and tell nothing: what is traced has no ids.
-        let named = chains.iter().all(|chain| chain.id.is_some());
+        let named = chains.iter().any(|chain| chain.id.is_some());
         let next = if named { next.chains() } else { Vec::new() };
         let camera = moved(self.camera, 1);
         let kept = ids_kept(Seen { camera: self.camera, chains: &chains }, Seen { camera: &camera, chains: &next });
