@@ -1,5 +1,6 @@
 //! The whole algorithm on one screen: plan, upload, passes, readback.
 
+mod curves;
 mod page;
 mod time;
 mod vertices;
@@ -10,14 +11,14 @@ use crate::error::{Error, Result, Setting};
 use crate::gpu::clock::Timer;
 use crate::gpu::uniforms::{Counts, near_plane};
 use crate::gpu::work::Work;
-use crate::gpu::{Gpu, OnDevice, PageBuffers, Scene, Stages};
+use crate::gpu::{CurveBuffers, Gpu, OnDevice, PageBuffers, Scene, Stages};
 use crate::line::InkRaster;
 use crate::message;
 use crate::plan::PassName::Compose;
 use crate::plan::frame::Kept;
 use crate::plan::{Frame, Piece, Plan};
 use crate::surface::Surface;
-use crate::view::Camera;
+use crate::view::{Camera, Perspective};
 
 pub use crate::gpu::clock::{FrameTime, PassTime};
 pub use page::Page;
@@ -33,6 +34,7 @@ pub struct Renderer {
     kept: Kept,
     scene: Scene,
     page: PageBuffers,
+    curves: CurveBuffers,
     stages: Stages,
     /// What lies on the device: `None` while a frame is on its way, and after one that failed there.
     last: Option<(Frame, Piece)>,
@@ -62,8 +64,8 @@ impl Renderer {
     pub fn new(gpu: Arc<Gpu>, surface: Arc<Surface>) -> Result<Self> {
         surface.dem().check_patches()?;
         let scene = Scene::new(&gpu)?;
-        let (kept, page, stages) = Default::default();
-        Ok(Self { gpu, surface, kept, scene, page, stages, last: None })
+        let (kept, page, curves, stages) = Default::default();
+        Ok(Self { gpu, surface, kept, scene, page, curves, stages, last: None })
     }
 
     /// Decides what a frame needs, without a word to the device.
@@ -97,11 +99,12 @@ impl Renderer {
 
     /// Brings to the device what a frame needs and what is not there yet: samples, lattice, room for its pixels, passes.
     fn upload(&mut self, frame: &Frame) -> Result<()> {
-        let Self { gpu, surface, scene, page, stages, .. } = self;
+        let Self { gpu, surface, scene, page, curves, stages, .. } = self;
         self.last = None;
         scene.load(gpu, surface, frame)?;
         page.fit(gpu, frame.pieces.largest())?;
-        stages.fit(gpu, frame, scene, page)
+        curves.fit(gpu, frame)?;
+        stages.fit(gpu, frame, scene, page, curves)
     }
 
     /// All passes over a piece of a frame, from clean buffers to its ink.
@@ -168,6 +171,11 @@ impl Renderer {
         Ok(Drawn { raster: InkRaster { width, height, pixels }, longest_walk })
     }
 
+    /// How a frame's camera sees, with the near plane of its depths.
+    pub fn perspective(&self, frame: &Frame) -> Perspective {
+        Perspective::new(&frame.camera, self.near())
+    }
+
     /// Metres to the near plane: depths of a frame are this over the distance along the view axis.
     pub fn near(&self) -> f64 {
         near_plane(self.surface.dem())
@@ -191,7 +199,7 @@ impl Renderer {
 
     /// What lies on the device, for reading what passes left.
     pub fn on_device(&self) -> OnDevice<'_> {
-        OnDevice { gpu: &self.gpu, scene: &self.scene, page: &self.page, stages: &self.stages }
+        OnDevice { gpu: &self.gpu, scene: &self.scene, page: &self.page, curves: &self.curves, stages: &self.stages }
     }
 }
 

@@ -16,9 +16,7 @@ pub fn pass(gpu: &Gpu, constants: &[(&str, f64)]) -> Result<Arc<Pass>> {
     gpu.pass("border", SOURCE, constants)
 }
 
-/// One invocation a patch edge of the rim, folded into rows of 65 535 workgroups.
+/// One invocation a patch edge of the rim.
 pub fn invocations(pass: &Pass, rim_edges: usize) -> [u32; 2] {
-    let edges = rim_edges as u64;
-    let row = 65_535 * u64::from(pass.workgroup[0]);
-    [edges.min(row) as u32, edges.div_ceil(row) as u32]
+    pass.folded(rim_edges as u64)
 }

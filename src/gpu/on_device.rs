@@ -1,11 +1,14 @@
 //! All that a frame works with on a device, and what a pass of it dispatches there.
 
+use super::buffers::Buffers;
 use super::device::Gpu;
+use super::curves::CurveBuffers;
 use super::page::PageBuffers;
 use super::pass::Pass;
 use super::scene::Scene;
 use super::stages::Stages;
-use super::{adjacency, border, candidates, compose, facing, project, rasterize, seam, tessellate, toward_away};
+use super::{adjacency, border, candidates, compose, facing, project, rasterize, seam, segments, tessellate};
+use super::{toward_away, turn};
 use crate::error::{Error, Result};
 use crate::plan::passes::{Over, PlannedPass};
 use crate::plan::{Batch, Frame, PassName, Piece};
@@ -19,7 +22,9 @@ pub struct OnDevice<'a> {
     pub scene: &'a Scene,
     /// Buffers of the page.
     pub page: &'a PageBuffers,
-    /// The passes, bound to both.
+    /// Buffers of curves.
+    pub curves: &'a CurveBuffers,
+    /// The passes, bound to all of them.
     pub stages: &'a Stages,
 }
 
@@ -54,12 +59,14 @@ impl<'a> OnDevice<'a> {
     /// # Errors
     /// [`Error::Mistake`] when there is none.
     pub fn buffer(self, name: &str) -> Result<&'a wgpu::Buffer> {
-        self.scene.buffers().find(name).map_or_else(|| self.page.buffers().get(name), Ok)
+        let found = self.scene.buffers().find(name).or_else(|| self.curves.buffers().find(name));
+        found.map_or_else(|| self.page.buffers().get(name), Ok)
     }
 
     /// Bytes of all buffers.
     pub fn bytes(self) -> u64 {
-        self.scene.buffers().bytes() + self.page.buffers().bytes() + self.stages.bytes()
+        let buffers = [self.scene.buffers(), self.page.buffers(), self.curves.buffers()];
+        buffers.map(Buffers::bytes).iter().sum::<u64>() + self.stages.bytes()
     }
 
     /// What a pass dispatches for a piece of a frame, in a round over a batch; `None` where all vertices that it would make
@@ -81,7 +88,8 @@ impl<'a> OnDevice<'a> {
         let chunks = match planned.over {
             Over::FreshChunks => self.scene.fresh().min(batch.chunks),
             Over::SeenChunks => batch.seen(frame.seen),
-            Over::Chunks | Over::List(_) | Over::Pixels | Over::RimEdges => batch.chunks,
+            Over::AllChunks => frame.lattice.chunks().len() as u32,
+            Over::Chunks | Over::List(_) | Over::Pixels | Over::RimEdges | Over::Segments => batch.chunks,
         };
         if planned.over == Over::FreshChunks && chunks == 0 {
             return Ok(None);
@@ -104,9 +112,16 @@ impl<'a> OnDevice<'a> {
             PassName::Candidates => candidates::invocations(size),
             PassName::TowardAway => toward_away::invocations(size),
             PassName::Adjacency => adjacency::invocations(size),
-            PassName::Border => border::invocations(pass, self.scene.rim_edges()),
+            PassName::Border | PassName::RimSegments => border::invocations(pass, self.scene.rim_edges()),
+            PassName::Sight => pass.folded(self.curves.room().into()),
+            PassName::Turning => pass.folded(chunks.into()),
+            PassName::Turn => turn::invocations(chunks),
+            PassName::Segments => segments::invocations(chunks),
             PassName::Compose => compose::invocations(size),
-            PassName::RasterizeLarge | PassName::Pairs | PassName::Walk | PassName::WalkRest => {
+            PassName::RasterizeLarge
+            | PassName::Pairs
+            | PassName::Walk
+            | PassName::WalkRest => {
                 return Err(Error::mistake(format!("pass {} goes over a list", name.name())));
             }
         })

@@ -176,6 +176,12 @@ impl Pass {
         })
     }
 
+    /// So many invocations, folded into rows of 65 535 workgroups.
+    pub fn folded(&self, invocations: u64) -> [u32; 2] {
+        let row = 65_535 * u64::from(self.workgroup[0]);
+        [invocations.min(row) as u32, invocations.div_ceil(row) as u32]
+    }
+
     /// Records the pass over at least `invocations` along x and y.
     pub fn record(&self, pass: &mut wgpu::ComputePass<'_>, group: &wgpu::BindGroup, invocations: [u32; 2]) {
         pass.set_pipeline(&self.pipeline);

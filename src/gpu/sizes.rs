@@ -1,7 +1,7 @@
 //! How large each buffer is: numbers alone, so that limits are known before anything is allocated.
 
 use super::capacity::Capacity;
-use super::uniforms::{ChunkUniform, Counts};
+use super::uniforms::{ChunkUniform, Counts, Segment};
 use crate::error::{Error, Message, Result, Setting};
 use crate::message;
 use crate::plan::batches::{BATCH_CHUNKS, PART_CHUNKS};
@@ -20,6 +20,8 @@ pub const CHUNK_BYTES: u64 = size_of::<ChunkUniform>() as u64;
 pub const PIXEL_BYTES: u64 = 8;
 /// Bytes of a word: the ink of a pixel, an item of a list, 32 facing bits, the summary of a chunk, a height.
 pub const WORD_BYTES: u64 = 4;
+/// Bytes of a segment of a curve.
+pub const SEGMENT_BYTES: u64 = size_of::<Segment>() as u64;
 /// Bytes of an edge of the rim.
 pub const RIM_EDGE_BYTES: u64 = size_of::<RimEdge>() as u64;
 /// Pixels across and down that one invocation of `candidates` or `toward_away` works off.
@@ -97,6 +99,15 @@ pub fn of_page([width, height]: [u32; 2]) -> Result<Vec<(&'static str, u64)>> {
 /// [`Error::Limit`] when it cannot.
 pub fn rim_fits(edges: u64) -> Result<()> {
     binds(edges * RIM_EDGE_BYTES, "border lines", message!["use ", Setting::Border.at("off"), ", or a ", Setting::Crop])
+}
+
+/// Whether a list of so many segments of curves can be bound whole.
+///
+/// # Errors
+/// [`Error::Limit`] when it cannot.
+pub fn segments_fit(segments: u64) -> Result<()> {
+    let remedy = message!["use a larger ", Setting::ErrorPx, " or a ", Setting::Crop];
+    binds(LIST_HEADER + segments * SEGMENT_BYTES, "curves", remedy)
 }
 
 /// Whether so many words that tell voids from samples can be bound whole.

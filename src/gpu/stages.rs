@@ -4,12 +4,13 @@ use std::sync::Arc;
 
 use super::buffers::{Buffers, upload};
 use super::device::Gpu;
+use super::curves::CurveBuffers;
 use super::page::PageBuffers;
 use super::pass::Pass;
 use super::scene::Scene;
 use super::uniforms::BatchUniform;
 use super::{adjacency, border, candidates, compose, facing, pairs, project, rasterize, rasterize_large};
-use super::{seam, tessellate, toward_away, walk, walk_rest};
+use super::{rim_segments, seam, segments, sight, tessellate, toward_away, turn, turning, walk, walk_rest};
 use crate::error::{Error, Result};
 use crate::plan::batches::PART_CHUNKS;
 use crate::plan::passes::{Often, PlannedPass, passes};
@@ -43,8 +44,8 @@ struct MadeFor {
     method: Method,
     thrift: Thrift,
     batches: usize,
-    /// Of scene and page.
-    generations: [u64; 2],
+    /// Of scene, page and curves.
+    generations: [u64; 3],
 }
 
 impl Stages {
@@ -52,14 +53,21 @@ impl Stages {
     ///
     /// # Errors
     /// See [`Gpu::pass`] and [`Pass::bind`].
-    pub fn fit(&mut self, gpu: &Gpu, frame: &Frame, scene: &Scene, page: &PageBuffers) -> Result<()> {
+    pub fn fit(
+        &mut self,
+        gpu: &Gpu,
+        frame: &Frame,
+        scene: &Scene,
+        page: &PageBuffers,
+        curves: &CurveBuffers,
+    ) -> Result<()> {
         let Plan { method, thrift, .. } = frame.plan;
         let made_for = MadeFor {
             passes: passes(&frame.plan),
             method,
             thrift,
             batches: frame.batches.len().max(1),
-            generations: [scene.generation(), page.generation()],
+            generations: [scene.generation(), page.generation(), curves.generation()],
         };
         if self.made_for.as_ref() == Some(&made_for) {
             return Ok(());
@@ -72,12 +80,15 @@ impl Stages {
         let batches = if frame.batches.is_empty() { &none[..] } else { &frame.batches };
         let uniforms = upload_uniforms(gpu, &batch_uniforms(batches, rounds));
         gpu.check()?;
-        let bound = Bound { scene: scene.buffers(), page: page.buffers(), batches: &uniforms, rounds };
+        let buffers = [scene.buffers(), page.buffers(), curves.buffers()];
+        let bound = Bound { buffers, batches: &uniforms, rounds };
         let mut stages = Vec::new();
         for (planned, pass) in made_for.passes.iter().zip(passes) {
             let groups = match planned.often {
-                Often::EachRound | Often::ForVertices | Often::EachBatch => bound.of_batches(gpu, &pass, batches)?,
-                Often::Once | Often::OnReading => vec![bound.group(gpu, &pass, 0, 0, none[0])?],
+                Often::EachRound | Often::ForVertices | Often::EachBatch | Often::ForCurvesOfBatch => {
+                    bound.of_batches(gpu, &pass, batches)?
+                }
+                Often::Once | Often::ForCurves | Often::OnReading => vec![bound.group(gpu, &pass, 0, 0, none[0])?],
             };
             stages.push(Stage { name: planned.name, pass, groups });
         }
@@ -113,8 +124,8 @@ impl Stages {
 
 /// What passes bind.
 struct Bound<'a> {
-    scene: &'a Buffers,
-    page: &'a Buffers,
+    /// Of scene, page and curves.
+    buffers: [&'a Buffers; 3],
     batches: &'a wgpu::Buffer,
     rounds: u32,
 }
@@ -140,14 +151,14 @@ impl Bound<'_> {
     }
 
     fn whole(&self, name: &str) -> Option<wgpu::BindingResource<'_>> {
-        Some(self.scene.find(name).or_else(|| self.page.find(name))?.as_entire_binding())
+        self.buffers.iter().find_map(|buffers| buffers.find(name)).map(wgpu::Buffer::as_entire_binding)
     }
 }
 
 /// Compiles passes of a frame: those of batches beside those of a piece.
 fn compile(gpu: &Gpu, frame: &Frame, passes: &[PlannedPass]) -> Result<Vec<Arc<Pass>>> {
     let constants = constants(frame);
-    let of_piece = passes.iter().position(|pass| matches!(pass.often, Often::Once | Often::OnReading));
+    let of_piece = passes.iter().position(|pass| matches!(pass.often, Often::Once | Often::ForCurves | Often::OnReading));
     let (of_batches, of_piece) = passes.split_at(of_piece.unwrap_or(passes.len()));
     let all = |passes: &[PlannedPass]| passes.iter().map(|p| pass(gpu, frame, p.name, &constants)).collect();
     let (of_batches, of_piece): (Result<Vec<_>>, Result<Vec<_>>) = rayon::join(|| all(of_batches), || all(of_piece));
@@ -186,6 +197,11 @@ fn pass(gpu: &Gpu, frame: &Frame, name: PassName, constants: &[(&str, f64)]) -> 
         PassName::TowardAway => toward_away::pass(gpu, &own()),
         PassName::Adjacency => adjacency::pass(gpu, &own()),
         PassName::Border => border::pass(gpu, constants),
+        PassName::Turning => turning::pass(gpu, constants),
+        PassName::Turn => turn::pass(gpu, frame.keeps_vertices(), constants),
+        PassName::Segments => segments::pass(gpu, frame.keeps_vertices(), constants),
+        PassName::RimSegments => rim_segments::pass(gpu, frame.keeps_vertices(), constants),
+        PassName::Sight => sight::pass(gpu, frame.keeps_vertices(), constants),
         PassName::Compose => compose::pass(gpu, constants),
     }
 }

@@ -101,6 +101,65 @@ pub struct BatchUniform {
     pub passing: u32,
 }
 
+/// `Segment` of segment.wgsl: a stretch of a curve of at most about a pixel, with the surface that faces the eye on its left, seen
+/// from above.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct Segment {
+    /// Metres from the eye.
+    pub start: [f32; 3],
+    /// How steeply facing falls along the view: sine of the angle between ray and stretch, below 0 where it is concave.
+    pub fall: f32,
+    /// Metres from the eye.
+    pub end: [f32; 3],
+    /// Depth of what lies behind.
+    pub behind: f32,
+    /// Its middle on the lattice, in 1/256 of the finest step.
+    pub at: [i32; 2],
+    /// ID of the facet it lies on.
+    pub facet: u32,
+    /// Which line of the facet, and which part of it.
+    pub code: u32,
+    /// On the page, the unit vector from the surface to what lies behind.
+    pub outward: [f32; 2],
+    /// The pixel of its middle in what is drawn: column, and row in the high half.
+    pub pixel: u32,
+    /// Whether it is seen.
+    pub sight: u32,
+}
+
+/// Codes of a segment, as segment.wgsl says.
+pub mod code {
+    /// Which corner of the facet faces the other way, or which edge is of the rim.
+    pub const CORNER: u32 = 3;
+    /// That corner faces away.
+    pub const AWAY_CORNER: u32 = 4;
+    /// It is of the rim.
+    pub const OF_RIM: u32 = 8;
+    /// It starts where the line of the facet does.
+    pub const STARTS: u32 = 16;
+    /// It ends where the line of the facet does.
+    pub const ENDS: u32 = 32;
+    /// It starts where the rim turns.
+    pub const STARTS_TURNING: u32 = 64;
+    /// It ends where the rim turns.
+    pub const ENDS_TURNING: u32 = 128;
+    /// Behind so many bits stands its number among the parts of the line.
+    pub const PART_SHIFT: u32 = 8;
+}
+
+/// What sight.wgsl finds.
+pub mod seen {
+    /// From no pixel centre about it something stands before it.
+    pub const FREE: u32 = 0;
+    /// From all something does.
+    pub const HIDDEN: u32 = 1;
+    /// They differ, and from the nearest nothing does.
+    pub const NEAREST_FREE: u32 = 2;
+    /// They differ, and from the nearest something does.
+    pub const NEAREST_HIDDEN: u32 = 3;
+}
+
 /// `Counts` of ink.wgsl.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]

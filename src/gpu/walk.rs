@@ -8,9 +8,13 @@ use crate::error::Result;
 
 /// The composed shader, for frames whose vertices are all at hand, or those of one batch at a time.
 pub fn source(keeps_vertices: bool) -> String {
-    let vertices = if keeps_vertices { crate::shader!("vertex_kept") } else { crate::shader!("vertex_anew") };
-    [crate::shader!("scene", "lattice", "surface", "wide", "ink", "list", "levels", "walk_between", "walk"), vertices]
-        .concat()
+    let walk = crate::shader!("scene", "lattice", "surface", "wide", "ink", "list", "levels", "walk_between", "walk");
+    [walk, vertices(keeps_vertices)].concat()
+}
+
+/// Where passes find the vertex of any chunk.
+pub(super) fn vertices(keeps_vertices: bool) -> &'static str {
+    if keeps_vertices { crate::shader!("vertex_kept") } else { crate::shader!("vertex_anew") }
 }
 
 /// Compiles the pass.

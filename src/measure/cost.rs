@@ -180,7 +180,7 @@ impl Quantities {
         match pass.over {
             Over::FreshChunks => self.made > 0,
             Over::RimEdges => self.rim > 0,
-            Over::Chunks | Over::SeenChunks | Over::List(_) | Over::Pixels => pass.often != Often::OnReading,
+            Over::Chunks | Over::AllChunks | Over::SeenChunks | Over::Segments | Over::List(_) | Over::Pixels => pass.often != Often::OnReading,
         }
     }
 
@@ -207,7 +207,12 @@ impl Quantities {
             PassName::TowardAway => self.toward_away(method),
             PassName::Adjacency => self.adjacency(),
             PassName::Border => self.border(),
-            PassName::Compose => return None,
+            PassName::Turning
+            | PassName::Turn
+            | PassName::Segments
+            | PassName::RimSegments
+            | PassName::Sight
+            | PassName::Compose => return None,
         })
     }
 

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::left_out::Omission;
 use super::passes::{Often, Over, PassName, PlannedPass, passes};
-use super::{Batch, Detail, Pieces, Plan, Thrift, Visibility, batches, detail};
+use super::{Batch, Border, Detail, Pieces, Plan, Thrift, Visibility, batches, detail};
 use crate::error::{Error, Result, Setting};
 use crate::surface::{Lattice, Level, Surface};
 use crate::view::Camera;
@@ -116,7 +116,7 @@ impl Frame {
             (Omission::Rasterizing, (self.seen as usize) < self.lattice.chunks().len()),
             (Omission::Chunks, passes_over),
             (Omission::SeamPass, lacks(PassName::Seam)),
-            (Omission::BorderPass, lacks(PassName::Border)),
+            (Omission::BorderPass, self.plan.border == Border::Off),
             (Omission::VoidTests, !self.tests_voids),
         ];
         self.omissions = of_lattice;
@@ -145,7 +145,7 @@ impl Frame {
         let runs = |often| match often {
             Often::EachRound => true,
             Often::ForVertices => round == 0 || !self.keeps_vertices(),
-            Often::EachBatch | Often::Once | Often::OnReading => round == 0,
+            Often::EachBatch | Often::Once | Often::ForCurves | Often::ForCurvesOfBatch | Often::OnReading => round == 0,
         };
         self.passes.iter().find(|pass| pass.name == name && runs(pass.often))
     }
@@ -159,6 +159,16 @@ impl Frame {
     /// The passes that run once for a piece: those of the method, and the border.
     pub fn of_piece(&self) -> impl Iterator<Item = PassName> {
         self.passes.iter().filter(|pass| pass.often == Often::Once).map(|pass| pass.name)
+    }
+
+    /// The passes that find curves: first over all chunks, then over each batch, then over what was found.
+    pub fn of_curves(&self) -> [Vec<PassName>; 3] {
+        let has = |names: &[PassName]| {
+            let passes = self.passes.iter().map(|pass| pass.name);
+            passes.filter(|name| names.contains(name)).collect::<Vec<_>>()
+        };
+        use PassName::{RimSegments, Segments, Sight, Turn, Turning};
+        [has(&[Turning]), has(&[Turn, Segments, RimSegments]), has(&[Sight])]
     }
 
     /// The lists of pixels that these fill and go over.

@@ -8,6 +8,9 @@ pub enum Method {
     /// Walk the lattice between neighbouring pixels and look for away facets. Complete.
     #[default]
     Walk,
+    /// Follow the curve along which the surface turns away (Hertzmann, Zorin 2000): it yields curves, its mask is drawn of
+    /// them.
+    Contour,
     /// Compare the nearest toward with the nearest away depth (Mower 2015, algorithm 2).
     TowardAway {
         /// Away surface counts wherever it touches the pixel or the neighbour that it is compared with.
@@ -40,6 +43,16 @@ pub enum Border {
     Off,
 }
 
+/// Whether the curves of a frame are found, of which strokes are made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Curves {
+    /// They are.
+    On,
+    /// The mask is all that is asked for.
+    #[default]
+    Off,
+}
+
 /// Whether a frame leaves out what cannot change the picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Thrift {
@@ -63,8 +76,9 @@ pub enum Visibility {
 
 impl Method {
     /// Every method, its variants behind it, in the order of lists and reports.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Walk,
+        Self::Contour,
         Self::TowardAway { wide: false },
         Self::TowardAway { wide: true },
         Self::Adjacency { share: Share::Edge },
@@ -75,6 +89,7 @@ impl Method {
     pub const fn entry(self) -> &'static Entry {
         match self {
             Self::Walk => &registry::WALK,
+            Self::Contour => &registry::CONTOUR,
             Self::TowardAway { wide: false } => &registry::TOWARD_AWAY,
             Self::TowardAway { wide: true } => &registry::TOWARD_AWAY_WIDE,
             Self::Adjacency { share: Share::Edge } => &registry::ADJACENCY,

@@ -13,9 +13,10 @@ pub mod registry;
 pub use batches::{Batch, batches};
 pub use detail::Detail;
 pub use frame::Frame;
-pub use method::{Border, Method, Share, Thrift, Visibility};
+pub use method::{Border, Curves, Method, Share, Thrift, Visibility};
 pub use passes::PassName;
 pub use pieces::{Piece, Pieces};
+pub use registry::Yields;
 
 /// What is drawn, whatever the eye.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,6 +27,8 @@ pub struct Plan {
     pub method: Method,
     /// Whether the rim is drawn.
     pub border: Border,
+    /// Whether curves are found too; those of a method that yields nothing else always are.
+    pub curves: Curves,
     /// Whether what cannot change the picture is left out.
     pub thrift: Thrift,
 }
@@ -33,7 +36,12 @@ pub struct Plan {
 impl Plan {
     /// Silhouettes and border by `method`, leaving out what cannot change the picture.
     pub fn new(detail: impl Into<Detail>, method: Method, border: Border) -> Self {
-        Self { detail: detail.into(), method, border, thrift: Thrift::LeaveOut }
+        Self { detail: detail.into(), method, border, curves: Curves::Off, thrift: Thrift::LeaveOut }
+    }
+
+    /// Whether its frames hold curves.
+    pub fn has_curves(&self) -> bool {
+        self.curves == Curves::On || self.method.entry().yields == Yields::Curves
     }
 }
 

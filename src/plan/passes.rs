@@ -1,6 +1,6 @@
 //! The passes of a frame by their names: which run, in which order, how often and how far.
 
-use super::{Border, Detail, Plan};
+use super::{Border, Detail, Plan, Yields};
 
 /// A pass: the name of its shader, of its adapter, of its label and of its timer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -31,6 +31,16 @@ pub enum PassName {
     Adjacency,
     /// The visible rim.
     Border,
+    /// The chunks through which contours may run.
+    Turning,
+    /// How vertices face the eye.
+    Turn,
+    /// Contours, facet by facet.
+    Segments,
+    /// The rim where it faces the eye.
+    RimSegments,
+    /// Which of these are seen.
+    Sight,
     /// What is read back.
     Compose,
 }
@@ -46,6 +56,10 @@ pub enum Often {
     EachBatch,
     /// Once.
     Once,
+    /// Once, where its curves are asked for.
+    ForCurves,
+    /// Then, for each batch.
+    ForCurvesOfBatch,
     /// Once, where the piece is read back.
     OnReading,
 }
@@ -57,6 +71,8 @@ pub enum Over {
     FreshChunks,
     /// The chunks of the batch.
     Chunks,
+    /// The chunks of all batches.
+    AllChunks,
     /// Those of them that may appear.
     SeenChunks,
     /// The items of the list of this name.
@@ -65,6 +81,8 @@ pub enum Over {
     Pixels,
     /// The edges of the rim.
     RimEdges,
+    /// The segments of curves for which there is room.
+    Segments,
 }
 
 /// A pass of a frame.
@@ -95,6 +113,11 @@ impl PassName {
             Self::TowardAway => "toward_away",
             Self::Adjacency => "adjacency",
             Self::Border => "border",
+            Self::Turning => "turning",
+            Self::Turn => "turn",
+            Self::Segments => "segments",
+            Self::RimSegments => "rim_segments",
+            Self::Sight => "sight",
             Self::Compose => "compose",
         }
     }
@@ -112,6 +135,10 @@ impl PassName {
             Self::WalkRest => (Often::Once, Over::List("rest")),
             Self::Candidates | Self::TowardAway | Self::Adjacency => (Often::Once, Over::Pixels),
             Self::Border => (Often::Once, Over::RimEdges),
+            Self::Turning => (Often::ForCurves, Over::AllChunks),
+            Self::Turn | Self::Segments => (Often::ForCurvesOfBatch, Over::SeenChunks),
+            Self::RimSegments => (Often::ForCurvesOfBatch, Over::RimEdges),
+            Self::Sight => (Often::ForCurves, Over::Segments),
             Self::Compose => (Often::OnReading, Over::Pixels),
         };
         PlannedPass { name: self, often, over }
@@ -120,10 +147,19 @@ impl PassName {
 
 /// The passes that frames of a plan may run, in their order.
 pub fn passes(plan: &Plan) -> Vec<PlannedPass> {
-    use PassName::{Compose, Facing, Project, Rasterize, RasterizeLarge, Seam, Tessellate};
+    use PassName::{Compose, Facing, Project, Rasterize, RasterizeLarge, RimSegments, Seam, Segments, Sight, Tessellate};
+    use PassName::{Turn, Turning};
     let seam: &[_] = if let Detail::Adaptive { .. } = plan.detail { &[Seam] } else { &[] };
-    let method = plan.method.entry().passes;
-    let border: &[_] = if plan.border == Border::On { &[PassName::Border] } else { &[] };
-    let names = [&[Tessellate], seam, &[Facing, Project, Rasterize, RasterizeLarge], method, border, &[Compose]];
+    let entry = plan.method.entry();
+    // The rim of a method that yields curves is a curve too.
+    let inked = plan.border == Border::On && entry.yields == Yields::Ink;
+    let border: &[_] = if inked { &[PassName::Border] } else { &[] };
+    let curves: &[_] = match plan.border {
+        _ if !plan.has_curves() => &[],
+        Border::On => &[Turning, Turn, Segments, RimSegments, Sight],
+        Border::Off => &[Turning, Turn, Segments, Sight],
+    };
+    let raster = &[Facing, Project, Rasterize, RasterizeLarge][..];
+    let names = [&[Tessellate], seam, raster, entry.passes, border, curves, &[Compose]];
     names.concat().into_iter().map(PassName::planned).collect()
 }

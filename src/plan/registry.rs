@@ -19,6 +19,8 @@ pub struct Entry {
     pub aside: &'static str,
     /// In a sentence: which pixels it inks.
     pub rule: &'static str,
+    /// What it yields.
+    pub yields: Yields,
     /// What it needs of the raster.
     pub raster: Raster,
     /// Whether it knows where in a pixel the line runs.
@@ -33,6 +35,15 @@ pub struct Entry {
     pub words: &'static [&'static str],
     /// How its curve looks in plots.
     pub look: Look,
+}
+
+/// What a method yields.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Yields {
+    /// Pixels of ink.
+    Ink,
+    /// Curves: its ink is drawn of them.
+    Curves,
 }
 
 /// What a method needs to know of each pixel.
@@ -68,6 +79,8 @@ pub enum Marker {
     Diamond,
     /// Two slanting strokes.
     Cross,
+    /// Two strokes, upright and level.
+    Plus,
 }
 
 pub(super) const WALK: Entry = Entry {
@@ -77,6 +90,7 @@ pub(super) const WALK: Entry = Entry {
     aside: "",
     rule: "A pixel is ink if the straight way on the lattice from its point on the surface to a farther neighbour's \
            crosses a facet that faces away.",
+    yields: Yields::Ink,
     raster: Raster::Facets,
     sub_pixel: true,
     passes: &[PassName::Candidates, PassName::Pairs, PassName::Walk, PassName::WalkRest],
@@ -86,6 +100,23 @@ pub(super) const WALK: Entry = Entry {
     look: Look { colour: [26, 26, 26], dash: None, marker: Marker::Disc },
 };
 
+pub(super) const CONTOUR: Entry = Entry {
+    name: "contour",
+    family: "contour",
+    brief: "Follow the silhouette curve, not a line of equal height: smooth, connected, to a hundredth of a pixel",
+    aside: "",
+    rule: "A pixel is ink if a visible part of the curve along which the surface turns away, or of its rim, passes through \
+           it (Hertzmann and Zorin 2000).",
+    yields: Yields::Curves,
+    raster: Raster::Facets,
+    sub_pixel: true,
+    passes: &[],
+    constants: &[],
+    conservative: false,
+    words: &[],
+    look: Look { colour: [196, 20, 60], dash: Some([9, 3]), marker: Marker::Plus },
+};
+
 pub(super) const TOWARD_AWAY: Entry = Entry {
     name: "toward-away",
     family: "toward-away",
@@ -93,6 +124,7 @@ pub(super) const TOWARD_AWAY: Entry = Entry {
     aside: "",
     rule: "A pixel is ink if its nearest toward surface is nearer than its nearest away surface, and that is nearer \
            than a neighbour's toward surface (Mower 2015).",
+    yields: Yields::Ink,
     raster: Raster::TwoDepths,
     sub_pixel: false,
     passes: &[PassName::TowardAway],
@@ -120,6 +152,7 @@ pub(super) const ADJACENCY: Entry = Entry {
     aside: "facets that share an edge",
     rule: "A pixel is ink if a neighbour at least as far shows a facet that shares no lattice edge with its own \
            (Mower 2015).",
+    yields: Yields::Ink,
     raster: Raster::Facets,
     sub_pixel: false,
     passes: &[PassName::Adjacency],

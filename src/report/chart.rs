@@ -181,6 +181,20 @@ fn draw_marker(root: &Area, (x, y): (i32, i32), look: &Look) -> Drawn {
         Marker::Square => polygon(&[(-5, -5), (5, -5), (5, 5), (-5, 5)]),
         Marker::Triangle => polygon(&[(-6, 5), (6, 5), (0, -6)]),
         Marker::Diamond => polygon(&[(-6, 0), (0, -6), (6, 0), (0, 6)]),
+        Marker::Plus => polygon(&[
+            (-2, -6),
+            (2, -6),
+            (2, -2),
+            (6, -2),
+            (6, 2),
+            (2, 2),
+            (2, 6),
+            (-2, 6),
+            (-2, 2),
+            (-6, 2),
+            (-6, -2),
+            (-2, -2),
+        ]),
         Marker::Cross => root.draw(&Cross::new((x, y), 5, colour.stroke_width(3))),
     }
 }

@@ -28,6 +28,11 @@ impl Perspective {
         Self { eye: camera.eye, axes: camera.axes(), size, focal: camera.focal(), near }
     }
 
+    /// Where it sees from, metres of the exaggerated world.
+    pub fn eye(&self) -> DVec3 {
+        self.eye
+    }
+
     /// Pixels across and down.
     pub fn size(&self) -> DVec2 {
         self.size

@@ -1,0 +1,96 @@
+// One invocation a patch edge of the rim: the parts of it where the surface faces the eye, facet by facet.
+
+struct RimEdge {
+    sample: vec2<u32>,  // where the patch edge starts, column and row
+    direction: u32,     // 0 east, 1 south, 2 south-east
+    half: u32,          // of the quad whose edge it is: 0 or 1
+}
+
+@group(0) @binding(20) var<storage, read> turns: array<f32>;
+@group(0) @binding(21) var<storage, read> turning: array<u32>;
+@group(0) @binding(23) var<storage, read> rim: array<RimEdge>;
+
+// The value at a vertex of a chunk; where no contour may run, that of its facets.
+fn turn_of(slot: u32, column_row: vec2<u32>, facet: u32) -> f32 {
+    if turning[slot] != BOTH {
+        return select(1.0, -1.0, is_away(facet));
+    }
+    let number = (slot - batch.first_slot) * CHUNK_VERTICES;
+    return turns[number + column_row.y * CHUNK_SIDE + column_row.x];
+}
+
+// The edge of a facet between two vertices of its chunk, where it faces the eye; `turned`: the facet lies on its right.
+fn list_edge(slot: u32, id: u32, from_vertex: vec2<u32>, to_vertex: vec2<u32>, turned: bool) {
+    let chunk = chunks[slot];
+    let vertex_p = shared_vertex(chunk.coarser, select(from_vertex, to_vertex, turned));
+    let vertex_q = shared_vertex(chunk.coarser, select(to_vertex, from_vertex, turned));
+    let at_p = chunk.origin + vertex_p * chunk.step;
+    let at_q = chunk.origin + vertex_q * chunk.step;
+    let g_p = turn_of(slot, vertex_p, id);
+    let g_q = turn_of(slot, vertex_q, id);
+    if all(at_p == at_q) || (g_p <= 0.0 && g_q <= 0.0) {
+        return;
+    }
+    let f = facet_of(id);
+    let place_p = place_in(chunk, at_p);
+    let p = eye_relative(at_p / CELL_STEPS, place_p);
+    let way = edge_between(at_p, place_p, at_q, place_in(chunk, at_q));
+    let turns_at = select(g_q / (g_q - g_p), g_p / (g_p - g_q), g_p > 0.0);
+    let share = select(1.0 - turns_at, turns_at, g_p > 0.0);
+    let from_share = select(share, 0.0, g_p > 0.0);
+    let to_share = select(share, 1.0, g_q > 0.0);
+    let origin = vec2<f32>(vec2<i32>(at_p) - vec2<i32>(f.a)) * f32(UNITS);
+    let on_map = vec2<f32>(vec2<i32>(at_q) - vec2<i32>(at_p)) * f32(UNITS);
+    let edge = select(select(2u, 1u, all(at_p == f.b)), 0u, all(at_p == f.a));
+    let code = edge | OF_RIM | select(STARTS_TURNING, 0u, g_p > 0.0) | select(ENDS_TURNING, 0u, g_q > 0.0);
+    list_line(FacetLine(
+        id,
+        code,
+        1.0,
+        p + way * from_share,
+        p + way * to_share,
+        origin + on_map * from_share,
+        origin + on_map * to_share,
+    ));
+}
+
+// The part of a patch's edge that lies in one quad's facet, or starts an edge of many patches. `at` is where it starts.
+// Returns how many lattice units it is long.
+fn list_part(edge: RimEdge, at: vec2<u32>, along: vec2<u32>) -> u32 {
+    // The quad above or left of the edge, or the one it starts in.
+    let above = edge.direction == 0u && edge.half == 0u;
+    let left = edge.direction == 1u && edge.half == 1u;
+    let slot = slot_at(vec2<i32>(at) - select(vec2<i32>(0), vec2<i32>(1), vec2<bool>(left, above)));
+    if slot == NO_SLOT {
+        // Half a cell, the smallest chunk: the next one may be there.
+        return CHUNK_QUADS;
+    }
+    let chunk = chunks[slot];
+    let from_origin = at - chunk.origin;
+    if any(from_origin % chunk.step != vec2<u32>(0u)) {
+        return CELL_STEPS;
+    }
+    if slot >= batch.first_slot && slot - batch.first_slot < BATCH_CHUNKS && slot < camera.seen && in_view(bounds_of(slot)) {
+        let vertex = from_origin / chunk.step;
+        let quad = vertex - select(vec2<u32>(0u), vec2<u32>(1u), vec2<bool>(left, above));
+        let id = slot * CHUNK_FACETS + quad_local(quad) + edge.half;
+        // Half 1 lies below an edge to the east and before one to the south, but to the left of a diagonal.
+        let turned = (edge.half == 1u) != (edge.direction == 2u);
+        list_edge(slot, id, vertex, vertex + along, turned);
+    }
+    return chunk.step;
+}
+
+@compute @workgroup_size(64)
+fn rim_segments(@builtin(global_invocation_id) invocation: vec3<u32>) {
+    let i = invocation.y * MOST_GROUPS * 64u + invocation.x;
+    if i >= arrayLength(&rim) {
+        return;
+    }
+    let edge = rim[i];
+    let along = vec2<u32>(select(1u, 0u, edge.direction == 1u), select(1u, 0u, edge.direction == 0u));
+    var done = 0u;
+    while done < CELL_STEPS {
+        done += list_part(edge, edge.sample * CELL_STEPS + along * done, along);
+    }
+}
