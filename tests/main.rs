@@ -63,6 +63,7 @@ mod seen;
 mod shell;
 mod silhouettes;
 mod smoothest;
+mod spires;
 mod stepless;
 mod steps;
 mod times;
