@@ -67,6 +67,7 @@ mod spires;
 mod stepless;
 mod steps;
 mod times;
+mod strays;
 mod tolerances;
 mod trial;
 mod truth;

@@ -28,6 +28,7 @@ pub mod raster;
 pub mod recession;
 mod simplify;
 pub mod smooth;
+pub mod strays;
 mod thin;
 pub mod trace;
 pub mod visible;
@@ -43,6 +44,7 @@ pub use overlay::{Cover, project_polyline};
 pub use raster::{InkRaster, Kind, Pixel};
 pub use recession::Recession;
 pub use smooth::smooth;
+pub use strays::Strays;
 pub use trace::trace;
 
 use crate::view::Perspective;

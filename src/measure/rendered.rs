@@ -6,7 +6,7 @@ use std::time::Instant;
 use glam::DVec2;
 
 use super::cost::PassCost;
-use super::curves::mask_of;
+use super::curves::{Curves, mask_of};
 use super::figures::{FloorFigures, PassFigures, Run};
 use super::floors::Floors;
 use super::trial::{Draws, Trial, Yield};
@@ -14,16 +14,18 @@ use super::{Floor, costs, memory};
 use crate::error::Result;
 use crate::gpu::Gpu;
 use crate::line::{Chain, Kind, Mark, Marks, trace};
-use crate::plan::{Method, Plan};
+use crate::plan::{Method, Plan, Yields};
 use crate::render::{PassTime, Renderer};
 use crate::surface::Surface;
 use crate::truth::Mask;
 use crate::view::{Camera, Perspective};
 
-/// A renderer that draws by a method.
-struct Rendered {
+/// A renderer that draws by a method which yields a `Y`.
+struct Rendered<Y> {
     renderer: Renderer,
     plan: Plan,
+    /// Brings back what a frame yields.
+    read: fn(&mut Renderer, &Plan, Perspective) -> Result<Y>,
     /// Of the last frame.
     perspective: Perspective,
     /// Whether a bare copy and a depth draw are timed in turn with the warm frames.
@@ -54,27 +56,40 @@ pub(super) fn try_plan(
     let mut renderer = Renderer::new(gpu.clone(), surface.clone())?;
     renderer.prepare(&plan, trial.camera)?;
     let setup_ms = start.elapsed().as_secs_f64() * 1e3;
-    let mut rendered = Rendered {
-        perspective: Perspective::new(trial.camera, renderer.near()),
-        renderer,
-        plan,
-        wants_floor: floor,
-        floor: None,
-    };
-    trial.run(&mut rendered, setup_ms)
+    let perspective = Perspective::new(trial.camera, renderer.near());
+    match plan.method.entry().yields {
+        Yields::Ink => {
+            let mut rendered = Rendered { perspective, renderer, plan, read: ink, wants_floor: floor, floor: None };
+            trial.run(&mut rendered, setup_ms)
+        }
+        Yields::Curves => {
+            let mut rendered = Rendered { perspective, renderer, plan, read: curves, wants_floor: floor, floor: None };
+            trial.run(&mut rendered, setup_ms)
+        }
+    }
 }
 
-impl Draws for Rendered {
-    type Yield = Ink;
+/// The ink of the last frame.
+fn ink(renderer: &mut Renderer, plan: &Plan, perspective: Perspective) -> Result<Ink> {
+    let marks = Marks::from(&renderer.read()?.raster);
+    Ok(Ink { marks, perspective, method: plan.method })
+}
+
+/// The curves of the last frame.
+fn curves(renderer: &mut Renderer, _: &Plan, perspective: Perspective) -> Result<Curves> {
+    Ok(Curves::new(renderer.chains()?, &perspective))
+}
+
+impl<Y: Yield> Draws for Rendered<Y> {
+    type Yield = Y;
 
     fn time_of_frame(&mut self, camera: &Camera) -> Result<f64> {
         self.perspective = Perspective::new(camera, self.renderer.near());
         self.renderer.time_of_frame(&self.plan, camera)
     }
 
-    fn yielded(&mut self) -> Result<Ink> {
-        let marks = Marks::from(&self.renderer.read()?.raster);
-        Ok(Ink { marks, perspective: self.perspective, method: self.plan.method })
+    fn yielded(&mut self) -> Result<Y> {
+        (self.read)(&mut self.renderer, &self.plan, self.perspective)
     }
 
     fn passes(&mut self, camera: &Camera) -> Result<Vec<PassFigures>> {

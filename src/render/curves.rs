@@ -5,7 +5,7 @@ use crate::error::{Error, Result, Setting};
 use crate::gpu::clock::Timer;
 use crate::gpu::uniforms::Segment;
 use crate::gpu::work::Work;
-use crate::line::{Curve, link};
+use crate::line::{Chain, Curve, link, visible};
 use crate::message;
 use crate::plan::{Frame, Piece};
 
@@ -23,6 +23,16 @@ impl Renderer {
         }
         let segments = self.segments(&frame, piece)?;
         Ok(self.linked(&frame, segments))
+    }
+
+    /// What the eye sees of the curves of the last frame.
+    ///
+    /// # Errors
+    /// As [`Self::curves`].
+    pub fn chains(&mut self) -> Result<Vec<Chain>> {
+        let curves = self.curves()?;
+        let size = self.last().map_or([0; 2], |frame| frame.pieces.page());
+        Ok(visible::chains(curves, size))
     }
 
     /// The curves of all segments of a frame.
