@@ -43,11 +43,12 @@ struct Spire {
     page: [u32; 2],
 }
 
-/// Seen from there each is one to two pixels wide, and its tip, which is thinner, lies above the page.
+/// Seen from there each is one to two pixels wide, against the sky: the tip, which is thinner, lies above the page, the foot, before
+/// land, below it.
 const SPIRES: [Spire; 3] = [
-    Spire { cell: 30.0, height: 10_000.0, away: 167.0, above: [1500.0, 2500.0], fov: 60.0, page: [256, 256] },
-    Spire { cell: 30.0, height: 2000.0, away: 150.0, above: [300.0, 600.0], fov: 40.0, page: [160, 64] },
-    Spire { cell: 1.0, height: 50.0, away: 150.0, above: [8.0, 15.0], fov: 40.0, page: [160, 64] },
+    Spire { cell: 30.0, height: 10_000.0, away: 167.0, above: [1500.0, 2900.0], fov: 60.0, page: [256, 216] },
+    Spire { cell: 30.0, height: 2000.0, away: 150.0, above: [300.0, 700.0], fov: 40.0, page: [160, 40] },
+    Spire { cell: 1.0, height: 50.0, away: 150.0, above: [8.0, 20.0], fov: 40.0, page: [160, 40] },
 ];
 
 impl Spire {
@@ -96,10 +97,10 @@ fn a_spire_as_thin_as_a_pixel_has_its_skyline() {
 
 /// Lattices of many levels, the last two with chunks left out.
 const KINDS: [(Kind, u32); 4] = [
-    (Kind { cells: [70, 61], steps: [64, 4], rarity: 3, voids: 0 }, 0),
-    (Kind { cells: [40, 33], steps: [32, 1], rarity: 3, voids: 60 }, 0),
-    (Kind { cells: [300, 277], steps: [256, 8], rarity: 4, voids: 0 }, 5),
-    (Kind { cells: [600, 400], steps: [1024, 32], rarity: 3, voids: 2 }, 9),
+    (Kind { cells: [30, 25], steps: [64, 8], rarity: 3, voids: 0 }, 0),
+    (Kind { cells: [16, 14], steps: [32, 4], rarity: 3, voids: 200 }, 0),
+    (Kind { cells: [150, 140], steps: [256, 32], rarity: 4, voids: 0 }, 5),
+    (Kind { cells: [300, 200], steps: [1024, 64], rarity: 3, voids: 2 }, 9),
 ];
 
 #[test]
