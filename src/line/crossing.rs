@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use super::Curve;
 
 /// Width and height of a cell, px: a stretch is at most about a pixel long, and those that crowd on far slopes lie level.
-const CELL: DVec2 = DVec2::new(1.0, 0.5);
+const CELL: DVec2 = DVec2::new(1.0, 0.25);
 /// A stretch is nearer where its depth is more than this share larger: what f32 leaves of it.
 const ROUNDING: f64 = 1.0e-6;
 
