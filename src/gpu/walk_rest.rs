@@ -8,7 +8,7 @@ use crate::error::Result;
 
 /// The composed shader: that of `walk`, and what is left.
 pub fn source(keeps_vertices: bool) -> String {
-    [walk::source(keeps_vertices).as_str(), crate::shader!("walk_rest")].concat()
+    [walk::source(keeps_vertices).as_str(), crate::shader!("section", "walk_rest")].concat()
 }
 
 /// Compiles the pass.

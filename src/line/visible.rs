@@ -181,7 +181,7 @@ fn chain(curve: &Curve, span: Span) -> (Chain, Vec<Held>) {
     let point = |at: f64, piece: usize| {
         let CurvePoint { place, depth, world, .. } = curve.at(at);
         let behind = stretch(pieces[piece]).behind;
-        ChainPoint { place, line: LINES[labels[piece]], depth: depth as f32, behind, world, crowd: 0 }
+        ChainPoint { place, line: LINES[labels[piece]], depth: depth as f32, behind, world, crowd: 0, weight: 1.0 }
     };
     let mut points: Vec<ChainPoint> = (0..pieces.len()).map(|i| point(pieces[i][0], i)).collect();
     points.push(point(span[1], pieces.len() - 1));
