@@ -44,6 +44,7 @@ impl Level {
                 behind: 0.0,
                 world: world(column),
                 crowd: 0,
+                weight: 1.0,
             }
         };
         // Corners elsewhere in each frame.

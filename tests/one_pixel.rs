@@ -21,6 +21,7 @@ fn chain(places: &[[f64; 2]], line: Line, depth: f32) -> Chain {
         behind: 0.0,
         world: DVec3::ZERO,
         crowd: 0,
+        weight: 1.0,
     };
     Chain { id: None, points: places.iter().map(point).collect(), closed: false }
 }

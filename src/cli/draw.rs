@@ -26,7 +26,7 @@ use crate::files::Taken;
 use crate::geo::Reading;
 use crate::gpu::Gpu;
 use crate::ink::{self, Drawing, Style};
-use crate::line::Lines;
+use crate::line::{Economy, Lines};
 use crate::measure::figures::DrawnLevel;
 use crate::plan::detail::ERROR_PX;
 use crate::plan::left_out::LeftOut;
@@ -92,6 +92,25 @@ pub struct DrawArguments {
     /// Whether to draw the visible border of the DEM and of its voids
     #[arg(long, value_parser = choices::border(), default_value = choices::default_border(), help_heading = "Method")]
     border: Border,
+
+    #[arg(
+        long, value_name = "X", value_parser = values::min_jump, allow_hyphen_values = true, help_heading = "Style",
+        help = format!(
+            "Leave lines out where what lies behind is less than this share farther than they are; from twice that on they are \
+             whole. 0 draws all [default: {}]",
+            Economy::MIN_JUMP
+        )
+    )]
+    min_jump: Option<f64>,
+    #[arg(
+        long, value_name = "3px", value_parser = values::min_gap, allow_hyphen_values = true, help_heading = "Style",
+        help = format!(
+            "Of two lines nearer to each other than this the weaker fades, by kind, jump and length; the skyline never does. In \
+             pixels, 0 leaves all lines [default: {}px on a page {}px wide, and in proportion]",
+            Economy::MIN_GAP, Economy::WIDTH
+        )
+    )]
+    min_gap: Option<f64>,
 
     /// Say at which levels parts of the DEM are drawn, what the frame did without, why, and what that saved
     #[arg(long)]
@@ -201,6 +220,7 @@ impl DrawArguments {
         let (method, detail) = (self.method()?, self.detail()?);
         self.view.check()?;
         self.outputs.check()?;
+        self.economy(1)?;
         Ok(Plan::new(detail, method, self.border))
     }
 
@@ -269,6 +289,17 @@ impl DrawArguments {
             Method::Adjacency { .. } => Method::Adjacency { share: self.share.unwrap_or_default() },
             plain => plain,
         })
+    }
+
+    /// How sparing lines are on a page `width` pixels wide; `None` where strokes are traced from the mask.
+    fn economy(&self, width: u32) -> Result<Option<Economy>> {
+        if matches!(self.method, Method::TowardAway { .. } | Method::Adjacency { .. }) {
+            let given = self.min_jump.map(|_| Setting::MinJump).or(self.min_gap.map(|_| Setting::MinGap));
+            let refuse = |setting| Error::setting(setting, "goes with contours only", "leave out --method");
+            return given.map_or(Ok(None), |setting| Err(refuse(setting)));
+        }
+        let Economy { min_jump, min_gap } = Economy::for_page(width);
+        Ok(Some(Economy { min_jump: self.min_jump.unwrap_or(min_jump), min_gap: self.min_gap.unwrap_or(min_gap) }))
     }
 
     /// Times more frames and says what was done.

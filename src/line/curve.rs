@@ -72,3 +72,45 @@ pub struct Curve {
     /// Whether the last stretch leads to the first point.
     pub closed: bool,
 }
+
+impl Curve {
+    /// The points that a stretch leads from and to.
+    pub fn ends(&self, stretch: usize) -> [&CurvePoint; 2] {
+        let next = if stretch + 1 == self.points.len() { 0 } else { stretch + 1 };
+        [&self.points[stretch], &self.points[next]]
+    }
+
+    /// Length of a stretch on the page, px.
+    pub fn length(&self, stretch: usize) -> f64 {
+        let [a, b] = self.ends(stretch);
+        a.place.distance(b.place)
+    }
+
+    /// The point after so many stretches and a share of one; a closed curve goes round.
+    pub fn at(&self, along: f64) -> CurvePoint {
+        let (whole, share) = (along.floor() as usize, along.fract());
+        let i = if self.closed { whole % self.stretches.len() } else { whole };
+        if share == 0.0 {
+            return self.points[i];
+        }
+        let [a, b] = self.ends(i);
+        // Depth is linear on the page, the world is where divided by distance.
+        let depth = a.depth + (b.depth - a.depth) * share;
+        let at = [0, 1].map(|axis| {
+            let [from, to] = [a, b].map(|end| f64::from(end.at[axis]));
+            (from + (to - from) * share).round() as i32
+        });
+        CurvePoint {
+            place: a.place.lerp(b.place, share),
+            depth,
+            world: a.world.lerp(b.world, share * b.depth / depth),
+            at,
+        }
+    }
+
+    /// Lets a closed curve begin at another of its points.
+    pub fn turn(&mut self, point: usize) {
+        self.points.rotate_left(point);
+        self.stretches.rotate_left(point);
+    }
+}

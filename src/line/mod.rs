@@ -3,28 +3,39 @@
 //! What a frame of a mask method leaves behind is an [`InkRaster`]: ink, kind, sub-pixel place and depth a pixel. Its ink
 //! as a list, [`Marks`], from one raster or the pieces of a large page, is traced to [`Chain`]s, these are smoothed
 //! within a stated tolerance, and the ink about their points is counted: the [`Lines`] of the page, all that stroking
-//! needs. Chains may come from elsewhere too: [`project_polyline`] makes them from polylines of the world, hidden by the
-//! cover.
+//! needs. Chains may come from elsewhere too: [`visible::chains`] are what the eye sees of [`Curve`]s on the surface,
+//! [`project_polyline`] makes them from polylines of the world, hidden by the cover.
 
+mod along;
 pub mod chain;
+pub mod clearance;
+mod crossing;
 pub mod crowd;
 pub mod curve;
+mod doubt;
+pub mod economy;
+mod folds;
 mod graph;
 mod grid;
+pub mod identity;
 mod join;
+mod labels;
 pub mod link;
 pub mod marks;
 pub mod one_pixel;
 pub mod overlay;
 pub mod raster;
 pub mod recession;
+mod simplify;
 pub mod smooth;
 mod thin;
 pub mod trace;
+pub mod visible;
 
 pub use chain::{Chain, ChainPoint, Id, Line};
 pub use crowd::crowded;
 pub use curve::{Bound, Curve, CurvePoint, Sight, Stretch};
+pub use economy::{Economy, economised};
 pub use link::link;
 pub use marks::{Mark, Marks};
 pub use one_pixel::one_pixel_wide;
@@ -59,5 +70,12 @@ impl Lines {
             chains: crowded(&chains, marks, perspective),
             recession: Recession::of(marks.depths()),
         }
+    }
+
+    /// The lines of a page of so many pixels across and down from chains of curves, drawn as sparingly as `economy` says.
+    pub fn sparing(chains: &[Chain], [width, height]: [u32; 2], economy: &Economy) -> Self {
+        let chains = economised(chains, economy);
+        let depths = chains.iter().flat_map(|chain| &chain.points).map(|point| point.depth);
+        Self { width, height, recession: Recession::of(depths), chains }
     }
 }

@@ -78,12 +78,17 @@ fn clip_near(a: DVec3, b: DVec3, perspective: &Perspective) -> Option<[DVec3; 2]
     }
 }
 
-/// The part of a segment on the page (Liang and Barsky 1984).
+/// The part of a segment on the page.
 fn clip_page(a: (DVec2, f64), b: (DVec2, f64), page: DVec2) -> Option<((DVec2, f64), (DVec2, f64))> {
-    let along = b.0 - a.0;
+    let at = |t: f64| (a.0 + (b.0 - a.0) * t, a.1 + (b.1 - a.1) * t);
+    on_page(a.0, b.0, page).map(|[enter, leave]| (at(enter), at(leave)))
+}
+
+/// From which to which share a segment is on a page of this size (Liang and Barsky 1984).
+pub(super) fn on_page(a: DVec2, b: DVec2, page: DVec2) -> Option<[f64; 2]> {
+    let along = b - a;
     let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
-    let sides = [(along.x, a.0.x, page.x), (along.y, a.0.y, page.y)];
-    for (step, from, size) in sides {
+    for (step, from, size) in [(along.x, a.x, page.x), (along.y, a.y, page.y)] {
         if step == 0.0 {
             if !(0.0..=size).contains(&from) {
                 return None;
@@ -93,8 +98,7 @@ fn clip_page(a: (DVec2, f64), b: (DVec2, f64), page: DVec2) -> Option<((DVec2, f
         let (t0, t1) = (-from / step, (size - from) / step);
         (enter, leave) = (enter.max(t0.min(t1)), leave.min(t0.max(t1)));
     }
-    let at = |t: f64| (a.0 + along * t, a.1 + (b.1 - a.1) * t);
-    (enter <= leave).then(|| (at(enter), at(leave)))
+    (enter <= leave).then_some([enter, leave])
 }
 
 /// Points from a to b, both included, at most [`SAMPLE`] px apart.

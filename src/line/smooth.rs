@@ -13,6 +13,7 @@ use std::collections::{HashMap, HashSet};
 
 use glam::{DVec2, DVec3};
 
+use super::simplify::needed;
 use super::{Chain, ChainPoint};
 use crate::view::Perspective;
 
@@ -188,25 +189,9 @@ fn simplified(chain: &Chain, places: &[DVec2], tolerance: f64) -> Vec<DVec3> {
     if chain.closed {
         points.push(points[0]);
     }
-    let mut kept = vec![0];
-    let mut spans = vec![(0, points.len() - 1)];
-    while let Some((first, last)) = spans.pop() {
-        let off = |i: &usize| distance_to_segment(points[*i], points[first], points[last]);
-        match (first + 1..last).max_by(|a, b| off(a).total_cmp(&off(b))).filter(|i| off(i) > tolerance) {
-            Some(worst) => spans.extend([(worst, last), (first, worst)]),
-            None => kept.push(last),
-        }
-    }
-    kept.dedup();
+    let mut kept = needed(&points, tolerance);
     if chain.closed {
         kept.pop();
     }
     kept.into_iter().map(|i| points[i]).collect()
-}
-
-/// Distance of a point from the segment a-b.
-fn distance_to_segment(p: DVec3, a: DVec3, b: DVec3) -> f64 {
-    let ab = b - a;
-    let t = (p - a).dot(ab) / ab.length_squared().max(f64::MIN_POSITIVE);
-    p.distance(a + ab * t.clamp(0.0, 1.0))
 }

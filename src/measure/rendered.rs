@@ -6,15 +6,16 @@ use std::time::Instant;
 use glam::DVec2;
 
 use super::cost::PassCost;
-use super::curves::mask_of;
+use super::curves::{Curves, mask_of};
 use super::figures::{FloorFigures, PassFigures, Run};
 use super::floors::Floors;
 use super::trial::{Draws, Trial, Yield};
 use super::{Floor, costs, memory};
 use crate::error::Result;
 use crate::gpu::Gpu;
+use crate::line::visible::chains as visible;
 use crate::line::{Chain, Kind, Mark, Marks, trace};
-use crate::plan::{Method, Plan};
+use crate::plan::{Method, Plan, Yields};
 use crate::render::{PassTime, Renderer};
 use crate::surface::Surface;
 use crate::truth::Mask;
@@ -29,6 +30,12 @@ struct Rendered {
     /// Whether a bare copy and a depth draw are timed in turn with the warm frames.
     wants_floor: bool,
     floor: Option<(Floor, Floors)>,
+}
+
+/// What a frame yields.
+enum Yielded {
+    Ink(Ink),
+    Curves(Curves),
 }
 
 /// The ink of a frame.
@@ -65,16 +72,21 @@ pub(super) fn try_plan(
 }
 
 impl Draws for Rendered {
-    type Yield = Ink;
+    type Yield = Yielded;
 
     fn time_of_frame(&mut self, camera: &Camera) -> Result<f64> {
         self.perspective = Perspective::new(camera, self.renderer.near());
         self.renderer.time_of_frame(&self.plan, camera)
     }
 
-    fn yielded(&mut self) -> Result<Ink> {
-        let marks = Marks::from(&self.renderer.read()?.raster);
-        Ok(Ink { marks, perspective: self.perspective, method: self.plan.method })
+    fn yielded(&mut self) -> Result<Yielded> {
+        let Self { perspective, plan, renderer, .. } = self;
+        if plan.method.entry().yields == Yields::Curves {
+            let chains = visible(renderer.curves()?, perspective.size().as_uvec2().to_array());
+            return Ok(Yielded::Curves(Curves::new(chains, perspective)));
+        }
+        let marks = Marks::from(&renderer.read()?.raster);
+        Ok(Yielded::Ink(Ink { marks, perspective: *perspective, method: plan.method }))
     }
 
     fn passes(&mut self, camera: &Camera) -> Result<Vec<PassFigures>> {
@@ -103,6 +115,29 @@ impl Draws for Rendered {
 
     fn buffers_bytes(&self) -> u64 {
         self.renderer.on_device().bytes()
+    }
+}
+
+impl Yield for Yielded {
+    fn mask(&self) -> Mask {
+        match self {
+            Self::Ink(ink) => ink.mask(),
+            Self::Curves(curves) => curves.mask(),
+        }
+    }
+
+    fn chains(&self) -> Vec<Chain> {
+        match self {
+            Self::Ink(ink) => ink.chains(),
+            Self::Curves(curves) => curves.chains(),
+        }
+    }
+
+    fn places(&self) -> Vec<DVec2> {
+        match self {
+            Self::Ink(ink) => ink.places(),
+            Self::Curves(curves) => curves.places(),
+        }
     }
 }
 

@@ -32,6 +32,9 @@ impl Renderer {
         let time = frame.pieces.iter().try_fold(FrameTime::default(), |time, piece| {
             let mut timer = Timer::new(&self.gpu);
             self.passes(&frame, piece, Some(&mut timer))?;
+            if plan.has_curves() {
+                self.find_segments(&frame, piece, Some(&mut timer))?;
+            }
             let times = timer.read(&self.gpu).inspect_err(|_| self.last = None)?;
             Ok(time.and(&times))
         })?;
