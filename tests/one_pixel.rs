@@ -52,7 +52,8 @@ fn what_lies_beside_the_page_is_left_out() {
     assert_eq!(drawn(&[[-20.0, 3.5], [1.5, 3.5]]), [[0, 3], [1, 3]]);
     assert_eq!(drawn(&[[126.5, 3.5], [900.0, 3.5]]), [[126, 3], [127, 3]]);
     assert_eq!(drawn(&[[128.0, 3.5], [128.0, 30.5]]), [[0; 2]; 0], "the page's far edge");
-    assert_eq!(drawn(&[[-1e9, -1e9], [-1.0, 50.0], [f64::MAX / 8.0, 1e300]]), [[0; 2]; 0]);
+    let row: Vec<[u32; 2]> = (0..128).map(|column| [column, 50]).collect();
+    assert_eq!(drawn(&[[-1e9, -1e9], [-1.0, 50.0], [f64::MAX / 8.0, 1e300]]), row, "ends at the end of numbers");
     assert_eq!(drawn(&[[200.0, 20.0]]), [[0; 2]; 0]);
 }
 

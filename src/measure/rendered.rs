@@ -20,17 +20,21 @@ use crate::surface::Surface;
 use crate::truth::Mask;
 use crate::view::{Camera, Perspective};
 
-/// A renderer that draws by a method which yields a `Y`.
-struct Rendered<Y> {
+/// A renderer that draws by a method.
+struct Rendered {
     renderer: Renderer,
     plan: Plan,
-    /// Brings back what a frame yields.
-    read: fn(&mut Renderer, &Plan, Perspective) -> Result<Y>,
     /// Of the last frame.
     perspective: Perspective,
     /// Whether a bare copy and a depth draw are timed in turn with the warm frames.
     wants_floor: bool,
     floor: Option<(Floor, Floors)>,
+}
+
+/// What a frame yields.
+enum Yielded {
+    Ink(Ink),
+    Curves(Curves),
 }
 
 /// The ink of a frame.
@@ -56,40 +60,31 @@ pub(super) fn try_plan(
     let mut renderer = Renderer::new(gpu.clone(), surface.clone())?;
     renderer.prepare(&plan, trial.camera)?;
     let setup_ms = start.elapsed().as_secs_f64() * 1e3;
-    let perspective = Perspective::new(trial.camera, renderer.near());
-    match plan.method.entry().yields {
-        Yields::Ink => {
-            let mut rendered = Rendered { perspective, renderer, plan, read: ink, wants_floor: floor, floor: None };
-            trial.run(&mut rendered, setup_ms)
-        }
-        Yields::Curves => {
-            let mut rendered = Rendered { perspective, renderer, plan, read: curves, wants_floor: floor, floor: None };
-            trial.run(&mut rendered, setup_ms)
-        }
-    }
+    let mut rendered = Rendered {
+        perspective: Perspective::new(trial.camera, renderer.near()),
+        renderer,
+        plan,
+        wants_floor: floor,
+        floor: None,
+    };
+    trial.run(&mut rendered, setup_ms)
 }
 
-/// The ink of the last frame.
-fn ink(renderer: &mut Renderer, plan: &Plan, perspective: Perspective) -> Result<Ink> {
-    let marks = Marks::from(&renderer.read()?.raster);
-    Ok(Ink { marks, perspective, method: plan.method })
-}
-
-/// The curves of the last frame.
-fn curves(renderer: &mut Renderer, _: &Plan, perspective: Perspective) -> Result<Curves> {
-    Ok(Curves::new(renderer.chains()?, &perspective))
-}
-
-impl<Y: Yield> Draws for Rendered<Y> {
-    type Yield = Y;
+impl Draws for Rendered {
+    type Yield = Yielded;
 
     fn time_of_frame(&mut self, camera: &Camera) -> Result<f64> {
         self.perspective = Perspective::new(camera, self.renderer.near());
         self.renderer.time_of_frame(&self.plan, camera)
     }
 
-    fn yielded(&mut self) -> Result<Y> {
-        (self.read)(&mut self.renderer, &self.plan, self.perspective)
+    fn yielded(&mut self) -> Result<Yielded> {
+        let Self { perspective, plan, renderer, .. } = self;
+        if plan.method.entry().yields == Yields::Curves {
+            return Ok(Yielded::Curves(Curves::new(renderer.chains()?, perspective)));
+        }
+        let marks = Marks::from(&renderer.read()?.raster);
+        Ok(Yielded::Ink(Ink { marks, perspective: *perspective, method: plan.method }))
     }
 
     fn passes(&mut self, camera: &Camera) -> Result<Vec<PassFigures>> {
@@ -118,6 +113,29 @@ impl<Y: Yield> Draws for Rendered<Y> {
 
     fn buffers_bytes(&self) -> u64 {
         self.renderer.on_device().bytes()
+    }
+}
+
+impl Yield for Yielded {
+    fn mask(&self) -> Mask {
+        match self {
+            Self::Ink(ink) => ink.mask(),
+            Self::Curves(curves) => curves.mask(),
+        }
+    }
+
+    fn chains(&self) -> Vec<Chain> {
+        match self {
+            Self::Ink(ink) => ink.chains(),
+            Self::Curves(curves) => curves.chains(),
+        }
+    }
+
+    fn places(&self) -> Vec<DVec2> {
+        match self {
+            Self::Ink(ink) => ink.places(),
+            Self::Curves(curves) => curves.places(),
+        }
     }
 }
 

@@ -41,10 +41,10 @@ fn convergence_line(name: &str, convergence: &Convergence) -> Option<String> {
 /// A run in a line: every figure beside its time and what was computed.
 fn run_line(run: &Run) -> String {
     let Run { scene, method, level, precision, recall, f, gaps, spurious, .. } = run;
-    let Run { frame_ms, first_frame_ms, facets, inked, floor, .. } = run;
+    let Run { pixel_recall, frame_ms, first_frame_ms, facets, inked, floor, .. } = run;
     let floor = floor.as_ref().map_or(String::new(), |floor| format!("; {}", floor_words(floor, *frame_ms)));
     format!(
-        "{scene} {method} level {level}: P {precision:.4} R {recall:.4} F {f:.4}, {gaps} gaps, {spurious} spurious; \
+        "{scene} {method} level {level}: P {precision:.4} R {recall:.4} ({pixel_recall:.4} of pixels) F {f:.4}, {gaps} gaps, {spurious} spurious; \
          {frame_ms:.1} ms (first frame {first_frame_ms:.1}), {facets} facets, {inked} px of ink{floor}"
     )
 }
