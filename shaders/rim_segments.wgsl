@@ -8,11 +8,11 @@ struct RimEdge {
 
 @group(0) @binding(20) var<storage, read> turns: array<f32>;
 @group(0) @binding(21) var<storage, read> turning: array<u32>;
-@group(0) @binding(23) var<storage, read> rim: array<RimEdge>;
+@group(0) @binding(25) var<storage, read> rim: array<RimEdge>;
 
 // The value at a vertex of a chunk; where no contour may run, that of its facets.
 fn turn_of(slot: u32, column_row: vec2<u32>, facet: u32) -> f32 {
-    if turning[slot] != BOTH {
+    if (turning[slot] & BOTH) != BOTH {
         return select(1.0, -1.0, is_away(facet));
     }
     let number = (slot - batch.first_slot) * CHUNK_VERTICES;

@@ -163,7 +163,7 @@ fn a_page_wider_than_any_piece_is_drawn() {
 #[test]
 fn every_method_and_switch_draws() {
     let place = Place::new();
-    let cases: [&[&str]; 8] = [
+    let cases: [&[&str]; 9] = [
         &["--method", "walk", "--level", "2"],
         &["--method", "toward-away"],
         &["--method", "toward-away", "--wide"],
@@ -172,6 +172,7 @@ fn every_method_and_switch_draws() {
         &["--crop", "500050,4000050,500350,4000350"],
         &["--adapter", "cpu", "--no-int64"],
         &["--altitude", "-90", "--eye", "500200,4000200,900"],
+        &["--min-jump", "0.05", "--min-gap", "2.5"],
     ];
     for case in cases {
         let output = place.run(&[&DRAW[..], case].concat());
@@ -191,7 +192,7 @@ fn an_eye_below_ground_draws_with_a_warning() {
 #[test]
 fn wrong_usage_exits_with_2() {
     let place = Place::new();
-    let cases: [(&[&str], &str); 22] = [
+    let cases: [(&[&str], &str); 29] = [
         (&["--page", "A4"], "--page"),
         (&["--style", "x"], "--style"),
         (&["--level", "3"], "want 1, 2, 4"),
@@ -212,6 +213,13 @@ fn wrong_usage_exits_with_2() {
         (&["--crop", "10,10,5,20"], "west beyond its east"),
         (&["--wide"], "--method toward-away"),
         (&["--share", "edge"], "--method adjacency"),
+        (&["--min-jump", "-0.1"], "want a share of the distance, 0 or more"),
+        (&["--min-jump", "2%"], "want a share of the distance, 0 or more"),
+        (&["--min-gap", "-3px"], "want pixels, from 0 to 1000, as 3px"),
+        (&["--min-gap", "nan"], "want pixels, from 0 to 1000, as 3px"),
+        (&["--min-gap", ".4mm"], "no millimetres yet; want pixels, as 3px"),
+        (&["--min-gap", "3px", "--method", "toward-away"], "--min-gap: goes with contours only"),
+        (&["--min-jump", "0", "--method", "adjacency"], "--min-jump: goes with contours only"),
         (&["--eye", "0,0,+10"], "no ground"),
         (&["--eye", "99999999,0,10"], "cells from the DEM"),
     ];

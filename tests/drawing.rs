@@ -83,7 +83,7 @@ fn every_kind_of_line_stands_in_a_layer() {
     let point = |x: f64| {
         let (place, depth) = (DVec2::new(x, 10.0), 0.01);
         let world = seen.unproject(place, depth.into());
-        ChainPoint { place, line: Line::Own, depth, behind: 0.0, world, crowd: 0 }
+        ChainPoint { place, line: Line::Own, depth, behind: 0.0, world, crowd: 0, weight: 1.0 }
     };
     let layer_of = |line: Line| {
         let points = [10.0, 20.0].map(|x| ChainPoint { line, ..point(x) }).to_vec();
@@ -98,6 +98,40 @@ fn every_kind_of_line_stands_in_a_layer() {
     ] {
         assert!(kinds.iter().all(|line| layer_of(*line) == [layer]), "{layer}: {kinds:?}");
     }
+}
+
+/// Widths of the strokes of a chain with what lies behind its points and their weights, 10 px apart at depth 0.01.
+fn strokes_of(points: &[(f32, f32)], closed: bool) -> Vec<Vec<f64>> {
+    let (seen, _) = ridge(80);
+    let point = |(x, &(behind, weight)): (f64, &(f32, f32))| {
+        let place = DVec2::new(10.0 * x, 10.0);
+        let world = seen.unproject(place, 0.01);
+        ChainPoint { place, line: Line::Occluding, depth: 0.01, behind, world, crowd: 0, weight }
+    };
+    let points = (0..).map(f64::from).zip(points).map(point).collect();
+    let chains = vec![Chain { id: None, points, closed }];
+    let lines = Lines { width: 100, height: 80, chains, recession: Recession::of([0.01].into_iter()) };
+    let layers = draw(&lines, &Style::for_page(100)).layers;
+    let strokes = layers.iter().flat_map(|layer| &layer.strokes);
+    strokes.map(|stroke| stroke.points.iter().map(|point| point.width).collect()).collect()
+}
+
+#[test]
+fn strokes_end_where_lines_have_no_weight() {
+    let strokes = |weights: &[f32], closed| strokes_of(&weights.iter().map(|&w| (0.0, w)).collect::<Vec<_>>(), closed);
+    assert_eq!(strokes(&[1.0, 0.5, 1.0], false), [[1.0, 0.5, 1.0]], "weights are widths");
+    let cut = strokes(&[0.0, 0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.5], false);
+    assert_eq!(cut, [vec![0.0, 1.0, 0.0, 1.0, 0.0], vec![0.0, 0.5]]);
+    assert_eq!(strokes(&[1.0, 1.0, 0.0, 0.0], true), [[0.0, 1.0, 1.0, 0.0]], "across the seam of a closed line");
+    assert!(strokes(&[0.0; 3], false).is_empty() && strokes(&[0.0; 3], true).is_empty());
+    assert_eq!(strokes(&[0.5, 1.0, 1.0], true), [[0.5, 1.0, 1.0]]);
+}
+
+#[test]
+fn jumps_thicken_lines() {
+    let width = |behind: f32| strokes_of(&[(behind, 1.0), (behind, 1.0)], false)[0][0];
+    let widths = [0.01, 0.0099, 0.009, 0.005, 0.0].map(width);
+    assert!(widths.windows(2).all(|pair| pair[0] < pair[1]) && widths[4] == 1.0 && widths[0] > 0.5, "{widths:?}");
 }
 
 /// The page of one layer in black on white, gray values by row and column.

@@ -26,11 +26,11 @@ use crate::files::Taken;
 use crate::geo::Reading;
 use crate::gpu::Gpu;
 use crate::ink::{self, Drawing, Style};
-use crate::line::Lines;
+use crate::line::{Chain, Economy, Lines, Strays};
 use crate::measure::figures::DrawnLevel;
 use crate::plan::detail::ERROR_PX;
 use crate::plan::left_out::LeftOut;
-use crate::plan::{Border, Detail, Frame, Method, Plan, Share};
+use crate::plan::{Border, Curves, Detail, Frame, Method, Plan, Share};
 use crate::render::{Page, PassTime, Renderer};
 use crate::surface::Surface;
 use crate::view::Perspective;
@@ -93,6 +93,25 @@ pub struct DrawArguments {
     #[arg(long, value_parser = choices::border(), default_value = choices::default_border(), help_heading = "Method")]
     border: Border,
 
+    #[arg(
+        long, value_name = "X", value_parser = values::min_jump, allow_hyphen_values = true, help_heading = "Style",
+        help = format!(
+            "Leave lines out where what lies behind is less than this share farther than they are; from twice that on they are \
+             whole. 0 draws all [default: {}]",
+            Economy::MIN_JUMP
+        )
+    )]
+    min_jump: Option<f64>,
+    #[arg(
+        long, value_name = "3px", value_parser = values::min_gap, allow_hyphen_values = true, help_heading = "Style",
+        help = format!(
+            "Of two lines nearer to each other than this the weaker fades, by kind, jump and length; the skyline never does. In \
+             pixels, 0 leaves all lines [default: {}px on a page {}px wide, and in proportion]",
+            Economy::MIN_GAP, Economy::WIDTH
+        )
+    )]
+    min_gap: Option<f64>,
+
     /// Say at which levels parts of the DEM are drawn, what the frame did without, why, and what that saved
     #[arg(long)]
     explain: bool,
@@ -111,6 +130,7 @@ struct Report {
     level: DrawnLevel,
     facets: u64,
     inked: usize,
+    chains: Option<ChainsReport>,
     covered: u64,
     longest_walk: u32,
     pieces: usize,
@@ -123,6 +143,15 @@ struct Report {
     view: ViewReport,
     flat_earth: Option<FlatEarth>,
     left_out: Vec<LeftOutReport>,
+}
+
+/// The chains of contours that were found, and where they and the mask do not tell of the same lines.
+#[derive(Serialize)]
+struct ChainsReport {
+    count: usize,
+    length_px: f64,
+    without_ink_px: usize,
+    ink_without_chain_px: usize,
 }
 
 /// What was drawn, and what became of the files on the way.
@@ -174,7 +203,8 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     let page = renderer.page(&plan, &view.camera, |share| talk.progress("drawing", 0.3 + 0.3 * share))?;
     cache.discard_damaged(surface.dem(), &|message| talk.warn(&told(message)));
     let mut drawn = Drawn { renderer: &mut renderer, view: &view, page };
-    let drawing = drawn.stroked();
+    let economy = arguments.economy(view.camera.width)?;
+    let drawing = drawn.stroked(economy.as_ref());
     let report = outputs.want_report().then(|| arguments.report(&mut drawn, talk)).transpose()?;
     if arguments.explain || talk.is_verbose() {
         explain(talk, &drawn.page.frame, &surface, report.as_ref())?;
@@ -201,7 +231,10 @@ impl DrawArguments {
         let (method, detail) = (self.method()?, self.detail()?);
         self.view.check()?;
         self.outputs.check()?;
-        Ok(Plan::new(detail, method, self.border))
+        self.economy(1)?;
+        // Strokes of the walk's mask are contours.
+        let curves = if method == Method::Walk { Curves::On } else { Curves::Off };
+        Ok(Plan { curves, ..Plan::new(detail, method, self.border) })
     }
 
     /// Reads the DEM and finds its normals.
@@ -271,6 +304,17 @@ impl DrawArguments {
         })
     }
 
+    /// How sparing lines are on a page `width` pixels wide; `None` where strokes are traced from the mask.
+    fn economy(&self, width: u32) -> Result<Option<Economy>> {
+        if matches!(self.method, Method::TowardAway { .. } | Method::Adjacency { .. }) {
+            let given = self.min_jump.map(|_| Setting::MinJump).or(self.min_gap.map(|_| Setting::MinGap));
+            let refuse = |setting| Error::setting(setting, "goes with contours only", "leave out --method");
+            return given.map_or(Ok(None), |setting| Err(refuse(setting)));
+        }
+        let Economy { min_jump, min_gap } = Economy::for_page(width);
+        Ok(Some(Economy { min_jump: self.min_jump.unwrap_or(min_jump), min_gap: self.min_gap.unwrap_or(min_gap) }))
+    }
+
     /// Times more frames and says what was done.
     fn report(&self, drawn: &mut Drawn, talk: &Talk) -> Result<Report> {
         talk.progress("timing more frames", 0.6);
@@ -289,6 +333,7 @@ impl DrawArguments {
             level: self.detail()?.into(),
             facets: page.frame.facets(&surface),
             inked: page.marks.inked(),
+            chains: plan.has_curves().then(|| ChainsReport::of(page)),
             covered: page.covered,
             longest_walk: page.longest_walk,
             pieces,
@@ -320,11 +365,16 @@ impl DrawArguments {
 }
 
 impl Drawn<'_> {
-    /// The drawing of the page.
-    fn stroked(&self) -> Drawing {
-        let style = Style::for_page(self.page.marks.width);
+    /// The drawing of the page: of contours as sparingly as is asked, or traced from the mask.
+    fn stroked(&self, economy: Option<&Economy>) -> Drawing {
+        let Page { marks, chains, .. } = &self.page;
+        let style = Style::for_page(marks.width);
         let perspective = Perspective::new(&self.view.camera, self.renderer.near());
-        ink::draw(&Lines::of(&self.page.marks, &perspective, style.tolerance), &style)
+        let lines = match economy {
+            Some(economy) => Lines::sparing(chains, [marks.width, marks.height], economy),
+            None => Lines::of(marks, &perspective, style.tolerance),
+        };
+        ink::draw(&lines, &style)
     }
 
     /// Where the DEM lies on Earth.
@@ -350,6 +400,18 @@ fn explain(talk: &Talk, frame: &Frame, surface: &Surface, report: Option<&Report
 impl LeftOutReport {
     fn of(LeftOut { what, why, saved }: LeftOut) -> Self {
         Self { what, why: told(&why), saved }
+    }
+}
+
+impl ChainsReport {
+    fn of(page: &Page) -> Self {
+        let strays = Strays::of(&page.chains, &page.marks);
+        Self {
+            count: page.chains.len(),
+            length_px: page.chains.iter().flat_map(Chain::pairs).map(|[a, b]| a.place.distance(b.place)).sum(),
+            without_ink_px: strays.chains,
+            ink_without_chain_px: strays.ink,
+        }
     }
 }
 

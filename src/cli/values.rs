@@ -56,6 +56,9 @@ pub struct Size {
 /// Deviations that make sense: below, facets fill the memory; above, nothing is left of the land.
 const ERRORS_PX: RangeInclusive<f64> = 0.01..=100.0;
 
+/// A gap this wide leaves little but the skyline.
+const MOST_GAP_PX: f64 = 1000.0;
+
 /// Bytes in units of 1024, as `1GiB`.
 pub fn bytes(text: &str) -> Result<u64, String> {
     const UNITS: [&str; 5] = ["B", "KiB", "MiB", "GiB", "TiB"];
@@ -230,6 +233,21 @@ pub fn level_choice(text: &str) -> Result<LevelChoice, String> {
 /// Largest deviation of facets on the page.
 pub fn error_px(text: &str) -> Result<f64, String> {
     number(text).ok().filter(|px| ERRORS_PX.contains(px)).ok_or_else(|| "want pixels, from 0.01 to 100".into())
+}
+
+/// Least step in depth, as a share of the distance.
+pub fn min_jump(text: &str) -> Result<f64, String> {
+    let jump = number(text).ok().filter(|jump| *jump >= 0.0);
+    jump.ok_or_else(|| "want a share of the distance, 0 or more, as 0.02 for 2 %".into())
+}
+
+/// Pixels between lines, as `3px` or `3`.
+pub fn min_gap(text: &str) -> Result<f64, String> {
+    if text.ends_with("mm") {
+        return Err("pages have no millimetres yet; want pixels, as 3px".into());
+    }
+    let gap = number(text.strip_suffix("px").unwrap_or(text)).ok().filter(|gap| (0.0..=MOST_GAP_PX).contains(gap));
+    gap.ok_or_else(|| format!("want pixels, from 0 to {MOST_GAP_PX}, as 3px"))
 }
 
 /// A level of truth.

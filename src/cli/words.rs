@@ -44,6 +44,8 @@ pub fn flag(setting: Setting) -> &'static str {
         Setting::Mask => "--mask",
         Setting::Memory => "--memory",
         Setting::Methods => "--methods",
+        Setting::MinGap => "--min-gap",
+        Setting::MinJump => "--min-jump",
         Setting::Nodata => "--nodata",
         Setting::North => "--north",
         Setting::Order => "--order",

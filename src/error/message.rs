@@ -90,6 +90,10 @@ settings! {
     Memory = "memory",
     /// Several methods.
     Methods = "methods",
+    /// How near to each other lines may be.
+    MinGap = "min gap",
+    /// How much farther what lies behind a line must be.
+    MinJump = "min jump",
     /// Numbers that are no data.
     Nodata = "nodata",
     /// What azimuths are counted from.

@@ -1,7 +1,8 @@
 //! The drawing as data: a page with layers, a layer with a pen and strokes.
 //!
-//! [`draw`] gives chains the width of ink drawings: lines thin with distance, and where many crowd together, so that
-//! far hills do not clot.
+//! [`draw`] gives chains the width of ink drawings: lines thin with distance, and where little lies between them and what is
+//! behind. So that far hills do not clot, traced lines thin where many crowd together, and contours by the weight that
+//! [economy](crate::line::economy) leaves them.
 
 use glam::DVec2;
 
@@ -9,6 +10,9 @@ use crate::line::{Chain, ChainPoint, Line, Lines, Recession};
 
 /// Ink about a point, in px, up to which nothing is thinned: two lines side by side.
 const ROOM: f64 = 18.0;
+
+/// Width of a line with nothing but the same slope behind it, as a share of one against the sky.
+const FLAT: f64 = 0.6;
 
 /// Names of layers.
 const BORDER: &str = "border";
@@ -104,7 +108,7 @@ pub struct Stroke {
 pub struct StrokePoint {
     /// Pixels from the page's top left corner, x right, y down.
     pub place: DVec2,
-    /// Width here as a share of the pen's, above 0 to 1.
+    /// Width here as a share of the pen's, 0 to 1; 0 at an end that runs out.
     pub width: f64,
 }
 
@@ -115,7 +119,7 @@ pub fn draw(lines: &Lines, style: &Style) -> Drawing {
     let of = |name: &str| {
         let chains = lines.chains.iter().filter(|chain| layer(chain.line()) == name);
         let drawn = chains.filter(|chain| style.dots || chain.points.len() > 1);
-        drawn.map(|chain| stroke(chain, style, &lines.recession)).collect()
+        drawn.flat_map(|chain| strokes(chain, style, &lines.recession)).collect()
     };
     let layers = style.layers().map(|(name, pen)| Layer { name: name.to_owned(), pen, strokes: of(name) });
     Drawing {
@@ -135,12 +139,25 @@ fn layer(line: Line) -> &'static str {
     }
 }
 
-/// The stroke of a chain. Widths recede with depth and where the page is crowded with ink.
-fn stroke(chain: &Chain, style: &Style, recession: &Recession) -> Stroke {
+/// The strokes of a chain: cut where it has no weight. Widths recede with depth, where the page is crowded with ink, and
+/// where little lies behind.
+fn strokes(chain: &Chain, style: &Style, recession: &Recession) -> Vec<Stroke> {
     let width = |point: &ChainPoint| {
         let receding = 1.0 - (1.0 - style.far_width) * recession.share(point);
-        (receding * (ROOM / f64::from(point.crowd.max(1))).sqrt().min(1.0)).max(style.far_width)
+        let roomy = (receding * (ROOM / f64::from(point.crowd.max(1))).sqrt().min(1.0)).max(style.far_width);
+        roomy * f64::from(point.weight) * (FLAT + (1.0 - FLAT) * point.relief().sqrt())
     };
-    let points = chain.points.iter().map(|point| StrokePoint { place: point.place, width: width(point) });
-    Stroke { points: points.collect(), closed: chain.closed }
+    let point = |point: &ChainPoint| StrokePoint { place: point.place, width: width(point) };
+    let mut points: Vec<StrokePoint> = chain.points.iter().map(point).collect();
+    let Some(first) = points.iter().position(|point| point.width == 0.0) else {
+        return vec![Stroke { points, closed: chain.closed }];
+    };
+    if chain.closed {
+        points.rotate_left(first);
+        points.push(points[0]);
+    }
+    // Strokes run out to points without width; between two of those there is nothing.
+    let pieces = points.chunk_by(|a, b| a.width > 0.0 || b.width > 0.0);
+    let drawn = pieces.filter(|piece| piece.len() > 1);
+    drawn.map(|piece| Stroke { points: piece.to_vec(), closed: false }).collect()
 }

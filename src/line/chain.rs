@@ -40,12 +40,34 @@ pub struct ChainPoint {
     pub world: DVec3,
     /// Pixels of ink in the square of 9 x 9 about it; 0 where none were [counted](super::crowded).
     pub crowd: u32,
+    /// How strongly it is drawn, 0 to 1, from here halfway to the points before and after: 1 until [economy](super::economy)
+    /// lowers it.
+    pub weight: f32,
 }
 
 impl ChainPoint {
     /// The point at a place on the page, by its depth.
     pub(super) fn seen(place: DVec2, line: Line, depth: f32, perspective: &Perspective) -> Self {
-        Self { place, line, depth, behind: 0.0, world: perspective.unproject(place, depth.into()), crowd: 0 }
+        Self {
+            place,
+            line,
+            depth,
+            behind: 0.0,
+            world: perspective.unproject(place, depth.into()),
+            crowd: 0,
+            weight: 1.0,
+        }
+    }
+
+    /// How much farther lies what is behind, as a share of the distance; infinite for sky.
+    pub fn jump(&self) -> f64 {
+        f64::from(self.depth) / f64::from(self.behind) - 1.0
+    }
+
+    /// The share of the way to what is behind that lies beyond the point, 0 to 1: about the jump where that is small, 1 for
+    /// sky.
+    pub fn relief(&self) -> f64 {
+        (1.0 - f64::from(self.behind) / f64::from(self.depth)).max(0.0)
     }
 
     /// ln depth, in which equal steps are equal ratios of distance; finite for sky too.
@@ -70,6 +92,14 @@ pub struct Chain {
 }
 
 impl Chain {
+    /// Every point with the next one, the last of a closed chain with the first; a lone point with itself.
+    pub fn pairs(&self) -> impl Iterator<Item = [&ChainPoint; 2]> {
+        let lone = self.points.first().filter(|_| self.points.len() == 1).map(|point| [point; 2]);
+        let closing = self.points.last().zip(self.points.first()).map(|(last, first)| [last, first]);
+        let steps = self.points.windows(2).map(|pair| [&pair[0], &pair[1]]);
+        steps.chain(closing.filter(|_| self.closed && lone.is_none())).chain(lone)
+    }
+
     /// What most of its points draw; of equals the first in the order of [`Line`].
     pub fn line(&self) -> Line {
         let mut lines: Vec<Line> = self.points.iter().map(|point| point.line).collect();

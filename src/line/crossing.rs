@@ -8,14 +8,15 @@
 //! Cost: a look at the stretches of a cell or two each; memory grows with the lines, not with the page. Does not handle:
 //! stretches that lie on one another.
 
-use std::ops::{Range, RangeInclusive};
+use std::ops::Range;
 
 use glam::DVec2;
+use rayon::prelude::*;
 
 use super::Curve;
 
-/// Side of a cell, px: a stretch is at most about a pixel long, and far slopes crowd.
-const CELL: f64 = 1.0;
+/// Width and height of a cell, px: a stretch is at most about a pixel long, and those that crowd on far slopes lie level.
+const CELL: DVec2 = DVec2::new(1.0, 0.25);
 /// A stretch is nearer where its depth is more than this share larger: what f32 leaves of it.
 const ROUNDING: f64 = 1.0e-6;
 
@@ -63,13 +64,13 @@ impl<'a> Crossings<'a> {
                 crossings.buckets(curve, stretch).for_each(|bucket| is_asked[bucket] = true);
             }
         }
-        let mut listed = Vec::new();
-        for curve in curves {
-            for s in 0..curve.stretches.len() {
-                let buckets = crossings.buckets(curve, s).filter(|&bucket| is_asked[bucket]);
-                listed.extend(buckets.map(|bucket| (bucket, Edge::new(curve, s))));
-            }
-        }
+        let of_curve = |curve: &'a Curve| {
+            let stretches = 0..curve.stretches.len();
+            let asked = |s: usize| crossings.buckets(curve, s).filter(|&bucket| is_asked[bucket]).map(move |b| (b, s));
+            let listed = stretches.flat_map(asked).map(|(bucket, s)| (bucket, Edge::new(curve, s)));
+            listed.collect::<Vec<_>>()
+        };
+        let listed: Vec<(usize, Edge)> = curves.par_iter().flat_map_iter(of_curve).collect();
         listed.iter().for_each(|&(bucket, _)| crossings.starts[bucket + 1] += 1);
         for bucket in 1..crossings.starts.len() {
             crossings.starts[bucket] += crossings.starts[bucket - 1];
@@ -99,11 +100,9 @@ impl<'a> Crossings<'a> {
     /// The buckets of the cells that a stretch may touch; none beside the page.
     fn buckets(&self, curve: &Curve, stretch: usize) -> impl Iterator<Item = usize> + use<> {
         let [a, b] = curve.ends(stretch).map(|end| end.place);
-        let cells = |a: f64, b: f64, size: f64| -> RangeInclusive<u64> {
-            // `as` takes what is left of the page to its first cell; a stretch beside it has an empty range.
-            (a.min(b) / CELL) as u64..=(a.max(b).min(size) / CELL) as u64
-        };
-        let (columns, rows) = (cells(a.x, b.x, self.page.x), cells(a.y, b.y, self.page.y));
+        let (low, high) = (a.min(b) / CELL, a.max(b).min(self.page) / CELL);
+        // `as` takes what is left of the page to its first cell; a stretch beside it has an empty range.
+        let (columns, rows) = (low.x as u64..=high.x as u64, low.y as u64..=high.y as u64);
         let mask = self.starts.len() as u64 - 2;
         let bucket = move |column: u64, row: u64| (hash(column << 32 | row) & mask) as usize;
         rows.flat_map(move |row| columns.clone().map(move |column| bucket(column, row)))

@@ -6,11 +6,14 @@
 //! needs. Chains may come from elsewhere too: [`visible::chains`] are what the eye sees of [`Curve`]s on the surface,
 //! [`project_polyline`] makes them from polylines of the world, hidden by the cover.
 
+mod along;
 pub mod chain;
+pub mod clearance;
 mod crossing;
 pub mod crowd;
 pub mod curve;
 mod doubt;
+pub mod economy;
 mod folds;
 mod graph;
 mod grid;
@@ -19,11 +22,13 @@ mod join;
 mod labels;
 pub mod link;
 pub mod marks;
+pub mod one_pixel;
 pub mod overlay;
 pub mod raster;
 pub mod recession;
 mod simplify;
 pub mod smooth;
+pub mod strays;
 mod thin;
 pub mod trace;
 pub mod visible;
@@ -31,12 +36,15 @@ pub mod visible;
 pub use chain::{Chain, ChainPoint, Id, Line};
 pub use crowd::crowded;
 pub use curve::{Bound, Curve, CurvePoint, Sight, Stretch};
+pub use economy::{Economy, economised};
 pub use link::link;
 pub use marks::{Mark, Marks};
+pub use one_pixel::one_pixel_wide;
 pub use overlay::{Cover, project_polyline};
 pub use raster::{InkRaster, Kind, Pixel};
 pub use recession::Recession;
 pub use smooth::smooth;
+pub use strays::Strays;
 pub use trace::trace;
 
 use crate::view::Perspective;
@@ -64,5 +72,12 @@ impl Lines {
             chains: crowded(&chains, marks, perspective),
             recession: Recession::of(marks.depths()),
         }
+    }
+
+    /// The lines of a page of so many pixels across and down from chains of curves, drawn as sparingly as `economy` says.
+    pub fn sparing(chains: &[Chain], [width, height]: [u32; 2], economy: &Economy) -> Self {
+        let chains = economised(chains, economy);
+        let depths = chains.iter().flat_map(|chain| &chain.points).map(|point| point.depth);
+        Self { width, height, recession: Recession::of(depths), chains }
     }
 }

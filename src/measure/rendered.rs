@@ -6,23 +6,26 @@ use std::time::Instant;
 use glam::DVec2;
 
 use super::cost::PassCost;
+use super::curves::{Curves, mask_of};
 use super::figures::{FloorFigures, PassFigures, Run};
 use super::floors::Floors;
 use super::trial::{Draws, Trial, Yield};
 use super::{Floor, costs, memory};
 use crate::error::Result;
 use crate::gpu::Gpu;
-use crate::line::{Chain, InkRaster, Kind, Marks, Pixel, trace};
-use crate::plan::{Method, Plan};
+use crate::line::{Chain, Kind, Mark, Marks, trace};
+use crate::plan::{Method, Plan, Yields};
 use crate::render::{PassTime, Renderer};
 use crate::surface::Surface;
-use crate::truth::{Inked, Mask};
+use crate::truth::Mask;
 use crate::view::{Camera, Perspective};
 
-/// A renderer that draws by a method.
-struct Rendered {
+/// A renderer that draws by a method which yields a `Y`.
+struct Rendered<Y> {
     renderer: Renderer,
     plan: Plan,
+    /// Brings back what a frame yields.
+    read: fn(&mut Renderer, &Plan, Perspective) -> Result<Y>,
     /// Of the last frame.
     perspective: Perspective,
     /// Whether a bare copy and a depth draw are timed in turn with the warm frames.
@@ -32,7 +35,7 @@ struct Rendered {
 
 /// The ink of a frame.
 struct Ink {
-    raster: InkRaster,
+    marks: Marks,
     perspective: Perspective,
     method: Method,
 }
@@ -53,27 +56,40 @@ pub(super) fn try_plan(
     let mut renderer = Renderer::new(gpu.clone(), surface.clone())?;
     renderer.prepare(&plan, trial.camera)?;
     let setup_ms = start.elapsed().as_secs_f64() * 1e3;
-    let mut rendered = Rendered {
-        perspective: Perspective::new(trial.camera, renderer.near()),
-        renderer,
-        plan,
-        wants_floor: floor,
-        floor: None,
-    };
-    trial.run(&mut rendered, setup_ms)
+    let perspective = Perspective::new(trial.camera, renderer.near());
+    match plan.method.entry().yields {
+        Yields::Ink => {
+            let mut rendered = Rendered { perspective, renderer, plan, read: ink, wants_floor: floor, floor: None };
+            trial.run(&mut rendered, setup_ms)
+        }
+        Yields::Curves => {
+            let mut rendered = Rendered { perspective, renderer, plan, read: curves, wants_floor: floor, floor: None };
+            trial.run(&mut rendered, setup_ms)
+        }
+    }
 }
 
-impl Draws for Rendered {
-    type Yield = Ink;
+/// The ink of the last frame.
+fn ink(renderer: &mut Renderer, plan: &Plan, perspective: Perspective) -> Result<Ink> {
+    let marks = Marks::from(&renderer.read()?.raster);
+    Ok(Ink { marks, perspective, method: plan.method })
+}
+
+/// The curves of the last frame.
+fn curves(renderer: &mut Renderer, _: &Plan, perspective: Perspective) -> Result<Curves> {
+    Ok(Curves::new(renderer.chains()?, &perspective))
+}
+
+impl<Y: Yield> Draws for Rendered<Y> {
+    type Yield = Y;
 
     fn time_of_frame(&mut self, camera: &Camera) -> Result<f64> {
         self.perspective = Perspective::new(camera, self.renderer.near());
         self.renderer.time_of_frame(&self.plan, camera)
     }
 
-    fn yielded(&mut self) -> Result<Ink> {
-        let raster = self.renderer.read()?.raster;
-        Ok(Ink { raster, perspective: self.perspective, method: self.plan.method })
+    fn yielded(&mut self) -> Result<Y> {
+        (self.read)(&mut self.renderer, &self.plan, self.perspective)
     }
 
     fn passes(&mut self, camera: &Camera) -> Result<Vec<PassFigures>> {
@@ -107,14 +123,11 @@ impl Draws for Rendered {
 
 impl Yield for Ink {
     fn mask(&self) -> Mask {
-        let near = self.perspective.near();
-        let inked = |([column, row], pixel): ([u32; 2], &Pixel)| Inked { column, row, distance: pixel.distance(near) };
-        let inked = pixels(&self.raster).filter(|(_, pixel)| pixel.is_ink()).map(inked).collect();
-        Mask { size: [self.raster.width, self.raster.height], inked }
+        mask_of(&self.marks, self.perspective.near())
     }
 
     fn chains(&self) -> Vec<Chain> {
-        trace(&Marks::from(&self.raster), &self.perspective)
+        trace(&self.marks, &self.perspective)
     }
 
     /// Border lines have none.
@@ -122,10 +135,8 @@ impl Yield for Ink {
         if !self.method.entry().sub_pixel {
             return Vec::new();
         }
-        let silhouette = pixels(&self.raster).filter(|(_, pixel)| pixel.kind() == Kind::Silhouette);
-        let place = |([column, row], pixel): ([u32; 2], &Pixel)| {
-            DVec2::new(f64::from(column), f64::from(row)) + 0.5 + pixel.place()
-        };
+        let silhouette = self.marks.ink().filter(|mark| mark.pixel.kind() == Kind::Silhouette);
+        let place = |mark: &Mark| DVec2::new(f64::from(mark.column), f64::from(mark.row)) + 0.5 + mark.pixel.place();
         silhouette.map(place).collect()
     }
 }
@@ -135,9 +146,4 @@ fn figures(PassTime { name, ms }: PassTime, costs: &[PassCost]) -> PassFigures {
     let cost = costs.iter().find(|cost| cost.name == name);
     let (bytes, operations) = cost.map_or((0, 0), |cost| (cost.bytes(), cost.operations));
     PassFigures { name, ms, bytes, operations }
-}
-
-/// Pixels with their column and row.
-fn pixels(raster: &InkRaster) -> impl Iterator<Item = ([u32; 2], &Pixel)> {
-    (0..).zip(&raster.pixels).map(|(i, pixel): (u32, _)| ([i % raster.width, i / raster.width], pixel))
 }

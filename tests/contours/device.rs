@@ -6,8 +6,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3, Vec3};
 use hachure::gpu::Gpu;
-use hachure::gpu::sizes::LIST_HEADER;
-use hachure::gpu::uniforms::{Segment, code};
+use hachure::gpu::uniforms::{Segment, Tally, code};
 use hachure::line::{Bound, Curve};
 use hachure::plan::{Border, Curves, Detail, Method, Plan, Thrift};
 use hachure::surface::lattice::CHUNK_FACETS;
@@ -54,9 +53,9 @@ pub fn name(segment: &Segment, lattice: &Lattice) -> Name {
 
 /// The list as the device left it.
 pub fn segments(renderer: &Planned) -> Vec<Segment> {
-    let (gpu, list) = (renderer.gpu(), renderer.buffer("segments"));
-    let count: Vec<u32> = gpu.read(&list, 1).expect("a count");
-    gpu.read_from(&list, LIST_HEADER, count[0] as usize).expect("a list")
+    let gpu = renderer.gpu();
+    let tally: Vec<Tally> = gpu.read(&renderer.buffer("tally"), 1).expect("a tally");
+    gpu.read(&renderer.buffer("segments"), tally[0].segments as usize).expect("a list")
 }
 
 /// Pieces by their names.

@@ -19,7 +19,7 @@ const HEIGHTS: [&str; 7] = ["+0", "+2", "+300", "450", "0", "-9000", "1e7"];
 fn flag(random: &mut Random) -> String {
     let number = |random: &mut Random| pick(random, &NUMBERS);
     let place = |random: &mut Random| format!("{},{}", pick(random, &EAST), pick(random, &NORTH));
-    match random.below(26) {
+    match random.below(28) {
         0..3 => format!("--eye {},{}", place(random), pick(random, &HEIGHTS)),
         3 => format!("--eye {},{},{}", number(random), number(random), number(random)),
         4 => format!("--eye {},+20 --look-at {}", place(random), place(random)),
@@ -42,7 +42,9 @@ fn flag(random: &mut Random) -> String {
         21 => format!("--memory {}", pick(random, &["1B", "1KiB", "1MiB", "1TiB", "0B", "9e9TiB", "-1B"])),
         22 => format!("--method {}", pick(random, &["walk", "toward-away --wide", "adjacency --share corner", "none"])),
         23 => format!("--border {}", pick(random, &["on", "off", "maybe"])),
-        24 => format!(
+        24 => format!("--min-jump {}", number(random)),
+        25 => format!("--min-gap {}{}", number(random), pick(random, &["", "px", "mm", " px"])),
+        26 => format!(
             "--size {}",
             pick(random, &["1x1", "1x300", "300x1", "65536x1", "64x48", "0x0", "-1x5", "65537x65537"])
         ),
