@@ -5,5 +5,6 @@ mod closed;
 mod cusps;
 mod device;
 mod linked;
+mod seen;
 mod topology;
 pub mod twin;
