@@ -43,6 +43,7 @@ mod names;
 mod north;
 mod nothing;
 mod one_renderer;
+mod open_hills;
 mod overwritten;
 mod page_curves;
 mod pieces;
