@@ -4,8 +4,10 @@ use std::{env, error::Error, fs::File, io::BufWriter, sync::Arc};
 
 use hachure::geo::{ReadOptions, read};
 use hachure::gpu::{AdapterChoice, Gpu, Int64};
-use hachure::view::{Fixed, Perspective, choose};
-use hachure::{ink, line::Lines, plan::Plan, render::Renderer, surface::Surface};
+use hachure::line::{Economy, Lines};
+use hachure::plan::{Curves, Plan};
+use hachure::view::{Fixed, choose};
+use hachure::{ink, render::Renderer, surface::Surface};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let [dem, picture] = [1, 2].map(|i| env::args().nth(i));
@@ -14,9 +16,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let camera = choose(surface.dem(), Fixed::default(), 60.0, 1200, 600)?;
     let gpu = Arc::new(Gpu::open(&AdapterChoice::Best, Int64::IfPresent)?);
     let mut renderer = Renderer::new(gpu, surface)?;
-    let page = renderer.page(&Plan::default(), &camera, |_| ())?;
-    let style = ink::Style::for_page(1200);
-    let lines = Lines::of(&page.marks, &Perspective::new(&camera, renderer.near()), style.tolerance);
-    let drawing = ink::draw(&lines, &style);
+    let plan = Plan { curves: Curves::On, ..Plan::default() };
+    let page = renderer.page(&plan, &camera, |_| ())?;
+    let lines = Lines::sparing(&page.chains, [1200, 600], &Economy::for_page(1200));
+    let drawing = ink::draw(&lines, &ink::Style::for_page(1200));
     Ok(ink::write_png(&drawing, BufWriter::new(File::create(picture)?))?)
 }

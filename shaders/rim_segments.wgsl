@@ -8,24 +8,47 @@ struct RimEdge {
 
 @group(0) @binding(20) var<storage, read> turns: array<f32>;
 @group(0) @binding(21) var<storage, read> turning: array<u32>;
-@group(0) @binding(23) var<storage, read> rim: array<RimEdge>;
+@group(0) @binding(25) var<storage, read> rim: array<RimEdge>;
 
 // The value at a vertex of a chunk; where no contour may run, that of its facets.
 fn turn_of(slot: u32, column_row: vec2<u32>, facet: u32) -> f32 {
-    if turning[slot] != BOTH {
+    if (turning[slot] & BOTH) != BOTH {
         return select(1.0, -1.0, is_away(facet));
     }
     let number = (slot - batch.first_slot) * CHUNK_VERTICES;
     return turns[number + column_row.y * CHUNK_SIDE + column_row.x];
 }
 
-// The edge of a facet between two vertices of its chunk, where it faces the eye; `turned`: the facet lies on its right.
-fn list_edge(slot: u32, id: u32, from_vertex: vec2<u32>, to_vertex: vec2<u32>, turned: bool) {
+// Whether a facet has an edge from one lattice vertex to another, counter-clockwise.
+fn has_edge(f: Facet, p: vec2<u32>, q: vec2<u32>) -> bool {
+    let starts = vec3<bool>(all(f.a == p), all(f.b == p), all(f.c == p));
+    return any(starts & vec3<bool>(all(f.b == q), all(f.c == q), all(f.a == q)));
+}
+
+// The facet of a chunk on the left of the way from one lattice vertex to another: that half of a quad or, where it has
+// collapsed beside a coarser chunk, the one about there that has its edge now.
+fn facet_along(slot: u32, quad: vec2<u32>, half: u32, p: vec2<u32>, q: vec2<u32>) -> u32 {
+    let chunk = chunks[slot];
+    for (var k = 0u; k < 18u && is_collapsed(chunk_facet(chunk, quad, half)); k++) {
+        let near = vec2<i32>(quad) + vec2<i32>(i32(k % 3u), i32(k / 3u % 3u)) - 1;
+        if all(near >= vec2<i32>(0)) && all(near < vec2<i32>(i32(CHUNK_QUADS))) {
+            let f = chunk_facet(chunk, vec2<u32>(near), k / 9u);
+            if !is_collapsed(f) && has_edge(f, p, q) {
+                return slot * CHUNK_FACETS + quad_local(vec2<u32>(near)) + k / 9u;
+            }
+        }
+    }
+    return slot * CHUNK_FACETS + quad_local(quad) + half;
+}
+
+// The edge of half a quad between two vertices of its chunk, where it faces the eye; `turned`: the facet lies on its right.
+fn list_edge(slot: u32, quad: vec2<u32>, half: u32, from_vertex: vec2<u32>, to_vertex: vec2<u32>, turned: bool) {
     let chunk = chunks[slot];
     let vertex_p = shared_vertex(chunk.coarser, select(from_vertex, to_vertex, turned));
     let vertex_q = shared_vertex(chunk.coarser, select(to_vertex, from_vertex, turned));
     let at_p = chunk.origin + vertex_p * chunk.step;
     let at_q = chunk.origin + vertex_q * chunk.step;
+    let id = facet_along(slot, quad, half, at_p, at_q);
     let g_p = turn_of(slot, vertex_p, id);
     let g_q = turn_of(slot, vertex_q, id);
     if all(at_p == at_q) || (g_p <= 0.0 && g_q <= 0.0) {
@@ -73,10 +96,9 @@ fn list_part(edge: RimEdge, at: vec2<u32>, along: vec2<u32>) -> u32 {
     if slot >= batch.first_slot && slot - batch.first_slot < BATCH_CHUNKS && slot < camera.seen && in_view(bounds_of(slot)) {
         let vertex = from_origin / chunk.step;
         let quad = vertex - select(vec2<u32>(0u), vec2<u32>(1u), vec2<bool>(left, above));
-        let id = slot * CHUNK_FACETS + quad_local(quad) + edge.half;
         // Half 1 lies below an edge to the east and before one to the south, but to the left of a diagonal.
         let turned = (edge.half == 1u) != (edge.direction == 2u);
-        list_edge(slot, id, vertex, vertex + along, turned);
+        list_edge(slot, quad, edge.half, vertex, vertex + along, turned);
     }
     return chunk.step;
 }

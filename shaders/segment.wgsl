@@ -11,13 +11,7 @@ struct Segment {
     code: u32,              // which line of the facet, and which part of it
     outward: vec2<f32>,     // on the page, from the surface to what lies behind
     pixel: u32,             // of its middle, in what is drawn: column, and row in the high half
-    sight: u32,             // FREE, HIDDEN or in doubt
-}
-
-// A list of them: how many there are, and as many as there is room for.
-struct Segments {
-    count: atomic<u32>,
-    list: array<Segment>,
+    sight: u32,             // FREE, HIDDEN, in doubt or NOT_ASKED
 }
 
 // Code of a segment. Lowest two bits: corner of the facet that faces the other way, or edge of the rim.
@@ -34,12 +28,22 @@ const ENDS_TURNING: u32 = 128u;
 const PART_SHIFT: u32 = 8u;
 const MOST_PARTS: f32 = 65536.0;
 
+// What is found: nothing stands before it, something does; they differ, and so says the nearest; nobody looked.
+const FREE: u32 = 0u;
+const HIDDEN: u32 = 1u;
+const NEAREST_FREE: u32 = 2u;
+const NEAREST_HIDDEN: u32 = 3u;
+const NOT_ASKED: u32 = 4u;
+
 // How much nearer than a segment the surface about it must be for it to be certainly hidden.
 const NEARER: f32 = 1.02;
 // How steeply facing rises along the view where the surface certainly hides the segment itself.
 const CONCAVE: f32 = -0.5;
 
-@group(0) @binding(22) var<storage, read_write> out_segments: Segments;
+@group(0) @binding(22) var<storage, read_write> out_segments: array<Segment>;
+@group(0) @binding(23) var<storage, read_write> out_tally: Tally;
+// Which of them are looked at.
+@group(0) @binding(24) var<storage, read_write> out_asked: array<u32>;
 
 // A line of a facet, eye-relative, with its ends on the lattice in walk units from the facet's vertex a.
 struct FacetLine {
@@ -70,10 +74,20 @@ fn is_buried(at: vec2<i32>, depth: f32) -> bool {
     return bitcast<f32>(farthest) > depth * NEARER;
 }
 
-fn append(segment: Segment) {
-    let n = atomicAdd(&out_segments.count, 1u);
-    if n < arrayLength(&out_segments.list) {
-        out_segments.list[n] = segment;
+// Whether a line crosses one through the centres of pixels, upright or level: there curves are looked at, at least every root
+// of two pixels.
+fn crosses_centres(p: vec2<f32>, q: vec2<f32>) -> bool {
+    return any(floor(p - 0.5) != floor(q - 0.5));
+}
+
+fn append(segment: Segment, asks: bool) {
+    let n = atomicAdd(&out_tally.segments, 1u);
+    if n >= arrayLength(&out_segments) {
+        return;
+    }
+    out_segments[n] = segment;
+    if asks {
+        out_asked[atomicAdd(&out_tally.asked, 1u)] = n;
     }
 }
 
@@ -126,6 +140,7 @@ fn list_line(line: FacetLine) {
         segment.facet = line.facet;
         segment.code = line.code | (u32(k) << PART_SHIFT) | select(0u, STARTS, starts) | select(0u, ENDS, ends);
         segment.pixel = u32(at.x) | (u32(at.y) << 16u);
-        append(segment);
+        segment.sight = NOT_ASKED;
+        append(segment, crosses_centres(mix(a, b, shares.x), mix(a, b, shares.z)));
     }
 }

@@ -1,19 +1,8 @@
-// 16 invocations a chunk through which a contour may run, one a row of quads: on each facet whose vertices do not all face
-// one way, the line along which it turns. A vertex with a value of 0 faces away. A lattice edge holds one crossing at most,
-// a facet one line: contours cannot branch.
+// One invocation a facet whose vertices do not all face one way: the line along which it turns. A lattice edge holds one crossing
+// at most, a facet one line: contours cannot branch.
 
 @group(0) @binding(20) var<storage, read> turns: array<f32>;
-@group(0) @binding(21) var<storage, read> turning: array<u32>;
-
-// Of a row of vertices which face the eye, and which are there, as bits.
-fn facing_row(first: u32) -> vec2<u32> {
-    var bits = vec2<u32>(0u);
-    for (var column = 0u; column < CHUNK_SIDE; column++) {
-        let g = turns[first + column];
-        bits |= select(vec2<u32>(0u), vec2<u32>(1u), vec2<bool>(g > 0.0, g < NO_HEIGHT)) << vec2<u32>(column);
-    }
-    return bits & vec2<u32>(bits.y, 0xffffffffu);
-}
+@group(0) @binding(21) var<storage, read> crossed: array<u32>;
 
 // The value at a corner of a facet that stands `from_quad` from its quad's north-west vertex.
 fn turn_at(first: u32, quad: vec2<u32>, from_quad: vec2<u32>) -> f32 {
@@ -34,13 +23,22 @@ fn crossing(p: Turn, q: Turn) -> f32 {
     return select(1.0 - share, share, p.g > 0.0);
 }
 
-fn list_facet(slot: u32, first: u32, quad: vec2<u32>, half: u32) {
-    let chunk = chunks[slot];
-    let f = chunk_facet(chunk, quad, half);
-    if is_collapsed(f) {
+@compute @workgroup_size(64)
+fn segments(@builtin(global_invocation_id) invocation: vec3<u32>) {
+    let k = invocation.y * MOST_GROUPS * 64u + invocation.x;
+    if k >= min(atomicLoad(&out_tally.crossed), arrayLength(&crossed)) {
         return;
     }
-    let id = slot * CHUNK_FACETS + quad_local(quad) + half;
+    let id = crossed[k];
+    let slot = id / CHUNK_FACETS;
+    let quad = local_quad(id % CHUNK_FACETS);
+    let half = id & 1u;
+    let chunk = chunks[slot];
+    let f = chunk_facet(chunk, quad, half);
+    if slot < batch.first_slot || slot - batch.first_slot >= BATCH_CHUNKS || is_collapsed(f) {
+        return;
+    }
+    let first = (slot - batch.first_slot) * CHUNK_VERTICES;
     let t = corners_of(chunk, f);
     let a = Turn(f.a, t.p, turn_at(first, quad, vec2<u32>(0u)));
     let b = Turn(f.b, t.p + t.edge_1, turn_at(first, quad, corner(half, 1u)));
@@ -76,28 +74,4 @@ fn list_facet(slot: u32, first: u32, quad: vec2<u32>, half: u32) {
     let fall = -dot(left, start) / max(length(left) * length(start), 1e-30);
     let code = odd | select(0u, AWAY_CORNER, is_away);
     list_line(FacetLine(id, code, fall, start, end, select(at_q, at_r, is_away), select(at_r, at_q, is_away)));
-}
-
-@compute @workgroup_size(16, 4)
-fn segments(@builtin(global_invocation_id) invocation: vec3<u32>) {
-    let slot = batch.first_slot + invocation.y;
-    if slot >= camera.seen || turning[slot] != BOTH || !in_view(bounds_of(slot)) {
-        return;
-    }
-    let first = invocation.y * CHUNK_VERTICES;
-    let row = invocation.x;
-    let north = facing_row(first + row * CHUNK_SIDE);
-    let south = facing_row(first + (row + 1u) * CHUNK_SIDE);
-    // Bit by bit the vertices of the quads of this row.
-    let nw = north;
-    let ne = north >> vec2<u32>(1u);
-    let sw = south;
-    let se = south >> vec2<u32>(1u);
-    let quads = (1u << CHUNK_QUADS) - 1u;
-    let below = ((nw.x ^ se.x) | (nw.x ^ sw.x)) & nw.y & se.y & sw.y & quads;
-    let above = ((nw.x ^ se.x) | (nw.x ^ ne.x)) & nw.y & se.y & ne.y & quads;
-    for (var left = below | (above << CHUNK_QUADS); left != 0u; left &= left - 1u) {
-        let k = firstTrailingBit(left);
-        list_facet(slot, first, vec2<u32>(k % CHUNK_QUADS, row), k / CHUNK_QUADS);
-    }
 }

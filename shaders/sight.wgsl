@@ -1,13 +1,7 @@
-// One invocation a segment of a curve: whether the eye sees it. From each of the four pixel centres about its middle nothing
-// stands before it where the pixel shows what is farther, or where the straight way on the lattice from the pixel's point
-// to the segment meets no facet that faces away and no void. Where the four differ, what the nearest says is kept. And how
-// deep lies what is behind it.
-
-// What is found: nothing stands before it, something does; they differ, and so says the nearest.
-const FREE: u32 = 0u;
-const HIDDEN: u32 = 1u;
-const NEAREST_FREE: u32 = 2u;
-const NEAREST_HIDDEN: u32 = 3u;
+// One invocation a segment of a curve that is looked at: whether the eye sees it. Seen from one of the four pixel centres
+// about its middle nothing stands before it where the pixel shows what is farther, or where the straight way on the lattice
+// from the pixel's point to the segment meets no facet that faces away and no void. Of pixels that show what is nearer one
+// is asked, and where all do another. Where they differ, what the nearest says is kept. And how deep lies what is behind it.
 
 // The segment is looked at this far off the surface, in steps of its lattice.
 const NUDGE: f32 = 0.25;
@@ -16,17 +10,22 @@ const BESIDE_LINE: f32 = 2.0;
 // What lies behind is looked for this far outwards, px.
 const OUTWARD: f32 = 1.2;
 
-// Whether the surface in a pixel stands before a point on the lattice, at a depth.
-fn stands_before(at: vec2<i32>, place: vec2<i32>, depth: f32, reach: f32) -> bool {
-    let p = pixels[pixel_index(at)];
-    if p.x == 0u || bitcast<f32>(p.y) <= depth {
-        return false;
-    }
-    if is_away(p.x - 1u) {
+// Whether the surface in a pixel lies nearer than a depth.
+fn is_nearer(at: vec2<i32>, depth: f32) -> bool {
+    return on_page(at) && bitcast<f32>(pixels[pixel_index(at)].y) > depth;
+}
+
+// Whether the surface in a pixel, nearer than a line, is another one than that which bears the line: `reach` is how near to its
+// place on the lattice facets may face away.
+fn hides(at: vec2<i32>, place: vec2<i32>, reach: f32) -> bool {
+    let id = pixels[pixel_index(at)].x - 1u;
+    if is_away(id) {
         return true;
     }
-    let meeting = walk_between(facet_hit(p.x - 1u, centre_of(at)), place);
-    check_done(meeting);
+    let meeting = walk_between(facet_hit(id, centre_of(at)), place);
+    if !meeting.done {
+        atomicAdd(&out_tally.cut_short, 1u);
+    }
     if !meeting.met {
         return meeting.left_land;
     }
@@ -70,26 +69,35 @@ fn look(segment: ptr<function, Segment>) {
         let to_centre = vec2<f32>(vec2<i32>(f.a * UNITS) - place) + centre;
         place += vec2<i32>(round(to_centre * 0.25));
     }
-    let first = vec2<i32>(floor(px - 0.5));
-    let within = fract(px - 0.5);
-    let nearest = select(0, 1, within.x > 0.5) + select(0, 2, within.y > 0.5);
-    var free = 0u;
-    var hidden = 0u;
-    for (var k = 0; k < 4; k++) {
-        let at = first + vec2<i32>(k & 1, k >> 1u) - camera.origin;
-        if on_page(at) {
-            let stands = stands_before(at, place, depth, BESIDE_LINE * f32(chunk.step * UNITS));
-            let bit = 1u << u32(k);
-            free |= select(bit, 0u, stands);
-            hidden |= select(0u, bit, stands);
-        }
+    // The four pixels about it, the nearest first and its opposite last.
+    let nearest = vec2<i32>(floor(px)) - camera.origin;
+    let beyond = select(vec2<i32>(-1), vec2<i32>(1), fract(px) > vec2<f32>(0.5));
+    let opposite = nearest + beyond;
+    let across = vec2<i32>(nearest.x + beyond.x, nearest.y);
+    let along = vec2<i32>(nearest.x, nearest.y + beyond.y);
+    let nearer = vec4<bool>(
+        is_nearer(nearest, depth),
+        is_nearer(across, depth),
+        is_nearer(along, depth),
+        is_nearer(opposite, depth),
+    );
+    // One walk tells whose surface is nearer; two where all are.
+    let reach = BESIDE_LINE * f32(chunk.step * UNITS);
+    let first = select(select(select(opposite, along, nearer.z), across, nearer.y), nearest, nearer.x);
+    var hidden = vec2<bool>(false);
+    if any(nearer) {
+        hidden = vec2<bool>(hides(first, place, reach));
     }
-    let at_nearest = select(NEAREST_FREE, NEAREST_HIDDEN, ((hidden >> u32(nearest)) & 1u) == 1u);
-    (*segment).sight = select(select(at_nearest, HIDDEN, free == 0u && hidden != 0u), FREE, hidden == 0u);
+    if all(nearer) {
+        hidden.y = hides(opposite, place, reach);
+    }
+    let in_doubt = hidden.x != hidden.y || (hidden.x && !all(nearer));
+    let at_nearest = select(NEAREST_FREE, NEAREST_HIDDEN, hidden.x && nearer.x);
+    (*segment).sight = select(select(FREE, HIDDEN, hidden.x), at_nearest, in_doubt);
     // On the page: of a contour the way its normal points, of the rim away from the surface on its left.
-    let along = on_paper(camera_space((*segment).end)) - on_paper(camera_space((*segment).start));
+    let course = on_paper(camera_space((*segment).end)) - on_paper(camera_space((*segment).start));
     let of_normal = vec2<f32>(dot(normal, camera.right.xyz), -dot(normal, camera.up.xyz));
-    let outward = select(of_normal, vec2<f32>(-along.y, along.x), is_rim);
+    let outward = select(of_normal, vec2<f32>(-course.y, course.x), is_rim);
     (*segment).outward = outward / max(length(outward), 1e-30);
     (*segment).behind = depth_behind(px, (*segment).outward, depth);
 }
@@ -97,9 +105,10 @@ fn look(segment: ptr<function, Segment>) {
 @compute @workgroup_size(64)
 fn sight(@builtin(global_invocation_id) invocation: vec3<u32>) {
     let k = invocation.y * MOST_GROUPS * 64u + invocation.x;
-    if k < min(atomicLoad(&out_segments.count), arrayLength(&out_segments.list)) {
-        var segment = out_segments.list[k];
+    if k < atomicLoad(&out_tally.asked) {
+        let n = out_asked[k];
+        var segment = out_segments[n];
         look(&segment);
-        out_segments.list[k] = segment;
+        out_segments[n] = segment;
     }
 }

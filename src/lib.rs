@@ -5,18 +5,20 @@
 //! ```no_run
 //! use hachure::geo::{ReadOptions, read};
 //! use hachure::gpu::{AdapterChoice, Gpu, Int64};
-//! use hachure::view::{Fixed, Perspective, choose};
-//! use hachure::{ink, line::Lines, plan::Plan, render::Renderer, surface::Surface};
+//! use hachure::line::{Economy, Lines};
+//! use hachure::plan::{Curves, Plan};
+//! use hachure::view::{Fixed, choose};
+//! use hachure::{ink, render::Renderer, surface::Surface};
 //! use std::sync::Arc;
 //!
 //! let surface = Arc::new(Surface::new(read("dem/golden-gate.tif", &ReadOptions::default())?));
 //! let camera = choose(surface.dem(), Fixed::default(), 60.0, 1200, 600)?;
 //! let gpu = Arc::new(Gpu::open(&AdapterChoice::Best, Int64::IfPresent)?);
 //! let mut renderer = Renderer::new(gpu, surface)?;
-//! let page = renderer.page(&Plan::default(), &camera, |_| ())?;
-//! let style = ink::Style::for_page(1200);
-//! let lines = Lines::of(&page.marks, &Perspective::new(&camera, renderer.near()), style.tolerance);
-//! let drawing = ink::draw(&lines, &style);
+//! let plan = Plan { curves: Curves::On, ..Plan::default() };
+//! let page = renderer.page(&plan, &camera, |_| ())?;
+//! let lines = Lines::sparing(&page.chains, [1200, 600], &Economy::for_page(1200));
+//! let drawing = ink::draw(&lines, &ink::Style::for_page(1200));
 //! ink::write_png(&drawing, std::fs::File::create("picture.png")?)?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -31,9 +33,10 @@
 //! | plan | what is asked ([`Plan`](plan::Plan): method, level, border), a camera | [`Frame`](plan::Frame): lattice, batches, passes, what is left out | CPU |
 //! | upload | surface and frame | [`Renderer`](render::Renderer): buffers and compiled passes | what is not there yet |
 //! | frame | plan and camera | the mask, on the device: tessellate, facing, rasterize, silhouette, border | [`Renderer::frame`](render::Renderer::frame), GPU |
+//! | curves | the frame | [`Curve`](line::Curve)s on the surface: contours and rims, linked; each stretch seen or not | [`Renderer::curves`](render::Renderer::curves), GPU, CPU |
 //! | read back | the mask | [`Drawn`](render::Drawn): ink, kind, sub-pixel place and depth a pixel | [`Renderer::read`](render::Renderer::read) |
-//! | page | plan and camera | [`Page`](render::Page): the ink alone, frame and read-back for each piece of a page of any size | [`Renderer::page`](render::Renderer::page) |
-//! | line | the page | [`Lines`](line::Lines): smoothed chains on the page and in the world | [`Lines::of`](line::Lines::of), CPU |
+//! | page | plan and camera | [`Page`](render::Page): ink and visible chains, frame and read-back for each piece of a page of any size | [`Renderer::page`](render::Renderer::page) |
+//! | line | the page | [`Lines`](line::Lines): chains on the page and in the world, with weights; or traced from the ink | [`Lines::sparing`](line::Lines::sparing), [`Lines::of`](line::Lines::of), CPU |
 //! | ink | the lines | [`Drawing`](ink::Drawing): layers of strokes | [`ink::draw`], CPU |
 //! | write | the drawing | a PNG | [`ink::write_png`] |
 //! | truth | surface and camera | [`Truth`](truth::Truth): where the lines really are | [`Terrain::truth`](truth::Terrain::truth), CPU |

@@ -203,6 +203,7 @@ fn all_ink_is_silhouette_and_the_silhouette_is_ink() {
 fn recall_of(method: Method) -> Option<f64> {
     match method {
         Method::Walk | Method::TowardAway { wide: true } => Some(RECALL),
+        Method::Contour => None,
         Method::TowardAway { wide: false } => Some(RECALL_TOWARD_AWAY),
         Method::Adjacency { .. } => None,
     }

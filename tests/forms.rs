@@ -9,7 +9,7 @@
 use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
 use hachure::surface::{LatticePoint, Level, Surface};
-use hachure::truth::{Piece, Truth};
+use hachure::truth::Truth;
 use hachure::view::Camera;
 
 use crate::judged::{piece, truth};
@@ -36,6 +36,16 @@ pub struct Form {
     pub samples: usize,
     /// Metres between samples.
     pub cell: f64,
+}
+
+/// A piece of contour, at most [`TRUTH_PIECE_PX`] long on the page.
+pub struct FormPiece {
+    /// Its ends on the map, metres from the middle.
+    pub map: [DVec2; 2],
+    /// Its ends on the page, px.
+    pub ends: [DVec2; 2],
+    /// Its middle in space, metres about the middle of the form.
+    pub middle: DVec3,
 }
 
 impl Form {
@@ -76,6 +86,20 @@ impl Form {
 
     /// The visible contours on the page, and their points about the middle.
     pub fn contours(&self, camera: &Camera) -> (Truth, Vec<DVec3>) {
+        let eye = about_middle(camera.eye);
+        let on_map = |p: DVec2| p.abs().max_element() <= self.half();
+        let (mut pieces, mut points) = (Vec::new(), Vec::new());
+        for FormPiece { ends, middle, .. } in self.all_contours(camera) {
+            if self.sees(eye, middle, &on_map) {
+                pieces.push(piece(ends, camera.project(from_middle(middle)).1));
+                points.push(middle);
+            }
+        }
+        (truth([camera.width, camera.height], pieces), points)
+    }
+
+    /// All contours before the eye, seen or not.
+    pub fn all_contours(&self, camera: &Camera) -> Vec<FormPiece> {
         let (eye, half) = (about_middle(camera.eye), self.half());
         // A little beyond the DEM, and off the samples: an apex stands on a sample and has no gradient.
         let side = 2.0 * half / (MAP_CELLS - 3) as f64;
@@ -83,8 +107,7 @@ impl Form {
         let on_map = |p: DVec2| p.abs().max_element() <= half;
         let sign: Vec<Vec<bool>> =
             (0..MAP_CELLS).map(|j| (0..MAP_CELLS).map(|i| self.facing(at(i, j), eye) > 0.0).collect()).collect();
-        let mut pieces: Vec<Piece> = Vec::new();
-        let mut points = Vec::new();
+        let mut pieces = Vec::new();
         for (j, i) in (0..MAP_CELLS - 1).flat_map(|j| (0..MAP_CELLS - 1).map(move |i| (j, i))) {
             let corners = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)];
             let crossings: Vec<DVec2> = (0..4)
@@ -93,15 +116,11 @@ impl Form {
                 .map(|(a, b)| self.crossing(at(a.0, a.1), at(b.0, b.1), eye))
                 .collect();
             for pair in crossings.chunks_exact(2) {
-                self.pieces(pair[0], pair[1], camera, &mut |a, b, middle| {
-                    if on_map(middle.truncate()) && self.sees(eye, middle, &on_map) {
-                        pieces.push(piece([a, b], camera.project(from_middle(middle)).1));
-                        points.push(middle);
-                    }
-                });
+                self.pieces(pair[0], pair[1], camera, &mut pieces);
             }
         }
-        (truth([camera.width, camera.height], pieces), points)
+        pieces.retain(|piece| on_map(piece.middle.truncate()));
+        pieces
     }
 
     /// Where F changes its sign between two places, by bisection.
@@ -114,8 +133,8 @@ impl Form {
         a.midpoint(b)
     }
 
-    /// Halves a piece of contour until it is short on the page; gives its ends there and its middle in space.
-    fn pieces(&self, a: DVec2, b: DVec2, camera: &Camera, give: &mut dyn FnMut(DVec2, DVec2, DVec3)) {
+    /// Halves a piece of contour until it is short on the page.
+    fn pieces(&self, a: DVec2, b: DVec2, camera: &Camera, found: &mut Vec<FormPiece>) {
         let eye = about_middle(camera.eye);
         let middle = self.onto_contour(a.midpoint(b), (b - a).perp(), eye);
         let [pa, pb] = [a, b].map(|p| camera.project(from_middle(self.point(p))));
@@ -123,15 +142,15 @@ impl Form {
             return;
         }
         if pa.0.distance(pb.0) <= TRUTH_PIECE_PX || a.distance(b) < 1e-9 {
-            give(pa.0, pb.0, self.point(middle));
+            found.push(FormPiece { map: [a, b], ends: [pa.0, pb.0], middle: self.point(middle) });
         } else {
-            self.pieces(a, middle, camera, give);
-            self.pieces(middle, b, camera, give);
+            self.pieces(a, middle, camera, found);
+            self.pieces(middle, b, camera, found);
         }
     }
 
     /// The place with F = 0 nearest to `p` along a direction, by secants.
-    fn onto_contour(&self, p: DVec2, along: DVec2, eye: DVec3) -> DVec2 {
+    pub fn onto_contour(&self, p: DVec2, along: DVec2, eye: DVec3) -> DVec2 {
         let value = |t: f64| self.facing(p + along * t, eye);
         let (mut t0, mut t1) = (0.0, 1e-3);
         for _ in 0..8 {

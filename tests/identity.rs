@@ -105,10 +105,14 @@ fn discs(shift: f64) -> Vec<Curve> {
 #[test]
 fn chains_of_a_moved_scene_are_called_the_same() {
     let named = |chains: &[Chain]| chains.iter().map(|chain| chain.id.expect("a name")).collect::<HashSet<Id>>();
-    let before = chains(discs(0.0), PAGE);
-    let after = named(&chains(discs(0.1), PAGE));
-    let kept = before.iter().filter(|chain| chain.id.is_some_and(|id| after.contains(&id)));
     let length = |chain: &Chain| chain.points.len() as f64;
-    let share = kept.map(length).sum::<f64>() / before.iter().map(length).sum::<f64>();
-    assert!(share >= NAMES_KEPT, "{share}");
+    let before = chains(discs(0.0), PAGE);
+    let kept = |shift: f64| {
+        let after = named(&chains(discs(shift), PAGE));
+        let kept = before.iter().filter(|chain| chain.id.is_some_and(|id| after.contains(&id)));
+        kept.map(length).sum::<f64>() / before.iter().map(length).sum::<f64>()
+    };
+    let (little, far) = (kept(0.03), kept(20.0));
+    assert!(little >= NAMES_KEPT, "{little}");
+    assert!(far < 0.5, "the measure must see a change: {far}");
 }

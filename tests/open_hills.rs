@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 use hachure::geo::{ReadOptions, read};
 use hachure::ink::{Style, draw, write_png};
-use hachure::line::{Chain, Economy, InkRaster, Kind, Lines, visible};
+use hachure::line::{Chain, ChainPoint, Economy, InkRaster, Kind, Lines};
 use hachure::plan::{Border, Detail, Method, Plan};
 use hachure::render::Renderer;
 use hachure::surface::Surface;
@@ -45,8 +45,7 @@ impl Seen {
         let mut renderer = Renderer::new(gpu().clone(), surface).expect("a renderer");
         let drawn =
             renderer.draw(&Plan::new(Detail::default(), Method::Contour, Border::On), &camera).expect("a frame");
-        let curves = renderer.curves().expect("curves");
-        Self { chains: visible::chains(curves, PAGE), raster: drawn.raster }
+        Self { chains: renderer.chains().expect("chains"), raster: drawn.raster }
     }
 
     fn drawn(&self, economy: &Economy) -> Figures {
@@ -156,7 +155,7 @@ fn the_sample_stays_open_and_keeps_its_lines() {
     assert_eq!(all.missing, 0, "columns of the skyline have no line");
     // Negative controls: half of the skyline gone, a gap that leaves little.
     let mut broken = Lines::sparing(&seen.chains, PAGE, &Economy::for_page(PAGE[0]));
-    let left = |point: &&mut hachure::line::ChainPoint| point.place.x < 800.0;
+    let left = |point: &&mut ChainPoint| point.place.x < 800.0;
     broken.chains.iter_mut().flat_map(|c| &mut c.points).filter(left).for_each(|point| point.weight = 0.0);
     assert!(seen.missing(&broken) > 400, "a broken skyline is not noticed");
     let wide = Economy { min_gap: 60.0, ..Economy::for_page(PAGE[0]) };

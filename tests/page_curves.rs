@@ -7,8 +7,8 @@ use hachure::line::{Bound, Curve, CurvePoint, Sight, Stretch};
 pub const PAGE: [u32; 2] = [240, 180];
 /// Metres along the view axis at depth 1, which are as many px there.
 const NEAR: f64 = 100.0;
-/// Metres of the world in a cell of level 1.
-const CELL: f64 = 5.0;
+/// Metres of the world in a cell of level 1: no stretch is longer than one.
+const CELL: f64 = 40.0;
 
 /// The point of a curve that is seen there.
 pub fn seen(place: DVec2, depth: f64) -> CurvePoint {

@@ -91,7 +91,7 @@ fn facets(dem: &Dem, lattice: &Lattice) -> Vec<[LatticePoint; 3]> {
 }
 
 /// Whether no patch, or only one, has a piece of a lattice line between two places.
-fn on_rim(dem: &Dem, a: LatticePoint, b: LatticePoint) -> bool {
+pub fn on_rim(dem: &Dem, a: LatticePoint, b: LatticePoint) -> bool {
     // A little to either side of the middle, in thirds of a lattice unit.
     let middle = [a.x + b.x, a.y + b.y].map(|v| i64::from(v) * 3);
     let across = [i64::from(b.y) - i64::from(a.y), i64::from(a.x) - i64::from(b.x)].map(i64::signum);

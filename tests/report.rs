@@ -5,6 +5,8 @@ mod page;
 mod sample;
 
 use hachure::error::Error;
+use hachure::measure::compare::Found;
+use hachure::report::lines::lines;
 use hachure::report::results::Results;
 use hachure::report::{error_time_svg, write_csv};
 use sample::AWKWARD;
@@ -30,7 +32,7 @@ fn the_plot_is_the_same_file_every_time_and_shows_every_run() {
         assert!(svg.contains(words), "{words}");
     }
     // Each method is named once in each of two panels, and described run by run.
-    for method in ["walk", "toward-away", "toward-away-wide", "adjacency", "adjacency-corner"] {
+    for method in ["walk", "contour", "toward-away", "toward-away-wide", "adjacency", "adjacency-corner"] {
         assert_eq!(svg.matches(&format!("\n{method}, level ")).count(), 2, "{method}");
     }
     assert!(svg.contains("walk, level 8: F 1.0000 in 114.0 ms, on the Pareto front."));
@@ -98,9 +100,13 @@ fn the_csv_holds_what_the_json_holds() {
         assert_eq!(cell("min_frame_range_ms"), &run["frame_range_ms"][0].to_string());
         assert_eq!(cell("mask_hashes"), "9f86d081 60303ae2");
         let walk = run["method"] == "walk";
+        assert_eq!(cell("ids_kept").is_empty(), run["method"] != "contour");
+        for key in ["pixel_recall", "chains", "chains_px", "short_chains", "chain_precision", "chain_recall"] {
+            assert_eq!(cell(key), &run[key].to_string(), "{key}");
+        }
         assert_eq!(cell("place_mean_px").is_empty(), !walk);
         assert_eq!(cell("walk_ms").is_empty(), !walk);
-        assert_eq!(cell("silhouette_ms").is_empty(), walk);
+        assert_eq!(cell("silhouette_ms").is_empty(), walk || run["method"] == "contour");
     }
     assert!(rows.iter().any(|row| row[0] == AWKWARD));
 }
@@ -124,8 +130,20 @@ fn the_columns_of_the_csv_stand_in_the_order_of_the_fields() {
     let (names, _) = table(&sample());
     let place = |name: &str| names.iter().position(|n| n == name).unwrap_or_else(|| panic!("no {name}"));
     assert_eq!(names[..3], ["scene", "method", "level"]);
-    let order =
-        ["f", "gaps", "precision_0.5px", "near_to_m", "place_mean_px", "facets", "tessellate_ms", "rasterize_ms"];
+    let order = [
+        "f",
+        "gaps",
+        "pixel_recall",
+        "chains",
+        "chain_mean_px",
+        "ids_kept",
+        "precision_0.5px",
+        "near_to_m",
+        "place_mean_px",
+        "facets",
+        "tessellate_ms",
+        "rasterize_ms",
+    ];
     assert!(order.windows(2).all(|two| place(two[0]) < place(two[1])), "{names:?}");
     // A walk's passes came first; another method's stand among them, not at the end.
     assert!(place("silhouette_ms") < place("peak_mib"));
@@ -137,4 +155,23 @@ fn the_columns_of_the_csv_stand_in_the_order_of_the_fields() {
     let mut nothing = Vec::new();
     write_csv(&Results { runs: Vec::new(), ..sample() }, &mut nothing).expect("CSV");
     assert!(nothing.is_empty());
+}
+
+#[test]
+fn a_run_is_told_with_its_chains() {
+    let results = sample();
+    let said = |method: &str| {
+        let run = results.runs.iter().find(|run| run.method == method).expect("a run");
+        lines(&Found::Run(run))[0].clone()
+    };
+    let chains = "  214 chains, 3721 px: 0.057 px from truth, 95 % within 0.110; P 0.8317 R 0.9044; 11.2 % under 6 px";
+    assert_eq!(said("contour")[1], format!("{chains}; 93.8 % of ids kept"));
+    let traced = "P 0.8391 R 0.8649; 11.2 % under 6 px";
+    assert!(said("toward-away")[1].ends_with(traced), "{:?}", said("toward-away"));
+    assert_eq!(said("adjacency")[1], "  0 chains, 0 px: P 0.0339 R 0.9722; 11.2 % under 6 px");
+    let truth = &results.scenes[0].truth;
+    let said = lines(&Found::Truth("here", truth, None))[0].clone();
+    assert!(
+        said[0].starts_with("here truth at level 32: 3785 px of line (0 of border), 8.8 % of its chains under 6 px, F")
+    );
 }

@@ -384,6 +384,52 @@ pub const LINES_KEPT: f64 = 0.7;
 /// Example: land begins at y = 300.0; a stroke at 298.6 is near enough.
 pub const SKYLINE_PX: f64 = 1.5;
 
+/// How far contours may lie from those of mathematics on average, and those from them, px.
+///
+/// Example: of a cone on samples 12 m apart, 900 m away, lines are 0.007 px off, nearly all of it about the apex.
+pub const CONTOUR_MEAN_PX: f64 = 0.02;
+
+/// Least share of pieces of contour with what faces the eye by mathematics on the left, and what does not on the right.
+///
+/// Example: of 265 pieces at most 5, where a contour bends by more than a cell.
+pub const CONTOUR_LEFT: f64 = 0.98;
+
+/// How far from a cusp of mathematics the contour of facets may turn concave, px.
+///
+/// Example: about a cusp the contour runs along the ray, where 20 m of land are a fifth of a pixel.
+pub const CUSP_PX: f64 = 0.25;
+
+/// Shortest run of a contour between two cusps, px: patches meet in kinks, about a cusp contours turn there to and fro.
+///
+/// Example: three cells of 20 m along the ray are half a pixel.
+pub const CUSP_RUN_PX: f64 = 0.5;
+
+/// How far a chain may end from a cusp of mathematics on the page, px.
+///
+/// Example: where the last hundredth of the contour runs along the ray, it ends half a pixel early.
+pub const CHAIN_END_PX: f64 = 1.0;
+
+/// Sine of the angle between surface and ray at a vertex up to which rounding decides which way it faces.
+///
+/// Example: seen from 1 km a vertex 1 cm off turns a surface by 1e-5.
+pub const TURNING_SINE: f64 = 1e-5;
+
+/// How far ends of pieces of contour may lie from those of the twin on the page, px.
+///
+/// Example: on a facet of 4 px seen nearly edge-on a crossing may slide by a four-hundredth of its edge.
+pub const CROSSING_PX: f64 = 0.01;
+
+/// Share of pieces of contour that one program alone may find, on facets with such a vertex.
+///
+/// Example: of 10 000 pieces at most 20.
+pub const TURNING_SHARE: f64 = 0.002;
+
+/// How far the end of a part of a curve may lie from the start of the next on the page, px: on either side of a lattice edge
+/// its place is found anew.
+///
+/// Example: f32 shares of a facet of 10 px are off by 1e-6 px; vertices of two chunks are the same.
+pub const JOINT_PX: f64 = 1e-3;
+
 /// How far a chain may end from the nearer line it ends on, px: rounding of places on the page in f64.
 ///
 /// Example: at x = 2000 a place is rounded to 2.3e-13; an intersection loses some digits more.
@@ -393,3 +439,13 @@ pub const ON_LINE_PX: f64 = 1e-9;
 ///
 /// Example: of chains of 1 000 px in all, at most 100 px are called otherwise in the next frame.
 pub const NAMES_KEPT: f64 = 0.9;
+
+/// How far a mean over lines may be from the same over their pieces, px: where a line leaves the page, the piece is cut.
+///
+/// Example: of 500 px of line 0.02 px off, four pieces of a quarter pixel, 0.02 px off, too, lie half beside the page.
+pub const CUT_PX: f64 = 1e-4;
+
+/// Least precision and recall of the walk where a spire as thin as a pixel stands against the sky.
+///
+/// Example: of 560 px of skyline at most 5 have no ink within a pixel; it was .63 and less.
+pub const SPIRE: f64 = 0.99;

@@ -12,8 +12,9 @@ use hachure::error::Result;
 use hachure::gpu::{AdapterChoice, Gpu, Int64};
 use hachure::line::{Chain, ChainPoint, Line};
 use hachure::measure::compare::{Comparison, Found, Hearing, LEAST_TRUTH_LEVEL, Shown};
+use hachure::measure::curves::Curves;
 use hachure::measure::figures::{DrawnLevel, PassFigures, Run};
-use hachure::measure::trial::{Draws, Trial, Yield};
+use hachure::measure::trial::{Draws, Trial};
 use hachure::plan::{Border, Method, Share};
 use hachure::report::pictures::of_shown;
 use hachure::surface::{Level, Surface};
@@ -22,25 +23,20 @@ use hachure::truth::{Mask, Piece, Terrain, Truth};
 use hachure::view::{Camera, Perspective};
 
 use crate::scenes::{level, look, rough};
+use crate::tolerances::CUT_PX;
 
 /// Metres to a near plane.
 const NEAR: f64 = 1.0;
 
 /// Draws the lines of a level as curves.
-struct Curves<'a> {
+struct Levels<'a> {
     terrain: &'a Terrain<'a>,
     level: Level,
     last: Option<(Truth, Perspective)>,
 }
 
-/// The curves of a frame.
-struct Seen {
-    truth: Truth,
-    perspective: Perspective,
-}
-
-impl Draws for Curves<'_> {
-    type Yield = Seen;
+impl Draws for Levels<'_> {
+    type Yield = Curves;
 
     fn time_of_frame(&mut self, camera: &Camera) -> Result<f64> {
         let start = Instant::now();
@@ -48,9 +44,10 @@ impl Draws for Curves<'_> {
         Ok(start.elapsed().as_secs_f64() * 1e3)
     }
 
-    fn yielded(&mut self) -> Result<Seen> {
+    fn yielded(&mut self) -> Result<Curves> {
         let (truth, perspective) = self.last.clone().expect("a frame");
-        Ok(Seen { truth, perspective })
+        let chains = truth.on_page().map(|piece| chain(piece, &perspective)).collect();
+        Ok(Curves::new(chains, &perspective))
     }
 
     fn passes(&mut self, camera: &Camera) -> Result<Vec<PassFigures>> {
@@ -66,28 +63,14 @@ impl Draws for Curves<'_> {
     }
 }
 
-impl Yield for Seen {
-    fn mask(&self) -> Mask {
-        Mask::of_truth(&self.truth)
-    }
-
-    fn chains(&self) -> Vec<Chain> {
-        let point = |place: DVec2, distance: f64| {
-            let depth = NEAR / distance;
-            let world: DVec3 = self.perspective.unproject(place, depth);
-            ChainPoint { place, line: Line::Occluding, depth: depth as f32, behind: 0.0, world, crowd: 0, weight: 1.0 }
-        };
-        let chain = |piece: &Piece| Chain {
-            id: None,
-            points: piece.ends.map(|end| point(end, piece.distance)).to_vec(),
-            closed: false,
-        };
-        self.truth.on_page().map(chain).collect()
-    }
-
-    fn places(&self) -> Vec<DVec2> {
-        self.truth.on_page().map(Piece::middle).collect()
-    }
+/// A piece of truth as a chain without a name.
+fn chain(piece: &Piece, perspective: &Perspective) -> Chain {
+    let depth = NEAR / piece.distance;
+    let point = |place: DVec2| {
+        let world = perspective.unproject(place, depth);
+        ChainPoint { place, line: Line::Occluding, depth: depth as f32, behind: 0.0, world, crowd: 0, weight: 1.0 }
+    };
+    Chain { id: None, points: piece.ends.map(point).to_vec(), closed: false }
 }
 
 /// From the south, on hills against hills and sky.
@@ -120,7 +103,7 @@ fn try_level(terrain: &Terrain<'_>, camera: &Camera, of: Level, judge: &Judge<'_
             Ok(())
         },
     };
-    let run = trial.run(&mut Curves { terrain, level: of, last: None }, 0.0).expect("a run");
+    let run = trial.run(&mut Levels { terrain, level: of, last: None }, 0.0).expect("a run");
     (run, mask.take())
 }
 
@@ -141,14 +124,24 @@ fn curves_are_judged_as_ink_is() {
     assert_eq!([run.precision, run.recall, run.f], [agreement.precision, agreement.recall, agreement.f()]);
     assert_eq!([run.gaps, run.spurious, run.inked], [direct.gaps, direct.spurious, mask.inked.len()]);
     assert_eq!([run.chamfer_px, run.h95_px], [direct.chamfer, direct.h95]);
-    assert_eq!(run.chains, half.on_page().count());
+    let chains = &run.of_chains;
+    assert_eq!(
+        (chains.chains, chains.ids_kept),
+        (half.on_page().count(), None),
+        "each piece is a chain without a name"
+    );
+    assert_eq!((chains.short_chains, run.pixel_recall), (1.0, direct.pixel_recall));
+    let curves = judge.offsets_of(&half).expect("a line");
+    let near = |found: Option<f64>, known: f64| {
+        assert!((found.expect("a figure") - known).abs() < CUT_PX, "{found:?}, {known}")
+    };
+    near(chains.chain_mean_px, curves.mean);
+    near(chains.chain_p95_px, curves.p95);
     let last = terrain.truth(&moved(&camera, 2.0), level(4));
     assert_eq!(run.facets, last.facets, "facets are those of the last frame");
     let place = run.place.as_ref().expect("curves have places");
-    assert_eq!(
-        Some(place.p95_px),
-        judge.offsets(&half.on_page().map(Piece::middle).collect::<Vec<_>>()).map(|o| o.p95)
-    );
+    let middles: Vec<DVec2> = half.on_page().map(Piece::middle).collect();
+    near(Some(place.p95_px), judge.offsets(&middles).expect("places").p95);
     assert_eq!((run.mask_hashes.len(), run.passes.len()), (2, 1));
     let picture = image::load_from_memory(&png).expect("a PNG").to_luma8();
     assert!(picture.pixels().map(|pixel| pixel.0[0] == 0).eq(mask.pixels()), "the mask is that of the curves");

@@ -1,5 +1,6 @@
 //! The reference that every picture is measured against: right by mathematics, by a slow program, and by known figures.
 
+mod chains;
 mod level;
 mod mask;
 mod mathematics;
@@ -14,6 +15,7 @@ use hachure::surface::Surface;
 use hachure::truth::{Line, Terrain, Truth};
 use rayon::ThreadPoolBuilder;
 
+pub use self::metrics::straight;
 use crate::closed_forms::GAUSSIAN;
 use crate::forms::from_middle;
 use crate::scenes::{level, look, rough};

@@ -26,11 +26,11 @@ use crate::files::Taken;
 use crate::geo::Reading;
 use crate::gpu::Gpu;
 use crate::ink::{self, Drawing, Style};
-use crate::line::{Economy, Lines};
+use crate::line::{Chain, Economy, Lines, Strays};
 use crate::measure::figures::DrawnLevel;
 use crate::plan::detail::ERROR_PX;
 use crate::plan::left_out::LeftOut;
-use crate::plan::{Border, Detail, Frame, Method, Plan, Share};
+use crate::plan::{Border, Curves, Detail, Frame, Method, Plan, Share};
 use crate::render::{Page, PassTime, Renderer};
 use crate::surface::Surface;
 use crate::view::Perspective;
@@ -130,6 +130,7 @@ struct Report {
     level: DrawnLevel,
     facets: u64,
     inked: usize,
+    chains: Option<ChainsReport>,
     covered: u64,
     longest_walk: u32,
     pieces: usize,
@@ -142,6 +143,15 @@ struct Report {
     view: ViewReport,
     flat_earth: Option<FlatEarth>,
     left_out: Vec<LeftOutReport>,
+}
+
+/// The chains of contours that were found, and where they and the mask do not tell of the same lines.
+#[derive(Serialize)]
+struct ChainsReport {
+    count: usize,
+    length_px: f64,
+    without_ink_px: usize,
+    ink_without_chain_px: usize,
 }
 
 /// What was drawn, and what became of the files on the way.
@@ -193,7 +203,8 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     let page = renderer.page(&plan, &view.camera, |share| talk.progress("drawing", 0.3 + 0.3 * share))?;
     cache.discard_damaged(surface.dem(), &|message| talk.warn(&told(message)));
     let mut drawn = Drawn { renderer: &mut renderer, view: &view, page };
-    let drawing = drawn.stroked();
+    let economy = arguments.economy(view.camera.width)?;
+    let drawing = drawn.stroked(economy.as_ref());
     let report = outputs.want_report().then(|| arguments.report(&mut drawn, talk)).transpose()?;
     if arguments.explain || talk.is_verbose() {
         explain(talk, &drawn.page.frame, &surface, report.as_ref())?;
@@ -221,7 +232,9 @@ impl DrawArguments {
         self.view.check()?;
         self.outputs.check()?;
         self.economy(1)?;
-        Ok(Plan::new(detail, method, self.border))
+        // Strokes of the walk's mask are contours.
+        let curves = if method == Method::Walk { Curves::On } else { Curves::Off };
+        Ok(Plan { curves, ..Plan::new(detail, method, self.border) })
     }
 
     /// Reads the DEM and finds its normals.
@@ -320,6 +333,7 @@ impl DrawArguments {
             level: self.detail()?.into(),
             facets: page.frame.facets(&surface),
             inked: page.marks.inked(),
+            chains: plan.has_curves().then(|| ChainsReport::of(page)),
             covered: page.covered,
             longest_walk: page.longest_walk,
             pieces,
@@ -351,11 +365,16 @@ impl DrawArguments {
 }
 
 impl Drawn<'_> {
-    /// The drawing of the page.
-    fn stroked(&self) -> Drawing {
-        let style = Style::for_page(self.page.marks.width);
+    /// The drawing of the page: of contours as sparingly as is asked, or traced from the mask.
+    fn stroked(&self, economy: Option<&Economy>) -> Drawing {
+        let Page { marks, chains, .. } = &self.page;
+        let style = Style::for_page(marks.width);
         let perspective = Perspective::new(&self.view.camera, self.renderer.near());
-        ink::draw(&Lines::of(&self.page.marks, &perspective, style.tolerance), &style)
+        let lines = match economy {
+            Some(economy) => Lines::sparing(chains, [marks.width, marks.height], economy),
+            None => Lines::of(marks, &perspective, style.tolerance),
+        };
+        ink::draw(&lines, &style)
     }
 
     /// Where the DEM lies on Earth.
@@ -381,6 +400,18 @@ fn explain(talk: &Talk, frame: &Frame, surface: &Surface, report: Option<&Report
 impl LeftOutReport {
     fn of(LeftOut { what, why, saved }: LeftOut) -> Self {
         Self { what, why: told(&why), saved }
+    }
+}
+
+impl ChainsReport {
+    fn of(page: &Page) -> Self {
+        let strays = Strays::of(&page.chains, &page.marks);
+        Self {
+            count: page.chains.len(),
+            length_px: page.chains.iter().flat_map(Chain::pairs).map(|[a, b]| a.place.distance(b.place)).sum(),
+            without_ink_px: strays.chains,
+            ink_without_chain_px: strays.ink,
+        }
     }
 }
 

@@ -2,22 +2,42 @@
 
 use super::buffers::Buffers;
 use super::device::Gpu;
-use super::sizes::{self, LIST_HEADER, SEGMENT_BYTES, WORD_BYTES};
-use super::uniforms::Segment;
-use crate::error::Result;
+use super::sizes::{self, SEGMENT_BYTES, WORD_BYTES};
+use super::uniforms::{Segment, Tally};
+use crate::error::{Error, Result};
 use crate::plan::Frame;
 use crate::plan::batches::BATCH_CHUNKS;
-use crate::surface::lattice::CHUNK_VERTICES;
+use crate::surface::lattice::{CHUNK_QUADS, CHUNK_VERTICES};
 
-/// Segments for which there is room at first: 1 MB.
-const FIRST_ROOM: u32 = 1 << 14;
+/// Words that tell what lies around a chunk.
+const AROUND_BYTES: u64 = 16 * WORD_BYTES;
+/// Values of the sides of a chunk.
+const SIDES_BYTES: u64 = 4 * CHUNK_QUADS as u64 * WORD_BYTES;
+
+/// For how much there is room; what is found of it may be more.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Room {
+    /// Chunks whose vertices count.
+    pub wanted: u32,
+    /// Facets through which contours run.
+    pub crossed: u32,
+    /// Segments.
+    pub segments: u32,
+}
+
+/// At first: 1.5 MB.
+impl Default for Room {
+    fn default() -> Self {
+        Self { wanted: 1 << 9, crossed: 1 << 14, segments: 1 << 14 }
+    }
+}
 
 /// Buffers of curves.
 #[derive(Default)]
 pub struct CurveBuffers {
     buffers: Buffers,
     chunks: u32,
-    room: u32,
+    room: Room,
     /// How often some were made anew: what binds them must then bind them again.
     generation: u64,
 }
@@ -26,53 +46,60 @@ impl CurveBuffers {
     /// Makes room for the chunks of a frame, if it has curves and unless there is.
     ///
     /// # Errors
-    /// [`Error::Limit`](crate::error::Error::Limit) when a buffer would exceed what every device binds; whatever the driver
-    /// reports.
+    /// [`Error::Limit`] when a buffer would exceed what every device binds; whatever the driver reports.
     pub fn fit(&mut self, gpu: &Gpu, frame: &Frame) -> Result<()> {
         let chunks = frame.lattice.chunks().len() as u32;
-        if !frame.plan.has_curves() || (chunks <= self.chunks && self.room > 0) {
+        if !frame.plan.has_curves() || (chunks <= self.chunks && self.generation > 0) {
             return Ok(());
         }
         let chunks = chunks + chunks / 4;
         let of_batch = u64::from(chunks.min(BATCH_CHUNKS));
-        self.generation += 1;
         self.buffers.create(gpu, "turning", u64::from(chunks) * WORD_BYTES)?;
+        self.buffers.create(gpu, "around", u64::from(chunks) * AROUND_BYTES)?;
         self.buffers.create(gpu, "turns", of_batch * u64::from(CHUNK_VERTICES) * WORD_BYTES)?;
+        self.buffers.create(gpu, "tally", size_of::<Tally>() as u64)?;
         self.chunks = chunks;
-        if self.room == 0 {
-            self.make_room(gpu, FIRST_ROOM)?;
-        }
-        gpu.check()
+        self.make_room(gpu, self.room)
     }
 
-    /// Makes room for so many segments.
-    ///
-    /// # Errors
-    /// As [`Self::fit`].
-    pub fn make_room(&mut self, gpu: &Gpu, segments: u32) -> Result<()> {
-        sizes::segments_fit(u64::from(segments))?;
+    fn make_room(&mut self, gpu: &Gpu, room: Room) -> Result<()> {
+        sizes::segments_fit(u64::from(room.segments))?;
+        let [wanted, crossed, segments] = [room.wanted, room.crossed, room.segments].map(u64::from);
         self.generation += 1;
-        self.buffers.create(gpu, "segments", LIST_HEADER + u64::from(segments) * SEGMENT_BYTES)?;
-        self.room = segments;
+        self.buffers.create(gpu, "sides", wanted * SIDES_BYTES)?;
+        self.buffers.create(gpu, "crossed", crossed * WORD_BYTES)?;
+        self.buffers.create(gpu, "segments", segments * SEGMENT_BYTES)?;
+        self.buffers.create(gpu, "asked", segments * WORD_BYTES)?;
+        self.room = room;
         gpu.check()
     }
 
-    /// The segments that were found; where there was no room for all, how many there are.
+    /// The segments that were found, in no particular order; `None` where there was no room for all that was found: then
+    /// there is now, and they must be found again.
     ///
     /// # Errors
-    /// Whatever the driver reports.
-    pub fn read(&self, gpu: &Gpu) -> Result<Found> {
-        let list = self.buffers.get("segments")?;
-        let header: Vec<u32> = gpu.read(list, 1)?;
-        let count = header[0];
-        if count > self.room {
-            return Ok(Found::TooMany(count));
+    /// As [`Self::fit`]; [`Error::Gpu`] when a walk was cut short.
+    pub fn read(&mut self, gpu: &Gpu) -> Result<Option<Vec<Segment>>> {
+        let tally: Vec<Tally> = gpu.read(self.buffers.get("tally")?, 1)?;
+        let Tally { wanted, crossed, segments, cut_short, .. } = tally[0];
+        if cut_short > 0 {
+            return Err(Error::Gpu { what: format!("the driver cut {cut_short} walks short") });
         }
-        gpu.read_from(list, LIST_HEADER, count as usize).map(Found::All)
+        let grown = |has: u32, needs: u32| if needs > has { needs + needs / 4 } else { has };
+        let room = Room {
+            wanted: grown(self.room.wanted, wanted),
+            crossed: grown(self.room.crossed, crossed),
+            segments: grown(self.room.segments, segments),
+        };
+        if room != self.room {
+            self.make_room(gpu, room)?;
+            return Ok(None);
+        }
+        gpu.read(self.buffers.get("segments")?, segments as usize).map(Some)
     }
 
-    /// Segments for which there is room.
-    pub fn room(&self) -> u32 {
+    /// For how much there is room.
+    pub fn room(&self) -> Room {
         self.room
     }
 
@@ -85,12 +112,4 @@ impl CurveBuffers {
     pub fn generation(&self) -> u64 {
         self.generation
     }
-}
-
-/// What was found of curves.
-pub enum Found {
-    /// All their segments, in no particular order.
-    All(Vec<Segment>),
-    /// More than there is room for: so many.
-    TooMany(u32),
 }

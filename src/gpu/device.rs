@@ -191,14 +191,6 @@ impl Gpu {
     /// # Errors
     /// Whatever the driver reports.
     pub fn read<T: Pod>(&self, buffer: &wgpu::Buffer, count: usize) -> Result<Vec<T>> {
-        self.read_from(buffer, 0, count)
-    }
-
-    /// Copies `count` values of a buffer, from so many bytes on, to the CPU.
-    ///
-    /// # Errors
-    /// Whatever the driver reports.
-    pub fn read_from<T: Pod>(&self, buffer: &wgpu::Buffer, offset: u64, count: usize) -> Result<Vec<T>> {
         let size = (count * size_of::<T>()) as u64;
         if size == 0 {
             return Ok(Vec::new());
@@ -210,7 +202,7 @@ impl Gpu {
             mapped_at_creation: false,
         });
         let mut encoder = self.device.create_command_encoder(&Default::default());
-        encoder.copy_buffer_to_buffer(buffer, offset, &staging, 0, size);
+        encoder.copy_buffer_to_buffer(buffer, 0, &staging, 0, size);
         self.queue.submit([encoder.finish()]);
         let mapped = Arc::new(Mutex::new(None));
         let slot = mapped.clone();

@@ -1,13 +1,13 @@
 //! All that a frame works with on a device, and what a pass of it dispatches there.
 
 use super::buffers::Buffers;
-use super::device::Gpu;
 use super::curves::CurveBuffers;
+use super::device::Gpu;
 use super::page::PageBuffers;
 use super::pass::Pass;
 use super::scene::Scene;
 use super::stages::Stages;
-use super::{adjacency, border, candidates, compose, facing, project, rasterize, seam, segments, tessellate};
+use super::{adjacency, border, candidates, compose, crossed, facing, meet, project, rasterize, seam, tessellate};
 use super::{toward_away, turn};
 use crate::error::{Error, Result};
 use crate::plan::passes::{Over, PlannedPass};
@@ -89,7 +89,7 @@ impl<'a> OnDevice<'a> {
             Over::FreshChunks => self.scene.fresh().min(batch.chunks),
             Over::SeenChunks => batch.seen(frame.seen),
             Over::AllChunks => frame.lattice.chunks().len() as u32,
-            Over::Chunks | Over::List(_) | Over::Pixels | Over::RimEdges | Over::Segments => batch.chunks,
+            Over::Chunks | Over::List(_) | Over::Pixels | Over::RimEdges | Over::Found => batch.chunks,
         };
         if planned.over == Over::FreshChunks && chunks == 0 {
             return Ok(None);
@@ -113,15 +113,14 @@ impl<'a> OnDevice<'a> {
             PassName::TowardAway => toward_away::invocations(size),
             PassName::Adjacency => adjacency::invocations(size),
             PassName::Border | PassName::RimSegments => border::invocations(pass, self.scene.rim_edges()),
-            PassName::Sight => pass.folded(self.curves.room().into()),
-            PassName::Turning => pass.folded(chunks.into()),
+            PassName::Sight => pass.folded(self.curves.room().segments.into()),
+            PassName::Segments => pass.folded(self.curves.room().crossed.into()),
+            PassName::Turning | PassName::Wanted => pass.folded(chunks.into()),
+            PassName::Meet => meet::invocations(chunks),
+            PassName::Crossed => crossed::invocations(chunks),
             PassName::Turn => turn::invocations(chunks),
-            PassName::Segments => segments::invocations(chunks),
             PassName::Compose => compose::invocations(size),
-            PassName::RasterizeLarge
-            | PassName::Pairs
-            | PassName::Walk
-            | PassName::WalkRest => {
+            PassName::RasterizeLarge | PassName::Pairs | PassName::Walk | PassName::WalkRest => {
                 return Err(Error::mistake(format!("pass {} goes over a list", name.name())));
             }
         })

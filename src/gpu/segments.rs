@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use super::{Gpu, Pass, walk};
 use crate::error::Result;
-use crate::surface::lattice::CHUNK_QUADS;
 
 /// The composed shader: `walk`, and what curves are made of.
 pub fn source(keeps_vertices: bool) -> String {
@@ -13,7 +12,7 @@ pub fn source(keeps_vertices: bool) -> String {
 
 /// What passes over the list of segments stand on.
 pub(super) fn listing(keeps_vertices: bool) -> String {
-    [walk::source(keeps_vertices).as_str(), crate::shader!("cull", "curve", "segment")].concat()
+    [walk::source(keeps_vertices).as_str(), crate::shader!("cull", "curve", "tally", "segment")].concat()
 }
 
 /// Compiles the pass.
@@ -22,9 +21,4 @@ pub(super) fn listing(keeps_vertices: bool) -> String {
 /// See [`Gpu::pass`].
 pub fn pass(gpu: &Gpu, keeps_vertices: bool, constants: &[(&str, f64)]) -> Result<Arc<Pass>> {
     gpu.pass("segments", source(keeps_vertices), constants)
-}
-
-/// One invocation a row of quads, one row a chunk.
-pub fn invocations(chunks: u32) -> [u32; 2] {
-    [CHUNK_QUADS, chunks]
 }

@@ -3,14 +3,15 @@
 use std::sync::Arc;
 
 use super::buffers::{Buffers, upload};
-use super::device::Gpu;
 use super::curves::CurveBuffers;
+use super::device::Gpu;
 use super::page::PageBuffers;
 use super::pass::Pass;
 use super::scene::Scene;
 use super::uniforms::BatchUniform;
-use super::{adjacency, border, candidates, compose, facing, pairs, project, rasterize, rasterize_large};
-use super::{rim_segments, seam, segments, sight, tessellate, toward_away, turn, turning, walk, walk_rest};
+use super::{adjacency, border, candidates, compose, crossed, facing, meet, pairs, project, rasterize};
+use super::{rasterize_large, rim_segments, seam, segments, sight, tessellate, toward_away, turn, turning};
+use super::{walk, walk_rest, wanted};
 use crate::error::{Error, Result};
 use crate::plan::batches::PART_CHUNKS;
 use crate::plan::passes::{Often, PlannedPass, passes};
@@ -158,7 +159,8 @@ impl Bound<'_> {
 /// Compiles passes of a frame: those of batches beside those of a piece.
 fn compile(gpu: &Gpu, frame: &Frame, passes: &[PlannedPass]) -> Result<Vec<Arc<Pass>>> {
     let constants = constants(frame);
-    let of_piece = passes.iter().position(|pass| matches!(pass.often, Often::Once | Often::ForCurves | Often::OnReading));
+    let of_piece =
+        passes.iter().position(|pass| matches!(pass.often, Often::Once | Often::ForCurves | Often::OnReading));
     let (of_batches, of_piece) = passes.split_at(of_piece.unwrap_or(passes.len()));
     let all = |passes: &[PlannedPass]| passes.iter().map(|p| pass(gpu, frame, p.name, &constants)).collect();
     let (of_batches, of_piece): (Result<Vec<_>>, Result<Vec<_>>) = rayon::join(|| all(of_batches), || all(of_piece));
@@ -198,7 +200,10 @@ fn pass(gpu: &Gpu, frame: &Frame, name: PassName, constants: &[(&str, f64)]) -> 
         PassName::Adjacency => adjacency::pass(gpu, &own()),
         PassName::Border => border::pass(gpu, constants),
         PassName::Turning => turning::pass(gpu, constants),
-        PassName::Turn => turn::pass(gpu, frame.keeps_vertices(), constants),
+        PassName::Wanted => wanted::pass(gpu, constants),
+        PassName::Turn => turn::pass(gpu, constants),
+        PassName::Meet => meet::pass(gpu, constants),
+        PassName::Crossed => crossed::pass(gpu, constants),
         PassName::Segments => segments::pass(gpu, frame.keeps_vertices(), constants),
         PassName::RimSegments => rim_segments::pass(gpu, frame.keeps_vertices(), constants),
         PassName::Sight => sight::pass(gpu, frame.keeps_vertices(), constants),

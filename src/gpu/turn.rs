@@ -1,24 +1,23 @@
-//! Pass `turn`: how the vertices face the eye of the chunks through which contours may run.
+//! Pass `turn`: how the vertices of a chunk face the eye, as far as its own facets tell.
 
 use std::sync::Arc;
 
-use super::{Gpu, Pass, walk};
+use super::{Gpu, Pass};
 use crate::error::Result;
+use crate::surface::lattice::CHUNK_SIDE;
 
-/// The composed shader, for frames whose vertices are all at hand, or those of one batch at a time.
-pub fn source(keeps_vertices: bool) -> String {
-    [crate::shader!("scene", "lattice", "surface", "cull", "curve", "turn"), walk::vertices(keeps_vertices)].concat()
-}
+/// The composed shader.
+pub const SOURCE: &str = crate::shader!("scene", "lattice", "surface", "cull", "curve", "turn");
 
 /// Compiles the pass.
 ///
 /// # Errors
 /// See [`Gpu::pass`].
-pub fn pass(gpu: &Gpu, keeps_vertices: bool, constants: &[(&str, f64)]) -> Result<Arc<Pass>> {
-    gpu.pass("turn", source(keeps_vertices), constants)
+pub fn pass(gpu: &Gpu, constants: &[(&str, f64)]) -> Result<Arc<Pass>> {
+    gpu.pass("turn", SOURCE, constants)
 }
 
-/// 32 invocations a chunk, one row a chunk.
+/// One invocation a column of vertices, one row a chunk.
 pub fn invocations(chunks: u32) -> [u32; 2] {
-    [32, chunks]
+    [CHUNK_SIDE, chunks]
 }

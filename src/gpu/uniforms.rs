@@ -158,6 +158,24 @@ pub mod seen {
     pub const NEAREST_FREE: u32 = 2;
     /// They differ, and from the nearest something does.
     pub const NEAREST_HIDDEN: u32 = 3;
+    /// Nobody looked.
+    pub const NOT_ASKED: u32 = 4;
+}
+
+/// `Tally` of tally.wgsl: what is counted of curves, whether there is room for it or not.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct Tally {
+    /// Chunks whose vertices count.
+    pub wanted: u32,
+    /// Facets through which contours run.
+    pub crossed: u32,
+    /// Segments.
+    pub segments: u32,
+    /// Those that are looked at.
+    pub asked: u32,
+    /// Walks that a driver ended before they were done: must be 0.
+    pub cut_short: u32,
 }
 
 /// `Counts` of ink.wgsl.

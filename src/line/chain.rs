@@ -93,6 +93,14 @@ pub struct Chain {
 }
 
 impl Chain {
+    /// Every point with the next one, the last of a closed chain with the first; a lone point with itself.
+    pub fn pairs(&self) -> impl Iterator<Item = [&ChainPoint; 2]> {
+        let lone = self.points.first().filter(|_| self.points.len() == 1).map(|point| [point; 2]);
+        let closing = self.points.last().zip(self.points.first()).map(|(last, first)| [last, first]);
+        let steps = self.points.windows(2).map(|pair| [&pair[0], &pair[1]]);
+        steps.chain(closing.filter(|_| self.closed && lone.is_none())).chain(lone)
+    }
+
     /// What most of its points draw; of equals the first in the order of [`Line`].
     pub fn line(&self) -> Line {
         let mut lines: Vec<Line> = self.points.iter().map(|point| point.line).collect();

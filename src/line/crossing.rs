@@ -8,14 +8,15 @@
 //! Cost: a look at the stretches of a cell or two each; memory grows with the lines, not with the page. Does not handle:
 //! stretches that lie on one another.
 
-use std::ops::{Range, RangeInclusive};
+use std::ops::Range;
 
 use glam::DVec2;
+use rayon::prelude::*;
 
 use super::Curve;
 
-/// Side of a cell, px: a stretch is at most about a pixel long.
-const CELL: f64 = 4.0;
+/// Width and height of a cell, px: a stretch is at most about a pixel long, and those that crowd on far slopes lie level.
+const CELL: DVec2 = DVec2::new(1.0, 0.25);
 /// A stretch is nearer where its depth is more than this share larger: what f32 leaves of it.
 const ROUNDING: f64 = 1.0e-6;
 
@@ -34,8 +35,21 @@ pub struct Crossings<'a> {
     page: DVec2,
     /// Where each bucket of cells begins in `held`, and where the last ends.
     starts: Vec<u32>,
-    /// Curve and stretch.
-    held: Vec<[u32; 2]>,
+    held: Vec<Edge>,
+}
+
+/// A stretch on the page.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Edge {
+    places: [DVec2; 2],
+    depths: [f64; 2],
+}
+
+impl Edge {
+    fn new(curve: &Curve, stretch: usize) -> Self {
+        let ends = curve.ends(stretch);
+        Self { places: ends.map(|end| end.place), depths: ends.map(|end| end.depth) }
+    }
 }
 
 impl<'a> Crossings<'a> {
@@ -50,21 +64,21 @@ impl<'a> Crossings<'a> {
                 crossings.buckets(curve, stretch).for_each(|bucket| is_asked[bucket] = true);
             }
         }
-        let mut listed = Vec::new();
-        for (c, curve) in curves.iter().enumerate() {
-            for s in 0..curve.stretches.len() {
-                let buckets = crossings.buckets(curve, s).filter(|&bucket| is_asked[bucket]);
-                listed.extend(buckets.map(|bucket| (bucket, [c as u32, s as u32])));
-            }
-        }
+        let of_curve = |curve: &'a Curve| {
+            let stretches = 0..curve.stretches.len();
+            let asked = |s: usize| crossings.buckets(curve, s).filter(|&bucket| is_asked[bucket]).map(move |b| (b, s));
+            let listed = stretches.flat_map(asked).map(|(bucket, s)| (bucket, Edge::new(curve, s)));
+            listed.collect::<Vec<_>>()
+        };
+        let listed: Vec<(usize, Edge)> = curves.par_iter().flat_map_iter(of_curve).collect();
         listed.iter().for_each(|&(bucket, _)| crossings.starts[bucket + 1] += 1);
         for bucket in 1..crossings.starts.len() {
             crossings.starts[bucket] += crossings.starts[bucket - 1];
         }
         let mut next = crossings.starts.clone();
-        crossings.held = vec![[0; 2]; listed.len()];
-        for (bucket, stretch) in listed {
-            crossings.held[next[bucket] as usize] = stretch;
+        crossings.held = vec![Edge { places: [DVec2::ZERO; 2], depths: [0.0; 2] }; listed.len()];
+        for (bucket, edge) in listed {
+            crossings.held[next[bucket] as usize] = edge;
             next[bucket] += 1;
         }
         crossings
@@ -72,32 +86,23 @@ impl<'a> Crossings<'a> {
 
     /// Where a stretch passes under nearer ones, in order along it.
     pub fn of(&self, curve: usize, stretch: usize) -> Vec<Crossing> {
-        let mut others: Vec<[u32; 2]> = Vec::new();
-        for bucket in self.buckets(&self.curves[curve], stretch) {
-            others.extend(&self.held[self.starts[bucket] as usize..self.starts[bucket + 1] as usize]);
-        }
-        others.sort_unstable();
-        others.dedup();
-        let far = &self.curves[curve];
-        let beside = |other: usize| {
-            let apart = other.abs_diff(stretch);
-            apart <= 1 || (far.closed && apart + 1 == far.stretches.len())
-        };
-        let tried = others.into_iter().map(|other| other.map(|v| v as usize));
-        let tried = tried.filter(|&[c, s]| c != curve || !beside(s));
-        let mut found: Vec<Crossing> = tried.filter_map(|[c, s]| crossing(far, stretch, &self.curves[c], s)).collect();
+        let far = Edge::new(&self.curves[curve], stretch);
+        let in_bucket = |bucket: usize| &self.held[self.starts[bucket] as usize..self.starts[bucket + 1] as usize];
+        let listed = self.buckets(&self.curves[curve], stretch).flat_map(in_bucket);
+        // Itself and its neighbours it meets at its own depth.
+        let mut found: Vec<Crossing> = listed.filter_map(|near| crossing(&far, near)).collect();
         found.sort_unstable_by(|a, b| a.at.total_cmp(&b.at).then(a.step.cmp(&b.step)));
+        // What two cells list is found twice.
+        found.dedup();
         found
     }
 
     /// The buckets of the cells that a stretch may touch; none beside the page.
     fn buckets(&self, curve: &Curve, stretch: usize) -> impl Iterator<Item = usize> + use<> {
         let [a, b] = curve.ends(stretch).map(|end| end.place);
-        let cells = |a: f64, b: f64, size: f64| -> RangeInclusive<u64> {
-            // `as` takes what is left of the page to its first cell; a stretch beside it has an empty range.
-            (a.min(b) / CELL) as u64..=(a.max(b).min(size) / CELL) as u64
-        };
-        let (columns, rows) = (cells(a.x, b.x, self.page.x), cells(a.y, b.y, self.page.y));
+        let (low, high) = (a.min(b) / CELL, a.max(b).min(self.page) / CELL);
+        // `as` takes what is left of the page to its first cell; a stretch beside it has an empty range.
+        let (columns, rows) = (low.x as u64..=high.x as u64, low.y as u64..=high.y as u64);
         let mask = self.starts.len() as u64 - 2;
         let bucket = move |column: u64, row: u64| (hash(column << 32 | row) & mask) as usize;
         rows.flat_map(move |row| columns.clone().map(move |column| bucket(column, row)))
@@ -112,20 +117,22 @@ pub fn hash(number: u64) -> u64 {
     mixed ^ mixed >> 31
 }
 
-/// Where a stretch of the far curve passes under one of the near curve, if it does.
-fn crossing(far: &Curve, stretch: usize, near: &Curve, other: usize) -> Option<Crossing> {
-    let ([p, q], [a, b]) = (far.ends(stretch), near.ends(other));
-    // Above 0 to the left of the first two: rows run down.
-    let side = |a: DVec2, b: DVec2, p: DVec2| (p - a).perp_dot(b - a);
-    let sides = [p, q].map(|end| side(a.place, b.place, end.place));
-    let others = [a, b].map(|end| side(p.place, q.place, end.place));
+/// Where a stretch passes under a nearer one, if it does.
+fn crossing(far: &Edge, near: &Edge) -> Option<Crossing> {
+    // Above 0 to the left of the edge: rows run down.
+    let side = |edge: &Edge, p: DVec2| (p - edge.places[0]).perp_dot(edge.places[1] - edge.places[0]);
+    let sides = far.places.map(|end| side(near, end));
     let is_left = sides.map(|side| side > 0.0);
-    if is_left[0] == is_left[1] || (others[0] > 0.0) == (others[1] > 0.0) {
+    if is_left[0] == is_left[1] {
+        return None;
+    }
+    let others = near.places.map(|end| side(far, end));
+    if (others[0] > 0.0) == (others[1] > 0.0) {
         return None;
     }
     let share = |[from, to]: [f64; 2]| from / (from - to);
-    let (at, along) = (share(sides), share(others));
-    let depth = |from: f64, to: f64, share: f64| from + (to - from) * share;
-    let is_nearer = depth(a.depth, b.depth, along) > depth(p.depth, q.depth, at) * (1.0 + ROUNDING);
+    let depth = |edge: &Edge, share: f64| edge.depths[0] + (edge.depths[1] - edge.depths[0]) * share;
+    let at = share(sides);
+    let is_nearer = depth(near, share(others)) > depth(far, at) * (1.0 + ROUNDING);
     is_nearer.then_some(Crossing { at, step: if is_left[1] { 1 } else { -1 } })
 }

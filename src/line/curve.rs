@@ -88,7 +88,8 @@ impl Curve {
 
     /// The point after so many stretches and a share of one; a closed curve goes round.
     pub fn at(&self, along: f64) -> CurvePoint {
-        let (whole, share) = (along.floor() as usize, along.fract());
+        let whole = along as usize;
+        let share = along - whole as f64;
         let i = if self.closed { whole % self.stretches.len() } else { whole };
         if share == 0.0 {
             return self.points[i];

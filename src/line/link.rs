@@ -58,7 +58,7 @@ pub fn link(mut segments: Vec<Segment>, lattice: &Lattice, perspective: &Perspec
         let of_run: Vec<&Segment> = run.iter().map(|&i| &segments[i]).collect();
         curve(&of_run, *closed, perspective)
     };
-    curves.par_iter().map(curve).collect()
+    curves.par_iter().filter_map(curve).collect()
 }
 
 /// The keys of a segment's start and end.
@@ -68,9 +68,8 @@ fn keys(segment: &Segment, lattice: &Lattice) -> [Key; 2] {
     let corner = |k: u32| facet[((code & code::CORNER) + k) as usize % 3];
     let part = code >> code::PART_SHIFT;
     let line = code & (code::CORNER | code::AWAY_CORNER | code::OF_RIM);
-    let between = |part: u32| {
-        1 << BETWEEN_PARTS | Key::from(segment.facet) << 64 | Key::from(line) << 32 | Key::from(part)
-    };
+    let between =
+        |part: u32| 1 << BETWEEN_PARTS | Key::from(segment.facet) << 64 | Key::from(line) << 32 | Key::from(part);
     let own = if code & code::OF_RIM != 0 {
         let at = |turns: u32, k: u32| {
             if code & turns != 0 { edge(corner(0), corner(1)) } else { edge(corner(k), corner(k)) }
@@ -93,30 +92,53 @@ fn edge(a: LatticePoint, b: LatticePoint) -> Key {
     vertex(low) << (2 * BITS) | vertex(high)
 }
 
-/// The curve of segments one after the other.
-fn curve(run: &[&Segment], closed: bool, perspective: &Perspective) -> Curve {
+/// The curve of segments one after the other; stretches begin where somebody looked, and where contour turns into rim.
+/// `None` where nobody looked: shorter than two pixels.
+fn curve(run: &[&Segment], closed: bool, perspective: &Perspective) -> Option<Curve> {
+    let is_rim = |segment: &Segment| segment.code & code::OF_RIM != 0;
+    let asked = |segment: &Segment| segment.sight != seen::NOT_ASKED;
+    run.iter().find(|segment| asked(segment))?;
+    let mut starts = vec![0];
+    let mut has_asked = asked(run[0]);
+    for (i, pair) in (1..).zip(run.windows(2)) {
+        let turns = is_rim(pair[0]) != is_rim(pair[1]);
+        if turns || (asked(pair[1]) && has_asked) {
+            starts.push(i);
+            has_asked = false;
+        }
+        has_asked |= asked(pair[1]);
+    }
+    let parts: Vec<&[&Segment]> =
+        starts.iter().zip(starts.iter().skip(1).chain([&run.len()])).map(|(&from, &to)| &run[from..to]).collect();
     let point = |from_eye: [f32; 3], at: [i32; 2]| {
         let world = perspective.eye() + Vec3::from(from_eye).as_dvec3();
         let (place, depth) = perspective.project(world);
         CurvePoint { place, depth, world, at }
     };
-    let mut points: Vec<CurvePoint> = run.iter().map(|segment| point(segment.start, segment.at)).collect();
+    let mut points: Vec<CurvePoint> = parts.iter().map(|part| point(part[0].start, part[0].at)).collect();
     if let Some(last) = run.last().filter(|_| !closed) {
         points.push(point(last.end, last.at));
     }
-    Curve { points, stretches: run.iter().map(|segment| stretch(segment)).collect(), closed }
+    let looked: Vec<Option<&Segment>> =
+        parts.iter().map(|part| part.iter().copied().find(|segment| asked(segment))).collect();
+    let nearest = |i: usize| looked[..=i].iter().rev().chain(&looked[i..]).find_map(|segment| *segment);
+    let stretches = parts.iter().enumerate().filter_map(|(i, part)| Some(stretch(part, nearest(i)?)));
+    Some(Curve { stretches: stretches.collect(), points, closed })
 }
 
-fn stretch(segment: &Segment) -> Stretch {
+/// The stretch of segments one after the other, of which this one was looked at.
+fn stretch(part: &[&Segment], looked: &Segment) -> Stretch {
+    let length = |segment: &Segment| Vec3::from(segment.start).distance(Vec3::from(segment.end)).max(f32::MIN_POSITIVE);
+    let whole: f32 = part.iter().map(|segment| length(segment)).sum();
     Stretch {
-        bound: if segment.code & code::OF_RIM != 0 { Bound::Rim } else { Bound::Contour },
-        sight: match segment.sight {
+        bound: if part[0].code & code::OF_RIM != 0 { Bound::Rim } else { Bound::Contour },
+        sight: match looked.sight {
             seen::FREE => Sight::Free,
             seen::HIDDEN => Sight::Hidden,
             nearest => Sight::Doubt { free: nearest == seen::NEAREST_FREE },
         },
-        behind: segment.behind,
-        fall: segment.fall,
-        outward: DVec2::from(segment.outward.map(f64::from)),
+        behind: looked.behind,
+        fall: part.iter().map(|segment| segment.fall * length(segment)).sum::<f32>() / whole,
+        outward: DVec2::from(looked.outward.map(f64::from)),
     }
 }

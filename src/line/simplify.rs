@@ -7,9 +7,10 @@ pub fn needed(points: &[DVec3], tolerance: f64) -> Vec<usize> {
     let mut kept = vec![0];
     let mut spans = vec![(0, points.len() - 1)];
     while let Some((first, last)) = spans.pop() {
-        let off = |i: &usize| distance_to_segment(points[*i], points[first], points[last]);
-        match (first + 1..last).max_by(|a, b| off(a).total_cmp(&off(b))).filter(|i| off(i) > tolerance) {
-            Some(worst) => spans.extend([(worst, last), (first, worst)]),
+        let off = |i: usize| (distance_to_segment(points[i], points[first], points[last]), i);
+        let worst = (first + 1..last).map(off).max_by(|a, b| a.0.total_cmp(&b.0));
+        match worst.filter(|worst| worst.0 > tolerance) {
+            Some((_, worst)) => spans.extend([(worst, last), (first, worst)]),
             None => kept.push(last),
         }
     }

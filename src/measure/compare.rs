@@ -10,6 +10,7 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
+use super::chains::short_of_drawing;
 use super::figures::{Convergence, DrawnLevel, LevelOffset, Run, TruthReport};
 use super::rendered::try_plan;
 use super::trial::{Trial, moved, picture_names};
@@ -188,6 +189,7 @@ impl Comparison {
             length_px: truth.length(),
             border_px: truth.on_page().filter(|p| p.line == Line::Border).fold(0.0, |sum, p| sum + p.length()),
             fragments: mask.fragments(FRAGMENT),
+            short_chains: short_of_drawing(&judge, &mask, camera),
             facets: truth.facets,
             rays: truth.rays,
             truth_ms: ms,

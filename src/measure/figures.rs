@@ -20,6 +20,8 @@ pub struct TruthReport {
     pub border_px: f64,
     /// Of 8-connected pixel sets of truth drawn one pixel wide, the share with fewer than 6 px.
     pub fragments: f64,
+    /// Of the chains that this drawing is traced to, the share with less than 6 px of length.
+    pub short_chains: f64,
     /// Facets whose facing was computed one by one; all others were proven to face one way by bounds.
     pub facets: u64,
     /// Rays cast.
@@ -124,10 +126,11 @@ pub struct Run {
     pub h95_px: Option<f64>,
     /// Share of 8-connected sets of ink with fewer than 6 px.
     pub fragments: f64,
-    /// Chains traced from the mask, and the share of them shorter than 6 px.
-    pub chains: usize,
-    /// Share of chains shorter than 6 px.
-    pub short_chains: f64,
+    /// Share of the pixels of truth, drawn one pixel wide, that have ink within 1 px.
+    pub pixel_recall: f64,
+    /// Of its chains, keys of their own.
+    #[serde(flatten)]
+    pub of_chains: ChainFigures,
     /// Share of ink without ink of the next frame (the eye 1 m on) within 1 px, less the same for truth.
     pub excess_pop: f64,
     /// The same figures at other distances.
@@ -166,6 +169,29 @@ pub struct Run {
     pub mask: String,
     /// File name of the difference picture.
     pub difference: String,
+}
+
+/// The chains of a run on the page: the curves that it yields, or what its ink is traced to, before any is smoothed or left
+/// out. Between lines, so without the half pixel that is added for the centres of pixels.
+#[derive(Debug, Clone, Serialize)]
+pub struct ChainFigures {
+    /// Chains.
+    pub chains: usize,
+    /// Their length.
+    pub chains_px: f64,
+    /// Share of chains with less than 6 px of length.
+    pub short_chains: f64,
+    /// Mean distance from truth, every quarter pixel along them; `None` without chains of some length.
+    pub chain_mean_px: Option<f64>,
+    /// 95 % of their length is no farther.
+    pub chain_p95_px: Option<f64>,
+    /// Share of their length within 1 px of truth.
+    pub chain_precision: f64,
+    /// Share of truth's length within 1 px of a chain.
+    pub chain_recall: f64,
+    /// Share of the length of chains over 12 px that is called the same in the next frame, the eye 1 m on; `None` of chains
+    /// without names.
+    pub ids_kept: Option<f64>,
 }
 
 /// What a pass took; how bytes and operations are counted says [`cost`](super::cost).

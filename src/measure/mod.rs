@@ -5,14 +5,17 @@
 //! move; [`Floor`] times a bare copy and a hardware draw beside it; [`Growth`] is time against size, judged by what was
 //! promised. The clock itself stands in [`gpu::clock`](crate::gpu::clock): it stamps passes while they are recorded.
 
+mod chains;
 pub mod compare;
 pub mod copy;
 pub mod cost;
+pub mod curves;
 pub mod depth_draw;
 pub mod figures;
 pub mod floor;
 mod floors;
 pub mod growth;
+pub mod kept;
 pub mod memory;
 mod rendered;
 pub mod trial;

@@ -6,17 +6,18 @@ use std::time::Instant;
 use glam::DVec2;
 
 use super::cost::PassCost;
+use super::curves::{Curves, mask_of};
 use super::figures::{FloorFigures, PassFigures, Run};
 use super::floors::Floors;
 use super::trial::{Draws, Trial, Yield};
 use super::{Floor, costs, memory};
 use crate::error::Result;
 use crate::gpu::Gpu;
-use crate::line::{Chain, InkRaster, Kind, Marks, Pixel, trace};
-use crate::plan::{Method, Plan};
+use crate::line::{Chain, Kind, Mark, Marks, trace};
+use crate::plan::{Method, Plan, Yields};
 use crate::render::{PassTime, Renderer};
 use crate::surface::Surface;
-use crate::truth::{Inked, Mask};
+use crate::truth::Mask;
 use crate::view::{Camera, Perspective};
 
 /// A renderer that draws by a method.
@@ -30,9 +31,15 @@ struct Rendered {
     floor: Option<(Floor, Floors)>,
 }
 
+/// What a frame yields.
+enum Yielded {
+    Ink(Ink),
+    Curves(Curves),
+}
+
 /// The ink of a frame.
 struct Ink {
-    raster: InkRaster,
+    marks: Marks,
     perspective: Perspective,
     method: Method,
 }
@@ -64,16 +71,20 @@ pub(super) fn try_plan(
 }
 
 impl Draws for Rendered {
-    type Yield = Ink;
+    type Yield = Yielded;
 
     fn time_of_frame(&mut self, camera: &Camera) -> Result<f64> {
         self.perspective = Perspective::new(camera, self.renderer.near());
         self.renderer.time_of_frame(&self.plan, camera)
     }
 
-    fn yielded(&mut self) -> Result<Ink> {
-        let raster = self.renderer.read()?.raster;
-        Ok(Ink { raster, perspective: self.perspective, method: self.plan.method })
+    fn yielded(&mut self) -> Result<Yielded> {
+        let Self { perspective, plan, renderer, .. } = self;
+        if plan.method.entry().yields == Yields::Curves {
+            return Ok(Yielded::Curves(Curves::new(renderer.chains()?, perspective)));
+        }
+        let marks = Marks::from(&renderer.read()?.raster);
+        Ok(Yielded::Ink(Ink { marks, perspective: *perspective, method: plan.method }))
     }
 
     fn passes(&mut self, camera: &Camera) -> Result<Vec<PassFigures>> {
@@ -105,16 +116,36 @@ impl Draws for Rendered {
     }
 }
 
-impl Yield for Ink {
+impl Yield for Yielded {
     fn mask(&self) -> Mask {
-        let near = self.perspective.near();
-        let inked = |([column, row], pixel): ([u32; 2], &Pixel)| Inked { column, row, distance: pixel.distance(near) };
-        let inked = pixels(&self.raster).filter(|(_, pixel)| pixel.is_ink()).map(inked).collect();
-        Mask { size: [self.raster.width, self.raster.height], inked }
+        match self {
+            Self::Ink(ink) => ink.mask(),
+            Self::Curves(curves) => curves.mask(),
+        }
     }
 
     fn chains(&self) -> Vec<Chain> {
-        trace(&Marks::from(&self.raster), &self.perspective)
+        match self {
+            Self::Ink(ink) => ink.chains(),
+            Self::Curves(curves) => curves.chains(),
+        }
+    }
+
+    fn places(&self) -> Vec<DVec2> {
+        match self {
+            Self::Ink(ink) => ink.places(),
+            Self::Curves(curves) => curves.places(),
+        }
+    }
+}
+
+impl Yield for Ink {
+    fn mask(&self) -> Mask {
+        mask_of(&self.marks, self.perspective.near())
+    }
+
+    fn chains(&self) -> Vec<Chain> {
+        trace(&self.marks, &self.perspective)
     }
 
     /// Border lines have none.
@@ -122,10 +153,8 @@ impl Yield for Ink {
         if !self.method.entry().sub_pixel {
             return Vec::new();
         }
-        let silhouette = pixels(&self.raster).filter(|(_, pixel)| pixel.kind() == Kind::Silhouette);
-        let place = |([column, row], pixel): ([u32; 2], &Pixel)| {
-            DVec2::new(f64::from(column), f64::from(row)) + 0.5 + pixel.place()
-        };
+        let silhouette = self.marks.ink().filter(|mark| mark.pixel.kind() == Kind::Silhouette);
+        let place = |mark: &Mark| DVec2::new(f64::from(mark.column), f64::from(mark.row)) + 0.5 + mark.pixel.place();
         silhouette.map(place).collect()
     }
 }
@@ -135,9 +164,4 @@ fn figures(PassTime { name, ms }: PassTime, costs: &[PassCost]) -> PassFigures {
     let cost = costs.iter().find(|cost| cost.name == name);
     let (bytes, operations) = cost.map_or((0, 0), |cost| (cost.bytes(), cost.operations));
     PassFigures { name, ms, bytes, operations }
-}
-
-/// Pixels with their column and row.
-fn pixels(raster: &InkRaster) -> impl Iterator<Item = ([u32; 2], &Pixel)> {
-    (0..).zip(&raster.pixels).map(|(i, pixel): (u32, _)| ([i % raster.width, i / raster.width], pixel))
 }

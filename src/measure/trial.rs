@@ -10,12 +10,13 @@ use glam::DVec2;
 use xxhash_rust::xxh3::xxh3_64;
 
 use super::compare::{Found, Shown};
-use super::figures::{AtDistance, Band, DrawnLevel, FloorFigures, PassFigures, Place, Run};
-use super::memory;
+use super::figures::{AtDistance, Band, ChainFigures, DrawnLevel, FloorFigures, PassFigures, Place, Run};
+use super::kept::{Seen, ids_kept};
+use super::{chains, memory};
 use crate::error::Result;
 use crate::line::Chain;
 use crate::truth::Mask;
-use crate::truth::metrics::{BandScore, DISTANCES, FRAGMENT, Judge, Scores};
+use crate::truth::metrics::{BandScore, DISTANCES, Judge, Scores};
 use crate::view::Camera;
 
 /// Names of the bands of depth.
@@ -100,8 +101,8 @@ pub struct Trial<'a> {
 struct Timed<Y> {
     /// The one that is judged.
     first: Y,
-    /// The mask of the next eye.
-    next: Mask,
+    /// That of the next eye, where there is a warm frame.
+    next: Option<Y>,
     setup_ms: f64,
     first_frame_ms: f64,
     /// Of the warm frames, sorted.
@@ -137,14 +138,14 @@ impl Trial<'_> {
         for step in 1..=self.repeat.get() {
             let camera = moved(self.camera, step);
             times.push(method.time_of_frame(&camera)?);
-            let mask = method.yielded()?.mask();
-            mask_hashes.push(hash(&mask));
-            next.get_or_insert(mask);
+            let yielded = method.yielded()?;
+            mask_hashes.push(hash(&yielded.mask()));
+            next.get_or_insert(yielded);
             method.time_floor(&camera)?;
         }
         times.sort_by(f64::total_cmp);
         Ok(Timed {
-            next: next.unwrap_or_else(|| first.mask()),
+            next,
             first,
             setup_ms,
             first_frame_ms,
@@ -166,8 +167,7 @@ impl Trial<'_> {
         [mask_name, difference]: [String; 2],
     ) -> Run {
         let agreement = scores.agreement();
-        let chains = timed.first.chains();
-        let short = chains.iter().filter(|chain| chain.points.len() < FRAGMENT).count();
+        let next = timed.next.as_ref().unwrap_or(&timed.first);
         let offsets = self.judge.offsets(&timed.first.places());
         Run {
             scene: self.scene.to_owned(),
@@ -183,9 +183,9 @@ impl Trial<'_> {
             chamfer_px: scores.chamfer,
             h95_px: scores.h95,
             fragments: scores.fragments,
-            chains: chains.len(),
-            short_chains: short as f64 / chains.len().max(1) as f64,
-            excess_pop: mask.pop(&timed.next) - self.truth_pop,
+            pixel_recall: scores.pixel_recall,
+            of_chains: self.chains(&timed.first, next),
+            excess_pop: mask.pop(&next.mask()) - self.truth_pop,
             at: at_distances(scores),
             bands: bands(scores),
             place: offsets.map(|offsets| Place { mean_px: offsets.mean, p95_px: offsets.p95 }),
@@ -204,6 +204,17 @@ impl Trial<'_> {
             mask: mask_name,
             difference,
         }
+    }
+
+    /// The figures of the chains of the first frame.
+    fn chains(&self, first: &impl Yield, next: &impl Yield) -> ChainFigures {
+        let chains = first.chains();
+        // To trace the next frame's ink would take long, and tell nothing: what is traced has no ids.
+        let named = chains.iter().any(|chain| chain.id.is_some());
+        let next = if named { next.chains() } else { Vec::new() };
+        let camera = moved(self.camera, 1);
+        let kept = ids_kept(Seen { camera: self.camera, chains: &chains }, Seen { camera: &camera, chains: &next });
+        chains::figures(self.judge, &chains, kept)
     }
 }
 

@@ -145,7 +145,9 @@ impl Frame {
         let runs = |often| match often {
             Often::EachRound => true,
             Often::ForVertices => round == 0 || !self.keeps_vertices(),
-            Often::EachBatch | Often::Once | Often::ForCurves | Often::ForCurvesOfBatch | Often::OnReading => round == 0,
+            Often::EachBatch | Often::Once | Often::ForCurves | Often::ForCurvesOfBatch | Often::OnReading => {
+                round == 0
+            }
         };
         self.passes.iter().find(|pass| pass.name == name && runs(pass.often))
     }
@@ -161,14 +163,25 @@ impl Frame {
         self.passes.iter().filter(|pass| pass.often == Often::Once).map(|pass| pass.name)
     }
 
-    /// The passes that find curves: first over all chunks, then over each batch, then over what was found.
-    pub fn of_curves(&self) -> [Vec<PassName>; 3] {
-        let has = |names: &[PassName]| {
-            let passes = self.passes.iter().map(|pass| pass.name);
-            passes.filter(|name| names.contains(name)).collect::<Vec<_>>()
+    /// The passes that find curves, in their order, each with its batch. Where batches share one vertex buffer, the values of
+    /// all sides come first: what meets there may lie in several batches.
+    pub fn of_curves(&self) -> Vec<(PassName, u32)> {
+        use PassName::{Crossed, Meet, RimSegments, Seam, Segments, Sight, Tessellate, Turn, Turning, Wanted};
+        let (turn, list) = (&[Tessellate, Seam, Turn][..], &[Meet, Crossed, Segments, RimSegments][..]);
+        let batches = 0..self.batches.len() as u32;
+        let mut passes = vec![(Turning, 0), (Wanted, 0)];
+        let mut over_batches = |names: &[PassName]| {
+            passes.extend(batches.clone().flat_map(|batch| names.iter().map(move |name| (*name, batch))));
         };
-        use PassName::{RimSegments, Segments, Sight, Turn, Turning};
-        [has(&[Turning]), has(&[Turn, Segments, RimSegments]), has(&[Sight])]
+        if self.keeps_vertices() {
+            over_batches(&[&[Turn], list].concat());
+        } else {
+            over_batches(turn);
+            over_batches(&[turn, list].concat());
+        }
+        passes.push((Sight, 0));
+        passes.retain(|(name, _)| self.passes.iter().any(|pass| pass.name == *name));
+        passes
     }
 
     /// The lists of pixels that these fill and go over.

@@ -33,8 +33,14 @@ pub enum PassName {
     Border,
     /// The chunks through which contours may run.
     Turning,
-    /// How vertices face the eye.
+    /// Those of them whose vertices count.
+    Wanted,
+    /// How vertices face the eye, as far as their own chunk tells.
     Turn,
+    /// What other chunks add on their sides.
+    Meet,
+    /// The facets through which contours run.
+    Crossed,
     /// Contours, facet by facet.
     Segments,
     /// The rim where it faces the eye.
@@ -81,8 +87,8 @@ pub enum Over {
     Pixels,
     /// The edges of the rim.
     RimEdges,
-    /// The segments of curves for which there is room.
-    Segments,
+    /// What was found of curves, as much as there is room for.
+    Found,
 }
 
 /// A pass of a frame.
@@ -114,7 +120,10 @@ impl PassName {
             Self::Adjacency => "adjacency",
             Self::Border => "border",
             Self::Turning => "turning",
+            Self::Wanted => "wanted",
             Self::Turn => "turn",
+            Self::Meet => "meet",
+            Self::Crossed => "crossed",
             Self::Segments => "segments",
             Self::RimSegments => "rim_segments",
             Self::Sight => "sight",
@@ -135,10 +144,12 @@ impl PassName {
             Self::WalkRest => (Often::Once, Over::List("rest")),
             Self::Candidates | Self::TowardAway | Self::Adjacency => (Often::Once, Over::Pixels),
             Self::Border => (Often::Once, Over::RimEdges),
-            Self::Turning => (Often::ForCurves, Over::AllChunks),
-            Self::Turn | Self::Segments => (Often::ForCurvesOfBatch, Over::SeenChunks),
+            Self::Turning | Self::Wanted => (Often::ForCurves, Over::AllChunks),
+            Self::Turn => (Often::ForCurvesOfBatch, Over::Chunks),
+            Self::Meet | Self::Crossed => (Often::ForCurvesOfBatch, Over::SeenChunks),
+            Self::Segments => (Often::ForCurvesOfBatch, Over::Found),
             Self::RimSegments => (Often::ForCurvesOfBatch, Over::RimEdges),
-            Self::Sight => (Often::ForCurves, Over::Segments),
+            Self::Sight => (Often::ForCurves, Over::Found),
             Self::Compose => (Often::OnReading, Over::Pixels),
         };
         PlannedPass { name: self, often, over }
@@ -147,8 +158,8 @@ impl PassName {
 
 /// The passes that frames of a plan may run, in their order.
 pub fn passes(plan: &Plan) -> Vec<PlannedPass> {
-    use PassName::{Compose, Facing, Project, Rasterize, RasterizeLarge, RimSegments, Seam, Segments, Sight, Tessellate};
-    use PassName::{Turn, Turning};
+    use PassName::{Compose, Crossed, Facing, Meet, Project, Rasterize, RasterizeLarge, RimSegments, Seam, Segments};
+    use PassName::{Sight, Tessellate, Turn, Turning, Wanted};
     let seam: &[_] = if let Detail::Adaptive { .. } = plan.detail { &[Seam] } else { &[] };
     let entry = plan.method.entry();
     // The rim of a method that yields curves is a curve too.
@@ -156,8 +167,8 @@ pub fn passes(plan: &Plan) -> Vec<PlannedPass> {
     let border: &[_] = if inked { &[PassName::Border] } else { &[] };
     let curves: &[_] = match plan.border {
         _ if !plan.has_curves() => &[],
-        Border::On => &[Turning, Turn, Segments, RimSegments, Sight],
-        Border::Off => &[Turning, Turn, Segments, Sight],
+        Border::On => &[Turning, Wanted, Turn, Meet, Crossed, Segments, RimSegments, Sight],
+        Border::Off => &[Turning, Wanted, Turn, Meet, Crossed, Segments, Sight],
     };
     let raster = &[Facing, Project, Rasterize, RasterizeLarge][..];
     let names = [&[Tessellate], seam, raster, entry.passes, border, curves, &[Compose]];

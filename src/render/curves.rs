@@ -2,10 +2,10 @@
 
 use super::Renderer;
 use crate::error::{Error, Result, Setting};
-use crate::gpu::curves::Found;
+use crate::gpu::clock::Timer;
 use crate::gpu::uniforms::Segment;
 use crate::gpu::work::Work;
-use crate::line::{Curve, link};
+use crate::line::{Chain, Curve, link, visible};
 use crate::message;
 use crate::plan::{Frame, Piece};
 
@@ -25,6 +25,16 @@ impl Renderer {
         Ok(self.linked(&frame, segments))
     }
 
+    /// What the eye sees of the curves of the last frame.
+    ///
+    /// # Errors
+    /// As [`Self::curves`].
+    pub fn chains(&mut self) -> Result<Vec<Chain>> {
+        let curves = self.curves()?;
+        let size = self.last().map_or([0; 2], |frame| frame.pieces.page());
+        Ok(visible::chains(curves, size))
+    }
+
     /// The curves of all segments of a frame.
     pub(super) fn linked(&self, frame: &Frame, segments: Vec<Segment>) -> Vec<Curve> {
         link(segments, &frame.lattice, &self.perspective(frame))
@@ -34,15 +44,11 @@ impl Renderer {
     pub(super) fn segments(&mut self, frame: &Frame, piece: Piece) -> Result<Vec<Segment>> {
         self.last = None;
         let found = loop {
-            self.find_segments(frame, piece)?;
-            match self.curves.read(&self.gpu)? {
-                Found::All(segments) => break segments,
-                Found::TooMany(count) => {
-                    let Self { gpu, scene, page, curves, stages, .. } = self;
-                    curves.make_room(gpu, count + count / 4)?;
-                    stages.fit(gpu, frame, scene, page, curves)?;
-                }
+            self.find_segments(frame, piece, None)?;
+            if let Some(segments) = self.curves.read(&self.gpu)? {
+                break segments;
             }
+            self.stages.fit(&self.gpu, frame, &self.scene, &self.page, &self.curves)?;
         };
         self.surface.dem().check()?;
         self.last = Some((frame.clone(), piece));
@@ -57,16 +63,10 @@ impl Renderer {
     }
 
     /// The passes that list segments, over a piece that was drawn.
-    fn find_segments(&self, frame: &Frame, piece: Piece) -> Result<()> {
-        let mut work = Work::new(self.on_device(), frame, piece, None);
-        work.clear(&["turning"])?;
-        work.empty("segments", "no_pixels")?;
-        let [of_chunks, of_batch, of_list] = frame.of_curves();
-        of_chunks.into_iter().try_for_each(|pass| work.run(pass, [0, 0]))?;
-        for batch in 0..frame.batches.len() as u32 {
-            of_batch.iter().try_for_each(|pass| work.run(*pass, [batch, 0]))?;
-        }
-        of_list.into_iter().try_for_each(|pass| work.run(pass, [0, 0]))?;
+    pub(super) fn find_segments(&self, frame: &Frame, piece: Piece, timer: Option<&mut Timer>) -> Result<()> {
+        let mut work = Work::new(self.on_device(), frame, piece, timer);
+        work.clear(&["turning", "tally"])?;
+        frame.of_curves().into_iter().try_for_each(|(pass, batch)| work.run(pass, [batch, 0]))?;
         work.finish()
     }
 }

@@ -2,15 +2,17 @@
 
 use super::{Drawn, Renderer};
 use crate::error::Result;
-use crate::line::{Marks, marks};
-use crate::plan::{Frame, Piece, Plan};
+use crate::line::{Chain, Marks, marks, one_pixel_wide, visible};
+use crate::plan::{Frame, Piece, Plan, Yields};
 use crate::view::Camera;
 
-/// The ink of a frame on a page of any size.
+/// The ink of a frame on a page of any size, and its curves.
 #[derive(Debug, Clone)]
 pub struct Page {
     /// Ink, kind, sub-pixel place and depth.
     pub marks: Marks,
+    /// What the eye sees of curves; none where the plan has none.
+    pub chains: Vec<Chain>,
     /// How many pixels show land, inked or not.
     pub covered: u64,
     /// Nodes the longest walk visited; 0 for other methods.
@@ -34,7 +36,7 @@ impl Renderer {
     /// # Errors
     /// As [`Self::page`].
     pub fn page_of(&mut self, frame: Frame, progress: impl Fn(f64)) -> Result<Page> {
-        let (mut list, mut covered, mut longest_walk) = (Vec::new(), 0, 0);
+        let (mut list, mut segments, mut covered, mut longest_walk) = (Vec::new(), Vec::new(), 0, 0);
         let count = frame.pieces.iter().len() as f64;
         self.upload(&frame)?;
         for (done, piece) in (1..).zip(frame.pieces.iter()) {
@@ -43,9 +45,18 @@ impl Renderer {
             list.append(&mut marks::of_piece(&drawn.raster, piece));
             covered += marks::covered(&drawn.raster, piece);
             longest_walk = longest_walk.max(drawn.longest_walk);
+            if frame.plan.has_curves() {
+                segments.append(&mut self.segments(&frame, piece)?);
+            }
             progress(f64::from(done) / count);
         }
-        Ok(Page { marks: Marks::new(frame.pieces.page(), list), covered, longest_walk, frame })
+        let size = frame.pieces.page();
+        let chains = visible::chains(self.linked(&frame, segments), size);
+        let marks = match frame.plan.method.entry().yields {
+            Yields::Ink => Marks::new(size, list),
+            Yields::Curves => one_pixel_wide(&chains, size),
+        };
+        Ok(Page { marks, chains, covered, longest_walk, frame })
     }
 
     /// Draws a piece of a frame and brings it back, halo and all: `piece.drawn` of the page.

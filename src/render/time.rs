@@ -6,7 +6,7 @@ use super::Renderer;
 use crate::error::Result;
 use crate::gpu::Clock;
 use crate::gpu::clock::{FrameTime, Timer};
-use crate::plan::{Frame, Plan};
+use crate::plan::{Frame, Plan, Yields};
 use crate::view::Camera;
 
 impl Renderer {
@@ -32,6 +32,9 @@ impl Renderer {
         let time = frame.pieces.iter().try_fold(FrameTime::default(), |time, piece| {
             let mut timer = Timer::new(&self.gpu);
             self.passes(&frame, piece, Some(&mut timer))?;
+            if plan.has_curves() {
+                self.find_segments(&frame, piece, Some(&mut timer))?;
+            }
             let times = timer.read(&self.gpu).inspect_err(|_| self.last = None)?;
             Ok(time.and(&times))
         })?;
@@ -39,16 +42,21 @@ impl Renderer {
     }
 
     /// Draws a frame and says how long it took, ms: by the wall clock around [`Self::frame`], or by the device's
-    /// timestamps from its first command to its last pass.
+    /// timestamps from its first command to its last pass. A method that yields curves is timed until they are chains, by the
+    /// wall clock.
     ///
     /// # Errors
     /// As [`Self::timed_frame`].
     pub fn time_of_frame(&mut self, plan: &Plan, camera: &Camera) -> Result<f64> {
-        if self.gpu.clock == Clock::Timestamps {
+        let inks = plan.method.entry().yields == Yields::Ink;
+        if inks && self.gpu.clock == Clock::Timestamps {
             return Ok(self.timed_frame(plan, camera)?.ms);
         }
         let start = Instant::now();
         self.frame(plan, camera)?;
+        if !inks {
+            self.chains()?;
+        }
         Ok(start.elapsed().as_secs_f64() * 1e3)
     }
 }

@@ -48,6 +48,8 @@ struct Row<'a> {
     best: bool,
     /// Fragments of the scene's truth.
     truth_fragments: Option<f64>,
+    /// Share of short chains of the scene's truth.
+    truth_short_chains: Option<f64>,
     /// In the order of [`Page::pass_names`].
     of_passes: Vec<Option<&'a PassFigures>>,
 }
@@ -111,6 +113,7 @@ fn row<'a>(run: &'a Run, results: &'a Results, pass_names: &[&str]) -> Row<'a> {
         front: run.pareto,
         best: best.is_some_and(|best| std::ptr::eq(best, run)),
         truth_fragments: scene.map(|scene| scene.truth.fragments),
+        truth_short_chains: scene.map(|scene| scene.truth.short_chains),
         of_passes: pass_names.iter().map(figures).collect(),
     }
 }

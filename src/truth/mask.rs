@@ -90,9 +90,21 @@ impl Mask {
     /// Share of the inked pixels without ink of `next` in the 3 x 3 pixels around them, the pixels within 1 px; 0 without
     /// ink.
     pub fn pop(&self, next: &Self) -> f64 {
-        let there = next.pixels();
-        let popped = self.inked.iter().filter(|p| !self.block(p).any(|i| there[i])).count();
-        popped as f64 / self.inked.len().max(1) as f64
+        self.alone(next) as f64 / self.inked.len().max(1) as f64
+    }
+
+    /// Share of the inked pixels with ink of `other` in the 3 x 3 pixels around them: what does not pop; 1 without ink.
+    pub fn beside(&self, other: &Self) -> f64 {
+        match self.inked.len() {
+            0 => 1.0,
+            inked => (inked - self.alone(other)) as f64 / inked as f64,
+        }
+    }
+
+    /// How many inked pixels have no ink of `other` in the 3 x 3 pixels around them.
+    fn alone(&self, other: &Self) -> usize {
+        let there = other.pixels();
+        self.inked.iter().filter(|p| !self.block(p).any(|i| there[i])).count()
     }
 
     /// Place of a pixel on the page, row by row.

@@ -1,6 +1,10 @@
 //! How far a mask is from truth. Definitions: precision is the share of inked pixels whose centre lies within k + 0.5 px of
 //! a piece of truth, recall the share of truth's length within k + 0.5 px of an inked centre, F their harmonic mean.
 //!
+//! Truth's length runs to and fro where a line lies aslant to the grid; its pixels do not: recall by pixels is the share of the
+//! pixels of truth, drawn one pixel wide, that have ink within k + 0.5 px, centre to centre. Chains have figures of their
+//! own: [`ChainScores`].
+//!
 //! Distances are exact, from an R-tree of pieces and one of inked centres. Cost: a microsecond a pixel and a piece. A
 //! share of nothing is whole: without ink precision is 1, recall and F are 0.
 
@@ -9,7 +13,10 @@ use rayon::prelude::*;
 use rstar::primitives::Line as Segment;
 use rstar::{PointDistance, RTree};
 
+pub use self::chains::ChainScores;
 use super::{Mask, Piece, Truth};
+
+mod chains;
 
 /// Distances k at which [`Scores::at`] holds figures, px.
 pub const DISTANCES: [f64; 4] = [0.5, 1.0, 2.0, 3.0];
@@ -21,7 +28,7 @@ const WITHIN: f64 = 1.0 + HALF;
 const SPURIOUS: f64 = 2.0 + HALF;
 /// Missed truth pixels that make a gap.
 const GAP: usize = 3;
-/// 8-connected sets and chains with fewer pixels are fragments.
+/// 8-connected sets with fewer pixels are fragments.
 pub const FRAGMENT: usize = 6;
 /// Bands of depth, a third of truth's length each.
 const BANDS: usize = 3;
@@ -60,6 +67,8 @@ pub struct Scores {
     pub h95: Option<f64>,
     /// Share of 8-connected sets of ink with fewer than 6 pixels.
     pub fragments: f64,
+    /// Share of the pixels of truth, drawn one pixel wide, that have ink within 1 px.
+    pub pixel_recall: f64,
 }
 
 impl Scores {
@@ -97,6 +106,8 @@ pub struct Offsets {
 pub struct Judge<'a> {
     truth: &'a Truth,
     lines: RTree<Segment<[f64; 2]>>,
+    /// Truth drawn one pixel wide.
+    drawn: Mask,
     /// Where bands of depth end, metres; all but the last.
     bands: [f64; BANDS - 1],
 }
@@ -110,7 +121,7 @@ impl<'a> Judge<'a> {
         depths.sort_by(|a, b| a.0.total_cmp(&b.0));
         let bands = [1.0, 2.0].map(|k| quantile(&depths, k / BANDS as f64 * length));
         let lines = RTree::bulk_load(truth.pieces.iter().map(segment).collect());
-        (length > 0.0).then_some(Self { truth, lines, bands })
+        (length > 0.0).then(|| Self { truth, lines, drawn: Mask::of_truth(truth), bands })
     }
 
     /// Distance of a place on the page from the nearest line, px.
@@ -178,6 +189,7 @@ impl Measured<'_> {
             chamfer,
             h95,
             fragments: self.mask.fragments(FRAGMENT),
+            pixel_recall: self.judge.drawn.beside(self.mask),
         }
     }
 

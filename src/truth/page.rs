@@ -3,6 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::view::Camera;
+use crate::view::cut::share_within;
 
 /// Longest piece, px.
 const PIECE: f64 = 0.25;
@@ -86,7 +87,7 @@ impl Page {
     pub fn pieces(&self, edge: [DVec3; 2], line: Line, mut sees: impl FnMut(DVec3) -> bool, out: &mut Vec<Piece>) {
         let Some([p, q]) = self.before_eye(edge) else { return };
         let [(a, near_a), (b, near_b)] = [self.project(p), self.project(q)];
-        let Some([from, to]) = self.share_on_page(a, b) else { return };
+        let Some([from, to]) = share_within([DVec2::splat(-MARGIN), self.size + MARGIN], a, b) else { return };
         let count = ((to - from) * a.distance(b) / PIECE).ceil().max(1.0);
         for i in 0..count as u32 {
             let at = |k: f64| from + (to - from) * k / count;
@@ -118,22 +119,5 @@ impl Page {
             (false, true) => Some([cut(), q]),
             (false, false) => None,
         }
-    }
-
-    /// The part of a line from `a` to `b` that lies on the page or its margin, as shares of it (Liang, Barsky 1984).
-    fn share_on_page(&self, a: DVec2, b: DVec2) -> Option<[f64; 2]> {
-        let (mut from, mut to) = (0.0_f64, 1.0_f64);
-        for (start, step, size) in [(a.x, b.x - a.x, self.size.x), (a.y, b.y - a.y, self.size.y)] {
-            let (low, high) = (-MARGIN - start, size + MARGIN - start);
-            if step == 0.0 {
-                if low > 0.0 || high < 0.0 {
-                    return None;
-                }
-                continue;
-            }
-            from = from.max((low / step).min(high / step));
-            to = to.min((low / step).max(high / step));
-        }
-        (from < to || (from == to && a == b)).then_some([from, to])
     }
 }

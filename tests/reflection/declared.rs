@@ -12,7 +12,7 @@ use wgpu::naga;
 use super::{all_modules, bound, constants, layouts, shared_constants, shared_structs};
 
 /// Constants that are the shaders' own, and why Rust need not know them.
-const OWN_CONSTANTS: [(&str, &str); 18] = [
+const OWN_CONSTANTS: [(&str, &str); 20] = [
     ("LEFT", "flag of a vertex: set by project, read by rasterize"),
     ("RIGHT", "as LEFT"),
     ("ABOVE", "as LEFT"),
@@ -30,6 +30,8 @@ const OWN_CONSTANTS: [(&str, &str); 18] = [
     ("EDGE_LIMIT", "up to where edge functions fit 32 bits"),
     ("CUT", "corner of a clipped polygon, within one invocation"),
     ("OVERSHOOT", "share by which walk_rest aims beyond the centre of a pixel"),
+    ("NO_FACET", "no facet, within one invocation"),
+    ("LONGEST_SECTION", "facets that walk_rest follows a cut over"),
     ("NONE", "no depth, within one invocation"),
 ];
 

@@ -117,6 +117,32 @@ fn the_page_shows_what_passes_cost_and_limits_where_they_were_asked_for() {
 }
 
 #[test]
+fn the_page_tells_how_chains_lie_beside_truths_own() {
+    let results = sample();
+    let page = page_of(&results);
+    let table = between(&page, "<h3 id=\"chains\">", "</table>");
+    let rows: Vec<&str> = between(table, "<tbody>", "</tbody>").split("<tr>").skip(1).collect();
+    assert_eq!(rows.len(), results.runs.len());
+    let of = |method: &str| results.runs.iter().position(|run| run.method == method).expect("a run");
+    let contour = rows[of("contour")];
+    let figures = "<td data-v=\"214\">214</td><td data-v=\"3721.4\">3\u{202f}721</td>\n<td data-v=\"0.0572\">0.057</td>\
+        <td data-v=\"0.1104\">0.110</td>";
+    let short = "<td data-v=\"0.1125\">0.113</td><td data-v=\"0.0875\">0.087</td>";
+    assert!(contour.contains(figures) && contour.contains(short), "{contour}");
+    assert!(contour.contains("<td data-v=\"0.9375\">0.938</td>"), "{contour}");
+    // What is traced has no names, and where nothing is drawn there are no distances.
+    let none = "<td data-v=\"\">–</td>";
+    assert_eq!(rows[of("toward-away")].matches(none).count(), 1);
+    assert_eq!(rows[of("adjacency")].matches(none).count(), 3);
+    assert!(rows[of("adjacency")].contains("<td data-v=\"0\">0</td>"));
+    // Recall by pixels stands in the table of all runs.
+    let run = &results.runs[0];
+    assert!(
+        between(&page, "<section id=\"runs\"", "</table>").contains(&format!("<td data-v=\"{}\">", run.pixel_recall))
+    );
+}
+
+#[test]
 fn words_follow_from_the_figures() {
     let mut results = one_scene();
     let page = page_of(&results);
@@ -141,10 +167,11 @@ fn words_follow_from_the_figures() {
         when(&page_of(&results)).contains("walk at level 4: F 0.9985 in 56.2 ms a frame. Truth may be off by 0.0020")
     );
     // Another method wins when its figures do.
-    results.runs.iter_mut().filter(|run| run.method == "walk").for_each(|run| (run.f, run.gaps) = (0.5, 7));
+    let leading = results.runs.iter_mut().filter(|run| ["walk", "contour"].contains(&run.method));
+    leading.for_each(|run| (run.f, run.gaps) = (0.5, 7));
     let page = page_of(&results);
     assert!(between(&page, "<p class=\"lead\">", "</p>").starts_with("Toward-away-wide at level 8 comes closest"));
-    assert!(when(&page).contains("walk, toward-away and toward-away-wide, at every level."));
+    assert!(when(&page).contains("walk, contour, toward-away and toward-away-wide, at every level."));
 }
 
 #[test]
