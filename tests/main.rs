@@ -46,6 +46,7 @@ mod north;
 mod nothing;
 mod one_pixel;
 mod one_renderer;
+mod open_hills;
 mod overwritten;
 mod page_curves;
 mod pieces;

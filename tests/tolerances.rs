@@ -369,6 +369,21 @@ pub const WEIGHT_STEP: f32 = 0.2;
 /// Example: of 100 px of line with weight 1 on 60, 0.3 on 20 and 0.1 on 20 px, 80 px are drawn.
 pub const VISIBLE_WEIGHT: f32 = 0.25;
 
+/// Most darkness of a block of 12 x 12 px of far land, a share of black.
+///
+/// Example: seven lines of 0.6 px across a block are 0.35.
+pub const BLOCK_DARKNESS: f64 = 0.35;
+
+/// Of lines of more than twice the least jump, the share of length that economy leaves at least.
+///
+/// Example: of 20 000 px at most 6 000 px yield.
+pub const LINES_KEPT: f64 = 0.7;
+
+/// How far from the skyline the stroke of a column may run, px.
+///
+/// Example: land begins at y = 300.0; a stroke at 298.6 is near enough.
+pub const SKYLINE_PX: f64 = 1.5;
+
 /// How far contours may lie from those of mathematics on average, and those from them, px.
 ///
 /// Example: of a cone on samples 12 m apart, 900 m away, lines are 0.007 px off, nearly all of it about the apex.

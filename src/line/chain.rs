@@ -80,7 +80,8 @@ impl ChainPoint {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Id(pub u64);
 
-/// An ordered polyline on the page; one point is a dot.
+/// An ordered polyline on the page; one point is a dot. Chains of [curves](super::curve) run as those do: what they draw the end
+/// of lies on their left, what is behind on their right.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chain {
     /// Unique in a frame; `None` of chains traced from pixels, which do not know where they were in the last one.
