@@ -241,7 +241,7 @@ fn where_nothing_can_be_compared_one_line_says_so() {
         (["--levels", "best"], "want 1, 2, 4"),
         (["--levels", "auto,auto"], "auto is there twice"),
         (["--levels", "2,4,2"], "2 is there twice"),
-        (["--methods", "pen"], "want some of walk, toward-away"),
+        (["--methods", "pen"], "want some of walk, contour, toward-away"),
         (["--methods", "walk,walk"], "walk is there twice"),
         (["--sizes", "64x48,64x48"], "64x48 is there twice"),
         (["--sizes", "64"], "want WxH"),

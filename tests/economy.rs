@@ -99,7 +99,7 @@ fn of_two_lines_too_near_the_weaker_yields() {
             both[0]
         };
         let weights: Vec<f32> = (0..=20).map(|i| beside(0.2 * f64::from(i))).collect();
-        let alone = middles(&[weak.clone()])[0];
+        let alone = middles(std::slice::from_ref(&weak))[0];
         assert!(is_rising(&weights), "{what}: {weights:?}");
         assert!(weights[0] < 0.5 * alone && weights[20] == alone, "{what}: {weights:?}, {alone} alone");
     }

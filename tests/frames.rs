@@ -7,7 +7,7 @@ use hachure::error::Result;
 use hachure::gpu::Gpu;
 use hachure::line::InkRaster;
 use hachure::plan::batches::BATCH_CHUNKS;
-use hachure::plan::{Border, Frame, Method, Pieces, Plan, Share};
+use hachure::plan::{Border, Frame, Method, Pieces, Plan, Share, Yields};
 use hachure::render::{Drawn, FrameTime, Page, Renderer};
 use hachure::surface::lattice::CHUNK_VERTICES;
 use hachure::surface::{Lattice, Level, Surface};
@@ -22,12 +22,15 @@ pub const BESIDE: i32 = 31;
 pub const CLIPPED: i32 = 48;
 pub const MISSING: i32 = 64;
 
-/// Every method with its name.
-pub const METHODS: [(&str, Method); Method::ALL.len()] = {
-    let mut named = [("", Method::Walk); Method::ALL.len()];
-    let mut i = 0;
-    while i < named.len() {
-        named[i] = (Method::ALL[i].entry().name, Method::ALL[i]);
+/// Every method that inks pixels, with its name: all but the one that yields curves.
+pub const METHODS: [(&str, Method); Method::ALL.len() - 1] = {
+    let mut named = [("", Method::Walk); Method::ALL.len() - 1];
+    let (mut i, mut n) = (0, 0);
+    while i < Method::ALL.len() {
+        if let Yields::Ink = Method::ALL[i].entry().yields {
+            named[n] = (Method::ALL[i].entry().name, Method::ALL[i]);
+            n += 1;
+        }
         i += 1;
     }
     named

@@ -7,6 +7,7 @@ use std::path::Path;
 use clap::CommandFactory;
 use hachure::cli::Arguments;
 use hachure::cli::choices::default_share;
+use hachure::line::Economy;
 use hachure::plan::detail::ERROR_PX;
 
 use crate::cli::{DRAW, Place, refuses, stderr};
@@ -134,7 +135,14 @@ fn defaults(command: &clap::Command) -> Vec<(String, String)> {
 #[test]
 fn help_says_the_defaults_that_the_code_has() {
     let share = default_share().to_owned();
-    let expected = [("error_px".to_owned(), ERROR_PX.to_string()), ("share".to_owned(), share)];
+    let [px, width] = [Economy::MIN_GAP, Economy::WIDTH];
+    let gap = format!("{px}px on a page {width}px wide, and in proportion");
+    let expected = [
+        ("error_px".to_owned(), ERROR_PX.to_string()),
+        ("share".to_owned(), share),
+        ("min_jump".to_owned(), Economy::MIN_JUMP.to_string()),
+        ("min_gap".to_owned(), gap),
+    ];
     assert_eq!(defaults(&Arguments::command()), expected);
     let arg = clap::Arg::new("x").long("x").help("Metres [default: 7]");
     assert_eq!(defaults(&clap::Command::new("c").arg(arg)), [("x".to_owned(), "7".to_owned())], "one is found");

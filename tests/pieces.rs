@@ -8,7 +8,7 @@ use hachure::dem::Dem;
 use hachure::gpu::Gpu;
 use hachure::line::{Marks, Pixel};
 use hachure::plan::pieces::{HALO, LARGEST_PAGE, LARGEST_PIECE, LONGEST_PIECE, Rectangle};
-use hachure::plan::{Border, Frame, Method, Piece, Pieces, Plan, Share};
+use hachure::plan::{Border, Detail, Frame, Method, Piece, Pieces, Plan, Share};
 use hachure::surface::Surface;
 use hachure::view::Camera;
 
@@ -83,6 +83,28 @@ fn a_page_in_pieces_has_the_bits_of_one_piece() {
         }
         assert!(inked > 1000, "{name}: {inked} px of ink, too little to compare");
     }
+}
+
+#[test]
+fn chains_of_a_page_in_pieces_are_those_of_one_piece() {
+    let surface = Arc::new(Surface::new(rough(60, 50, 2.0, 4.0, true)));
+    let mut length = 0;
+    for (camera, level) in views(&surface).into_iter().zip([4, 1, 2, 2]) {
+        for detail in [Detail::Uniform(scenes::level(level)), Detail::default()] {
+            let plan = Plan { detail, ..Plan::new(scenes::level(level), Method::Contour, Border::On) };
+            let mut renderer = Planned::new(gpu(), &surface, plan);
+            let mut chains = |side| {
+                let frame = renderer.plan_in(&camera, Pieces::new(PAGE, side));
+                renderer.page_of(frame, |_| ()).expect("a page").chains
+            };
+            let whole = chains(PAGE);
+            length += whole.iter().map(|chain| chain.points.len()).sum::<usize>();
+            for side in [[61, 47], [7, 131], [32, 32]] {
+                assert!(whole == chains(side), "{detail:?}, pieces of {side:?}, {camera:?}");
+            }
+        }
+    }
+    assert!(length > 500, "{length} points of chains");
 }
 
 #[test]

@@ -12,9 +12,10 @@ use hachure::cli::words::line;
 use hachure::gpu::Capacity;
 use hachure::gpu::pass::{parse, reflect};
 use hachure::gpu::sizes::{BLOCK, LARGEST_BINDING, fits, of_page, of_scene};
-use hachure::gpu::uniforms::{BatchUniform, ChunkUniform, Counts, SceneUniform};
-use hachure::gpu::{CameraUniform, adjacency, border, candidates, compose, facing, pairs};
-use hachure::gpu::{project, rasterize, rasterize_large, seam, tessellate, toward_away, walk, walk_rest};
+use hachure::gpu::uniforms::{BatchUniform, ChunkUniform, Counts, SceneUniform, Segment, Tally, code, seen};
+use hachure::gpu::{CameraUniform, adjacency, border, candidates, compose, crossed, curves, facing, meet, pairs};
+use hachure::gpu::{project, rasterize, rasterize_large, rim_segments, seam, segments, sight, tessellate};
+use hachure::gpu::{toward_away, turn, turning, walk, walk_rest, wanted};
 use hachure::line::{Kind, Pixel};
 use hachure::measure::depth_draw;
 use hachure::plan::Visibility;
@@ -49,6 +50,14 @@ pub fn shaders(visibility: Visibility, keeps_vertices: bool) -> Vec<(&'static st
         ("adjacency", adjacency::SOURCE.into()),
         ("border", border::SOURCE.into()),
         ("compose", compose::SOURCE.into()),
+        ("turning", turning::SOURCE.into()),
+        ("wanted", wanted::SOURCE.into()),
+        ("turn", turn::SOURCE.into()),
+        ("meet", meet::SOURCE.into()),
+        ("crossed", crossed::SOURCE.into()),
+        ("segments", segments::source(keeps_vertices).into()),
+        ("rim_segments", rim_segments::source(keeps_vertices).into()),
+        ("sight", sight::source(keeps_vertices).into()),
     ]
 }
 
@@ -102,6 +111,8 @@ fn shared_structs() -> Vec<(&'static str, Layout)> {
         ("Counts", layout!(Counts: longest_walk, orphans, cut_short)),
         ("Chunk", layout!(ChunkUniform: origin, step, coarser, low, high, beyond, tile, block, pad)),
         ("RimEdge", layout!(RimEdge: sample, direction, half)),
+        ("Segment", layout!(Segment: start, fall, end, behind, at, facet, code, outward, pixel, sight)),
+        ("Tally", layout!(Tally: wanted, crossed, segments, asked, cut_short)),
     ]
 }
 
@@ -145,6 +156,21 @@ fn shared_constants() -> Vec<(&'static str, f64)> {
         lattice::WEST,
         quadtree::NO_SLOT,
         quadtree::INNER,
+        BATCH_CHUNKS,
+        curves::AROUND,
+        curves::SIDE_VERTICES,
+        code::AWAY_CORNER,
+        code::OF_RIM,
+        code::STARTS,
+        code::ENDS,
+        code::STARTS_TURNING,
+        code::ENDS_TURNING,
+        code::PART_SHIFT,
+        seen::FREE,
+        seen::HIDDEN,
+        seen::NEAREST_FREE,
+        seen::NEAREST_HIDDEN,
+        seen::NOT_ASKED,
         tile::TILE_SIDE,
         tile::TILE_SAMPLES,
         rasterize::STRIP_FACETS,

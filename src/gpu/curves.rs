@@ -10,9 +10,9 @@ use crate::plan::batches::BATCH_CHUNKS;
 use crate::surface::lattice::{CHUNK_QUADS, CHUNK_VERTICES};
 
 /// Words that tell what lies around a chunk.
-const AROUND_BYTES: u64 = 16 * WORD_BYTES;
-/// Values of the sides of a chunk.
-const SIDES_BYTES: u64 = 4 * CHUNK_QUADS as u64 * WORD_BYTES;
+pub const AROUND: u32 = 16;
+/// Vertices of the side of a chunk.
+pub const SIDE_VERTICES: u32 = 4 * CHUNK_QUADS;
 
 /// For how much there is room; what is found of it may be more.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -55,7 +55,7 @@ impl CurveBuffers {
         let chunks = chunks + chunks / 4;
         let of_batch = u64::from(chunks.min(BATCH_CHUNKS));
         self.buffers.create(gpu, "turning", u64::from(chunks) * WORD_BYTES)?;
-        self.buffers.create(gpu, "around", u64::from(chunks) * AROUND_BYTES)?;
+        self.buffers.create(gpu, "around", u64::from(chunks) * u64::from(AROUND) * WORD_BYTES)?;
         self.buffers.create(gpu, "turns", of_batch * u64::from(CHUNK_VERTICES) * WORD_BYTES)?;
         self.buffers.create(gpu, "tally", size_of::<Tally>() as u64)?;
         self.chunks = chunks;
@@ -66,7 +66,7 @@ impl CurveBuffers {
         sizes::segments_fit(u64::from(room.segments))?;
         let [wanted, crossed, segments] = [room.wanted, room.crossed, room.segments].map(u64::from);
         self.generation += 1;
-        self.buffers.create(gpu, "sides", wanted * SIDES_BYTES)?;
+        self.buffers.create(gpu, "sides", wanted * u64::from(SIDE_VERTICES) * WORD_BYTES)?;
         self.buffers.create(gpu, "crossed", crossed * WORD_BYTES)?;
         self.buffers.create(gpu, "segments", segments * SEGMENT_BYTES)?;
         self.buffers.create(gpu, "asked", segments * WORD_BYTES)?;

@@ -75,10 +75,10 @@ impl<'a> Along<'a> {
                 let i = if backward { n - 1 - turn % n } else { turn % n };
                 let step = if backward { self.steps[i] } else { self.before(i) };
                 let fade = (-step / reach).exp();
-                for k in 0..N {
-                    sum[k] *= fade;
-                    sums[i].0[k] += if turn + n >= rounds * n { sum[k] } else { 0.0 };
-                    sum[k] += weighed(i)[k];
+                for ((sum, all), own) in sum.iter_mut().zip(&mut sums[i].0).zip(weighed(i)) {
+                    *sum *= fade;
+                    *all += if turn + n >= rounds * n { *sum } else { 0.0 };
+                    *sum += own;
                 }
                 total *= fade;
                 sums[i].1 += if turn + n >= rounds * n { total } else { 0.0 };

@@ -111,7 +111,7 @@ fn turns(twin: &Twin, camera: &Camera, least: f64) -> Vec<DVec2> {
     let of_curve = |curve: Strung<Node>| {
         let mut runs = closed(runs(twin, &pieces, &curve, camera), least);
         // The first of a ring is a turn unless the last is of its kind.
-        let turns_first = is_ring(&pieces, &curve) && runs.len() % 2 == 0;
+        let turns_first = is_ring(&pieces, &curve) && runs.len().is_multiple_of(2);
         runs.drain(..usize::from(!turns_first && !runs.is_empty()));
         runs.into_iter().map(|run| run.start).filter(|place| on_page(*place))
     };

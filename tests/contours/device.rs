@@ -6,12 +6,12 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3, Vec3};
 use hachure::gpu::Gpu;
-use hachure::gpu::uniforms::{Segment, Tally, code};
-use hachure::line::{Bound, Curve};
+use hachure::gpu::uniforms::{Segment, Tally, code, seen};
+use hachure::line::{Bound, Curve, link};
 use hachure::plan::{Border, Curves, Detail, Method, Plan, Thrift};
 use hachure::surface::lattice::CHUNK_FACETS;
 use hachure::surface::{Lattice, LatticePoint, Surface};
-use hachure::view::Camera;
+use hachure::view::{Camera, Perspective};
 
 use super::twin::{Corners, Name, Piece, Twin};
 use crate::frames::Planned;
@@ -109,6 +109,8 @@ pub struct Scene {
     pub found: HashMap<Name, Found>,
     /// As the renderer links them.
     pub curves: Vec<Curve>,
+    /// The same where every part is looked at, and so is a stretch of its own.
+    pub in_parts: Vec<Curve>,
     /// Of each pixel, depth of what it shows.
     depths: Vec<f32>,
     near: f64,
@@ -121,13 +123,17 @@ impl Scene {
         renderer.draw(camera).expect("a frame");
         let curves = renderer.curves().expect("curves");
         let lattice = renderer.lattice();
+        let segments = segments(&renderer);
+        let asked = segments.iter().map(|segment| Segment { sight: seen::FREE, ..*segment }).collect();
+        let near = renderer.near();
         let pixels: Vec<[u32; 2]> = renderer.values("pixels", (camera.width * camera.height) as usize);
         Self {
             surface: surface.clone(),
             camera: *camera,
-            found: pieces(&segments(&renderer), &lattice),
+            found: pieces(&segments, &lattice),
             depths: pixels.iter().map(|pixel| f32::from_bits(pixel[1])).collect(),
-            near: renderer.near(),
+            near,
+            in_parts: link(asked, &lattice, &Perspective::new(camera, near)),
             curves,
             lattice,
         }

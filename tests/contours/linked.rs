@@ -79,7 +79,7 @@ fn curves_of_the_device_hang_together() {
         let (parts, curves, unknown) = strung(scene, twin);
         let off = gap(scene, &parts, &curves);
         assert!(off <= JOINT_PX, "{what}: {off} px between two parts");
-        let linked = lengths(scene.curves.iter().map(|curve: &Curve| (curve.stretches.len(), curve.closed)));
+        let linked = lengths(scene.in_parts.iter().map(|curve: &Curve| (curve.stretches.len(), curve.closed)));
         let expected = lengths(curves.iter().map(|curve| (curve.pieces.len(), curve.closed)));
         let stretches = |lengths: &[(usize, bool)]| lengths.iter().map(|(n, _)| n).sum::<usize>();
         assert_eq!(stretches(&linked), stretches(&expected) + unknown, "{what}");

@@ -12,7 +12,18 @@ use wgpu::naga;
 use super::{all_modules, bound, constants, layouts, shared_constants, shared_structs};
 
 /// Constants that are the shaders' own, and why Rust need not know them.
-const OWN_CONSTANTS: [(&str, &str); 20] = [
+const OWN_CONSTANTS: [(&str, &str); 31] = [
+    ("HOLDS_TOWARD", "bit of a word of a chunk: set by turning and wanted, read by the passes behind them"),
+    ("HOLDS_AWAY", "as HOLDS_TOWARD"),
+    ("BOTH", "as HOLDS_TOWARD"),
+    ("WANTED", "as HOLDS_TOWARD"),
+    ("SIDES", "which word around a chunk wanted writes, and turn and meet read"),
+    ("MOST_PARTS", "into how many parts list_line cuts a line"),
+    ("NEARER", "room for rounding and slopes where list_line leaves out what is hidden"),
+    ("CONCAVE", "where list_line leaves out what hides itself"),
+    ("NUDGE", "how far off the surface sight looks"),
+    ("BESIDE_LINE", "how near to a line sight looks over facets that face away"),
+    ("OUTWARD", "how far outwards sight looks for what lies behind"),
     ("LEFT", "flag of a vertex: set by project, read by rasterize"),
     ("RIGHT", "as LEFT"),
     ("ABOVE", "as LEFT"),
@@ -165,7 +176,7 @@ fn what_is_new_in_a_shader_is_noticed() {
     assert_eq!(strangers("const MOST_STEPS: u32 = 12u;"), ["MOST_STEPS"]);
     let tree = "struct Tree { root: u32 } @group(0) @binding(30) var<storage, read> trees: array<Tree>;";
     assert!(bound_structs(&parse(tree)).contains("Tree") && !bound_structs(&parse("")).contains("Tree"));
-    let (sources, passes) = (sources(&["gpu"]), ["seam", "walk_rest"]);
+    let (sources, passes) = (sources(&["gpu"]), ["seam", "walk_rest", "sight"]);
     assert_eq!(unset("seam", &parse(""), &sources, &passes), Vec::<&str>::new());
     assert_eq!(unset("seam", &parse("override most_steps: u32 = 1u;"), &sources, &passes), ["most_steps"]);
     assert_eq!(

@@ -135,8 +135,9 @@ fn a_slow_judge_agrees() {
 #[test]
 fn recall_by_pixels_does_not_weigh_up_what_runs_to_and_fro() {
     let half = straight([10.0, 20.4], [60.0, 20.4], 1.0);
-    let corner =
-        |k: u32| DVec2::new(60.0 + f64::from(k) / 4.0, if k % 2 == 0 { 20.3 } else { 20.3 + 3.0_f64.sqrt() / 4.0 });
+    let corner = |k: u32| {
+        DVec2::new(60.0 + f64::from(k) / 4.0, if k.is_multiple_of(2) { 20.3 } else { 20.3 + 3.0_f64.sqrt() / 4.0 })
+    };
     let fro = (0..200).map(|k| piece([corner(k), corner(k + 1)], 1.0));
     let truth = truth(PAGE, half.into_iter().chain(fro).collect());
     near("length", truth.length(), 150.0);
