@@ -2,7 +2,7 @@
 //!
 //! "Parsimonious use of linework" (Mower 2015): a line says that something lies behind, and says it only where there is
 //! room. Method: each point of a chain has a weight from 0 to 1, the product of three fades: by its jump, how much farther
-//! than the line lies what is behind it; by the length of line about it; by its [clearance](super::clearance) from
+//! than the line lies what is behind it; by the length of line about it; by its [`clearance`] from
 //! stronger lines. Strength goes by jump, length and kind. Measures are averaged along the chain, so that a line fades
 //! over some pixels where they leap; the skyline has weight 1 and yields to no one. Every step is continuous in place and
 //! jump: when the eye moves a little, weights change a little.

@@ -1,7 +1,7 @@
 //! From curves on the surface to the chains that the eye sees of them.
 //!
-//! Method: of each curve the [convex](super::folds) stretches that [nothing hides](super::doubt), on the page. Hidden runs
-//! under [`LEAST`] px between seen ones are closed where depth goes on, seen ones under [`LEAST`] px left out. A chain runs
+//! Method: of each curve the convex stretches that nothing hides, on the page. Hidden runs
+//! under `LEAST` px between seen ones are closed where depth goes on, seen ones under `LEAST` px left out. A chain runs
 //! through a change of what it draws; flicker of it is smoothed away. Places are those of the curves, nothing is smoothed;
 //! points that no pen shows are left out. Chains are [named](super::identity) and stand in an order of their own: the
 //! same curves, in any order and begun anywhere, give the same bytes.
