@@ -11,7 +11,7 @@ const BATCH_CHUNKS: u32 = 16384u;
 // Words that tell what lies around a chunk: slots by column and row of a 4 x 4 grid, of which the chunk itself fills the
 // inner four. The first of these holds where the values of its side are kept.
 const AROUND: u32 = 16u;
-const SIDES: u32 = 5u;
+const SIDES_AT: u32 = 5u;
 // Vertices of a chunk's side.
 const SIDE_VERTICES: u32 = 64u;
 

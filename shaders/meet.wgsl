@@ -8,7 +8,7 @@
 
 // The value that a chunk has for a vertex of its side.
 fn value_in(slot: u32, at: vec2<u32>) -> f32 {
-    let number = around[slot * AROUND + SIDES] * SIDE_VERTICES + side_number(at);
+    let number = around[slot * AROUND + SIDES_AT] * SIDE_VERTICES + side_number(at);
     return select(NO_HEIGHT, sides[min(number, arrayLength(&sides) - 1u)], number < arrayLength(&sides));
 }
 

@@ -2,9 +2,9 @@
 
 // A stretch of at most about a pixel, with the surface that faces the eye on its left, seen from above.
 struct Segment {
-    start: vec3<f32>,       // metres from the eye
+    start: array<f32, 3>,   // metres from the eye
     fall: f32,              // how steeply facing falls along the view: sine of the angle between ray and stretch, below 0 concave
-    end: vec3<f32>,
+    end: array<f32, 3>,
     behind: f32,            // depth of what lies behind
     at: vec2<i32>,          // its middle, in walk units
     facet: u32,
@@ -54,6 +54,15 @@ struct FacetLine {
     end: vec3<f32>,
     start_at: vec2<f32>,
     end_at: vec2<f32>,
+}
+
+// A place as segments hold it, and back.
+fn words_of(place: vec3<f32>) -> array<f32, 3> {
+    return array<f32, 3>(place.x, place.y, place.z);
+}
+
+fn place_from(words: array<f32, 3>) -> vec3<f32> {
+    return vec3<f32>(words[0], words[1], words[2]);
 }
 
 // Page place of a point in camera space.
@@ -133,8 +142,8 @@ fn list_line(line: FacetLine) {
         var segment: Segment;
         let starts = k == 0.0 && from_page == 0.0 && from_near == 0.0;
         let ends = k == parts - 1.0 && to_page == 1.0 && to_near == 1.0;
-        segment.start = select(mix(line.start, line.end, along.x), line.start, starts);
-        segment.end = select(mix(line.start, line.end, along.z), line.end, ends);
+        segment.start = words_of(select(mix(line.start, line.end, along.x), line.start, starts));
+        segment.end = words_of(select(mix(line.start, line.end, along.z), line.end, ends));
         segment.fall = line.fall;
         segment.at = vec2<i32>(f.a * UNITS) + vec2<i32>(round(mix(line.start_at, line.end_at, along.y)));
         segment.facet = line.facet;

@@ -5,6 +5,8 @@
 
 // The segment is looked at this far off the surface, in steps of its lattice.
 const NUDGE: f32 = 0.25;
+// And no farther than this on the page, px.
+const MOST_NUDGE: f32 = 0.5;
 // Facets so near to the segment may face away without hiding it, in steps of its lattice: it does not run along their edges.
 const BESIDE_LINE: f32 = 2.0;
 // What lies behind is looked for this far outwards, px.
@@ -58,7 +60,12 @@ fn look(segment: ptr<function, Segment>) {
     let t = corners_of(chunk, f);
     let normal = normalize(cross(t.edge_1, t.edge_2));
     let step = f32(chunk.step) / f32(CELL_STEPS) * max(scene.cell.x, scene.cell.y);
-    let q = camera_space(mix((*segment).start, (*segment).end, 0.5) + normal * (NUDGE * step));
+    let start = camera_space(place_from((*segment).start));
+    let end = camera_space(place_from((*segment).end));
+    let middle = mix(start, end, 0.5);
+    // No farther than look-ups reach beyond a piece of the page.
+    let off = min(NUDGE * step, MOST_NUDGE * middle.z / camera.focal);
+    let q = middle + camera_space(normal) * off;
     let px = on_paper(q);
     let depth = depth_of(q);
     let is_rim = ((*segment).code & OF_RIM) != 0u;
@@ -95,7 +102,7 @@ fn look(segment: ptr<function, Segment>) {
     let at_nearest = select(NEAREST_FREE, NEAREST_HIDDEN, hidden.x && nearer.x);
     (*segment).sight = select(select(FREE, HIDDEN, hidden.x), at_nearest, in_doubt);
     // On the page: of a contour the way its normal points, of the rim away from the surface on its left.
-    let course = on_paper(camera_space((*segment).end)) - on_paper(camera_space((*segment).start));
+    let course = on_paper(end) - on_paper(start);
     let of_normal = vec2<f32>(dot(normal, camera.right.xyz), -dot(normal, camera.up.xyz));
     let outward = select(of_normal, vec2<f32>(-course.y, course.x), is_rim);
     (*segment).outward = outward / max(length(outward), 1e-30);

@@ -47,7 +47,7 @@ fn turn(@builtin(global_invocation_id) invocation: vec3<u32>) {
     // What batches overwrite is not made beside the page's map projection.
     let is_made = batch.passing == 0u || in_wedge(bounds_of(slot));
     let number = invocation.y * CHUNK_VERTICES + column;
-    let side = around[slot * AROUND + SIDES] * SIDE_VERTICES;
+    let side = around[slot * AROUND + SIDES_AT] * SIDE_VERTICES;
     var sum = 0.0;
     var west = vertex_of(chunk, vec2<u32>(west_column, 0u));
     var here = vertex_of(chunk, vec2<u32>(column, 0u));

@@ -7,7 +7,7 @@
 
 fn want(slot: u32) {
     if (atomicOr(&out_turning[slot], WANTED) & WANTED) == 0u {
-        out_around[slot * AROUND + SIDES] = atomicAdd(&out_tally.wanted, 1u);
+        out_around[slot * AROUND + SIDES_AT] = atomicAdd(&out_tally.wanted, 1u);
     }
 }
 

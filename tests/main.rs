@@ -64,7 +64,6 @@ mod seen;
 mod shell;
 mod silhouettes;
 mod smoothest;
-mod spires;
 mod stepless;
 mod steps;
 mod strays;

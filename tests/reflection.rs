@@ -33,7 +33,7 @@ mod on_device;
 
 pub use bound::{Bound, bound};
 
-/// Entry point and source of every pass over a raster of this kind, where vertices are kept or found anew.
+/// Entry point and source of every pass to ink over a raster of this kind, where vertices are kept or found anew.
 pub fn shaders(visibility: Visibility, keeps_vertices: bool) -> Vec<(&'static str, Cow<'static, str>)> {
     vec![
         ("tessellate", tessellate::SOURCE.into()),
@@ -50,6 +50,12 @@ pub fn shaders(visibility: Visibility, keeps_vertices: bool) -> Vec<(&'static st
         ("adjacency", adjacency::SOURCE.into()),
         ("border", border::SOURCE.into()),
         ("compose", compose::SOURCE.into()),
+    ]
+}
+
+/// Entry point and source of every pass that finds curves.
+fn curve_shaders(keeps_vertices: bool) -> Vec<(&'static str, Cow<'static, str>)> {
+    vec![
         ("turning", turning::SOURCE.into()),
         ("wanted", wanted::SOURCE.into()),
         ("turn", turn::SOURCE.into()),
@@ -64,7 +70,8 @@ pub fn shaders(visibility: Visibility, keeps_vertices: bool) -> Vec<(&'static st
 /// Entry point and source of every composed shader of a frame.
 fn all_shaders() -> BTreeSet<(&'static str, Cow<'static, str>)> {
     let rasters = [Visibility::Key64, Visibility::Key32, Visibility::TwoDepths];
-    rasters.into_iter().flat_map(|raster| [true, false].map(|keeps| shaders(raster, keeps))).flatten().collect()
+    let of_ink = rasters.into_iter().flat_map(|raster| [true, false].map(|keeps| shaders(raster, keeps)));
+    of_ink.chain([true, false].map(curve_shaders)).flatten().collect()
 }
 
 /// Those, and the shaders of the depth draw.

@@ -444,8 +444,3 @@ pub const NAMES_KEPT: f64 = 0.9;
 ///
 /// Example: of 500 px of line 0.02 px off, four pieces of a quarter pixel, 0.02 px off, too, lie half beside the page.
 pub const CUT_PX: f64 = 1e-4;
-
-/// Least precision and recall of the walk where a spire as thin as a pixel stands against the sky.
-///
-/// Example: of 560 px of skyline at most 5 have no ink within a pixel; it was .63 and less.
-pub const SPIRE: f64 = 0.99;

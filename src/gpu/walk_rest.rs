@@ -1,9 +1,5 @@
 //! Pass `walk_rest`: the pairs that `walk` leaves, with pixels without surface and past facets beside coarser chunks.
 //! One invocation a pixel with such pairs.
-//!
-//! Where the straight way to a pixel without surface meets nothing, the cut of the surface by the plane through the eye and
-//! both pixels is followed, over 256 facets at most: land as thin as a pixel turns away beside that way. Pairs that both show
-//! land take the straight way alone, so that the foot of such a spire may lack ink for a few pixels, before land beside it.
 
 use std::sync::Arc;
 
@@ -12,7 +8,7 @@ use crate::error::Result;
 
 /// The composed shader: that of `walk`, and what is left.
 pub fn source(keeps_vertices: bool) -> String {
-    [walk::source(keeps_vertices).as_str(), crate::shader!("section", "walk_rest")].concat()
+    [walk::source(keeps_vertices).as_str(), crate::shader!("walk_rest")].concat()
 }
 
 /// Compiles the pass.

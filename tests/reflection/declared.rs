@@ -12,16 +12,17 @@ use wgpu::naga;
 use super::{all_modules, bound, constants, layouts, shared_constants, shared_structs};
 
 /// Constants that are the shaders' own, and why Rust need not know them.
-const OWN_CONSTANTS: [(&str, &str); 31] = [
+const OWN_CONSTANTS: [(&str, &str); 30] = [
     ("HOLDS_TOWARD", "bit of a word of a chunk: set by turning and wanted, read by the passes behind them"),
     ("HOLDS_AWAY", "as HOLDS_TOWARD"),
     ("BOTH", "as HOLDS_TOWARD"),
     ("WANTED", "as HOLDS_TOWARD"),
-    ("SIDES", "which word around a chunk wanted writes, and turn and meet read"),
+    ("SIDES_AT", "which word around a chunk wanted writes, and turn and meet read"),
     ("MOST_PARTS", "into how many parts list_line cuts a line"),
     ("NEARER", "room for rounding and slopes where list_line leaves out what is hidden"),
     ("CONCAVE", "where list_line leaves out what hides itself"),
     ("NUDGE", "how far off the surface sight looks"),
+    ("MOST_NUDGE", "as NUDGE"),
     ("BESIDE_LINE", "how near to a line sight looks over facets that face away"),
     ("OUTWARD", "how far outwards sight looks for what lies behind"),
     ("LEFT", "flag of a vertex: set by project, read by rasterize"),
@@ -41,8 +42,6 @@ const OWN_CONSTANTS: [(&str, &str); 31] = [
     ("EDGE_LIMIT", "up to where edge functions fit 32 bits"),
     ("CUT", "corner of a clipped polygon, within one invocation"),
     ("OVERSHOOT", "share by which walk_rest aims beyond the centre of a pixel"),
-    ("NO_FACET", "no facet, within one invocation"),
-    ("LONGEST_SECTION", "facets that walk_rest follows a cut over"),
     ("NONE", "no depth, within one invocation"),
 ];
 
@@ -50,8 +49,11 @@ const OWN_CONSTANTS: [(&str, &str); 31] = [
 const LISTS: [&str; 3] = ["List", "ListRead", "Queue"];
 
 /// Pipeline constants that keep the default of their shader: the pass, the constant, why.
-const LEFT_AT_DEFAULT: [(&str, &str, &str); 1] =
-    [("walk", "defers", "what is rare is left to walk_rest, which sets it for itself")];
+const LEFT_AT_DEFAULT: [(&str, &str, &str); 3] = [
+    ("walk", "defers", "what is rare is left to walk_rest, which sets it for itself"),
+    ("segments", "defers", "it stands on walk, and walks nowhere"),
+    ("rim_segments", "defers", "as segments"),
+];
 
 /// Whether a constant of a shader is compared, or the shaders' own.
 fn is_declared(name: &str) -> bool {
