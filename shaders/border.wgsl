@@ -1,13 +1,6 @@
 // One invocation a patch edge of the rim: where its one facet is toward, draws it one pixel wide over what lies
 // farther. A pixel belongs to the line where the edge crosses its central cross: thin, and connected from edge to edge.
 
-struct RimEdge {
-    sample: vec2<u32>,  // where the patch edge starts, column and row
-    direction: u32,     // 0 east, 1 south, 2 south-east
-    half: u32,          // of the quad whose edge it is: 0 or 1
-}
-
-@group(0) @binding(21) var<storage, read> rim: array<RimEdge>;
 @group(0) @binding(22) var<storage, read_write> out_ink: array<atomic<u32>>;
 
 // A rim line is seen where the surface beside it is farther, in the pixel or one of its four neighbours.
@@ -59,49 +52,23 @@ fn draw_edge(chunk: Chunk, at: vec2<u32>, end: vec2<u32>) {
     } else if q.z < scene.near {
         q = mix(p, q, (p.z - scene.near) / (p.z - q.z));
     }
-    let start = vec3<f32>(vec2<f32>(p.x, -p.y) * (camera.focal / p.z) + camera.centre, depth_of(p));
-    let end_place = vec3<f32>(vec2<f32>(q.x, -q.y) * (camera.focal / q.z) + camera.centre, depth_of(q));
+    let start = vec3<f32>(on_paper(p), depth_of(p));
+    let end_place = vec3<f32>(on_paper(q), depth_of(q));
     draw_crossings(start, end_place, 0u);
     draw_crossings(start, end_place, 1u);
 }
 
-// The part of a patch's edge that lies in one quad's facet, or starts an edge of many patches. `at` is where it starts.
-// Returns how many lattice units it is long.
-fn draw_part(edge: RimEdge, at: vec2<u32>, along: vec2<u32>) -> u32 {
-    // The quad above or left of the edge, or the one it starts in.
-    let above = edge.direction == 0u && edge.half == 0u;
-    let left = edge.direction == 1u && edge.half == 1u;
-    let slot = slot_at(vec2<i32>(at) - select(vec2<i32>(0), vec2<i32>(1), vec2<bool>(left, above)));
-    if slot == NO_SLOT {
-        // Half a cell, the smallest chunk: the next one may be there.
-        return CHUNK_QUADS;
-    }
+// Draws the edge of half a quad between two vertices of its chunk, where its facet faces the eye.
+fn at_rim(slot: u32, quad: vec2<u32>, half: u32, from_vertex: vec2<u32>, to_vertex: vec2<u32>, turned: bool) {
     let chunk = chunks[slot];
-    let from_origin = at - chunk.origin;
-    if any(from_origin % chunk.step != vec2<u32>(0u)) {
-        return CELL_STEPS;
-    }
-    let vertex = from_origin / chunk.step;
-    let quad = vertex - select(vec2<u32>(0u), vec2<u32>(1u), vec2<bool>(left, above));
-    let id = slot * CHUNK_FACETS + quad_local(quad) + edge.half;
-    let start = chunk.origin + shared_vertex(chunk.coarser, vertex) * chunk.step;
-    let end = chunk.origin + shared_vertex(chunk.coarser, vertex + along) * chunk.step;
-    if !is_away(id) && any(start != end) {
+    let start = chunk.origin + shared_vertex(chunk.coarser, from_vertex) * chunk.step;
+    let end = chunk.origin + shared_vertex(chunk.coarser, to_vertex) * chunk.step;
+    if !is_away(slot * CHUNK_FACETS + quad_local(quad) + half) && any(start != end) {
         draw_edge(chunk, start, end);
     }
-    return chunk.step;
 }
 
 @compute @workgroup_size(64)
 fn border(@builtin(global_invocation_id) invocation: vec3<u32>) {
-    let i = invocation.y * MOST_GROUPS * 64u + invocation.x;
-    if i >= arrayLength(&rim) {
-        return;
-    }
-    let edge = rim[i];
-    let along = vec2<u32>(select(1u, 0u, edge.direction == 1u), select(1u, 0u, edge.direction == 0u));
-    var done = 0u;
-    while done < CELL_STEPS {
-        done += draw_part(edge, edge.sample * CELL_STEPS + along * done, along);
-    }
+    visit_rim(invocation.y * MOST_GROUPS * 64u + invocation.x);
 }

@@ -9,25 +9,10 @@ fn faces_eye(lowest: vec3<f32>, edge_1: vec3<f32>, edge_2: vec3<f32>) -> bool {
     return dot(cross(edge_1, edge_2), lowest) < 0.0;
 }
 
-// A vertex: its place on the lattice, offset and height from `places`.
-struct Vertex {
-    at: vec2<u32>,
-    place: vec4<f32>,
-}
-
-// The vertex at column and row `at` of a chunk, number `v` in `places`.
-fn vertex_of(chunk: Chunk, at: vec2<u32>, v: u32) -> Vertex {
-    return Vertex(chunk.origin + shared_vertex(chunk.coarser, at) * chunk.step, places[v]);
-}
-
-fn edge_of(from_vertex: Vertex, to_vertex: Vertex) -> vec3<f32> {
-    return edge_between(from_vertex.at, from_vertex.place, to_vertex.at, to_vertex.place);
-}
-
 // Which halves of a quad lack a vertex, as two bits.
-fn lacking(nw: Vertex, ne: Vertex, sw: Vertex, se: Vertex) -> u32 {
-    let diagonal = max(nw.place.w, se.place.w);
-    return select(0u, 1u, max(diagonal, sw.place.w) >= NO_HEIGHT) | select(0u, 2u, max(diagonal, ne.place.w) >= NO_HEIGHT);
+fn lacking_halves(nw: Vertex, ne: Vertex, sw: Vertex, se: Vertex) -> u32 {
+    let lacks = lacking(nw, ne, sw, se);
+    return select(0u, 1u, lacks.x) | select(0u, 2u, lacks.y);
 }
 
 // Which halves of a quad are facets and face away, as two bits: beside a coarser chunk some have collapsed.
@@ -62,8 +47,8 @@ fn facing(@builtin(global_invocation_id) invocation: vec3<u32>) {
         let south_west = vertex_of(chunk, quad, v);
         let south = vertex_of(chunk, quad + one, v + 1u);
         let south_east = vertex_of(chunk, quad + one + one, v + 2u);
-        let lacks_west = lacking(north_west, north, south_west, south);
-        let lacks_east = lacking(north, north_east, south, south_east);
+        let lacks_west = lacking_halves(north_west, north, south_west, south);
+        let lacks_east = lacking_halves(north, north_east, south, south_east);
         let southern = k >= 8u;
         missing |= select(vec2<bool>(false), vec2<bool>(!southern, southern), (lacks_west | lacks_east) != 0u);
         bits |= (away_halves(north_west, north, south_west, south) & ~lacks_west) << k;

@@ -1,14 +1,7 @@
 // One invocation a patch edge of the rim: the parts of it where the surface faces the eye, facet by facet.
 
-struct RimEdge {
-    sample: vec2<u32>,  // where the patch edge starts, column and row
-    direction: u32,     // 0 east, 1 south, 2 south-east
-    half: u32,          // of the quad whose edge it is: 0 or 1
-}
-
 @group(0) @binding(20) var<storage, read> turns: array<f32>;
 @group(0) @binding(21) var<storage, read> turning: array<u32>;
-@group(0) @binding(25) var<storage, read> rim: array<RimEdge>;
 
 // The value at a vertex of a chunk; where no contour may run, that of its facets.
 fn turn_of(slot: u32, column_row: vec2<u32>, facet: u32) -> f32 {
@@ -42,7 +35,10 @@ fn facet_along(slot: u32, quad: vec2<u32>, half: u32, p: vec2<u32>, q: vec2<u32>
 }
 
 // The edge of half a quad between two vertices of its chunk, where it faces the eye; `turned`: the facet lies on its right.
-fn list_edge(slot: u32, quad: vec2<u32>, half: u32, from_vertex: vec2<u32>, to_vertex: vec2<u32>, turned: bool) {
+fn at_rim(slot: u32, quad: vec2<u32>, half: u32, from_vertex: vec2<u32>, to_vertex: vec2<u32>, turned: bool) {
+    if slot < batch.first_slot || slot - batch.first_slot >= BATCH_CHUNKS || slot >= camera.seen || !in_view(bounds_of(slot)) {
+        return;
+    }
     let chunk = chunks[slot];
     let vertex_p = shared_vertex(chunk.coarser, select(from_vertex, to_vertex, turned));
     let vertex_q = shared_vertex(chunk.coarser, select(to_vertex, from_vertex, turned));
@@ -77,42 +73,7 @@ fn list_edge(slot: u32, quad: vec2<u32>, half: u32, from_vertex: vec2<u32>, to_v
     ));
 }
 
-// The part of a patch's edge that lies in one quad's facet, or starts an edge of many patches. `at` is where it starts.
-// Returns how many lattice units it is long.
-fn list_part(edge: RimEdge, at: vec2<u32>, along: vec2<u32>) -> u32 {
-    // The quad above or left of the edge, or the one it starts in.
-    let above = edge.direction == 0u && edge.half == 0u;
-    let left = edge.direction == 1u && edge.half == 1u;
-    let slot = slot_at(vec2<i32>(at) - select(vec2<i32>(0), vec2<i32>(1), vec2<bool>(left, above)));
-    if slot == NO_SLOT {
-        // Half a cell, the smallest chunk: the next one may be there.
-        return CHUNK_QUADS;
-    }
-    let chunk = chunks[slot];
-    let from_origin = at - chunk.origin;
-    if any(from_origin % chunk.step != vec2<u32>(0u)) {
-        return CELL_STEPS;
-    }
-    if slot >= batch.first_slot && slot - batch.first_slot < BATCH_CHUNKS && slot < camera.seen && in_view(bounds_of(slot)) {
-        let vertex = from_origin / chunk.step;
-        let quad = vertex - select(vec2<u32>(0u), vec2<u32>(1u), vec2<bool>(left, above));
-        // Half 1 lies below an edge to the east and before one to the south, but to the left of a diagonal.
-        let turned = (edge.half == 1u) != (edge.direction == 2u);
-        list_edge(slot, quad, edge.half, vertex, vertex + along, turned);
-    }
-    return chunk.step;
-}
-
 @compute @workgroup_size(64)
 fn rim_segments(@builtin(global_invocation_id) invocation: vec3<u32>) {
-    let i = invocation.y * MOST_GROUPS * 64u + invocation.x;
-    if i >= arrayLength(&rim) {
-        return;
-    }
-    let edge = rim[i];
-    let along = vec2<u32>(select(1u, 0u, edge.direction == 1u), select(1u, 0u, edge.direction == 0u));
-    var done = 0u;
-    while done < CELL_STEPS {
-        done += list_part(edge, edge.sample * CELL_STEPS + along * done, along);
-    }
+    visit_rim(invocation.y * MOST_GROUPS * 64u + invocation.x);
 }

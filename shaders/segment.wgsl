@@ -65,11 +65,6 @@ fn place_from(words: array<f32, 3>) -> vec3<f32> {
     return vec3<f32>(words[0], words[1], words[2]);
 }
 
-// Page place of a point in camera space.
-fn on_paper(q: vec3<f32>) -> vec2<f32> {
-    return vec2<f32>(q.x, -q.y) * (camera.focal / q.z) + camera.centre;
-}
-
 // Whether all pixels about one show surface that is certainly nearer.
 fn is_buried(at: vec2<i32>, depth: f32) -> bool {
     let low = max(at - 1, vec2<i32>(0));

@@ -129,11 +129,15 @@ fn camera_space(p: vec3<f32>) -> vec3<f32> {
 // is so large that an edge function changes by 2^30 over a tile of 32 px.
 const GUARD: f32 = 33280.0;
 
+// Page place of a point in camera space, px.
+fn on_paper(q: vec3<f32>) -> vec2<f32> {
+    return vec2<f32>(q.x, -q.y) * (camera.focal / q.z) + camera.centre;
+}
+
 // Place in 1/256 px of a point in camera space, within the guard band and in front of the near plane. It is snapped on
 // the page and then moved to what is drawn of it, so that it is the same in every piece.
 fn snapped(q: vec3<f32>) -> vec2<i32> {
-    let px = vec2<f32>(q.x, -q.y) * (camera.focal / q.z) + camera.centre;
-    return vec2<i32>(round(px * 256.0)) - camera.origin * 256;
+    return vec2<i32>(round(on_paper(q) * 256.0)) - camera.origin * 256;
 }
 
 fn depth_of(q: vec3<f32>) -> f32 {

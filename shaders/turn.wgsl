@@ -7,18 +7,8 @@
 @group(0) @binding(22) var<storage, read> around: array<u32>;
 @group(0) @binding(23) var<storage, read_write> out_sides: array<f32>;
 
-// A vertex: its place on the lattice, offset and height from `places`.
-struct Vertex {
-    at: vec2<u32>,
-    place: vec4<f32>,
-}
-
-fn vertex_of(chunk: Chunk, at: vec2<u32>) -> Vertex {
-    return Vertex(chunk.origin + shared_vertex(chunk.coarser, at) * chunk.step, places[vertex_index(chunk, at)]);
-}
-
-fn edge_of(from_vertex: Vertex, to_vertex: Vertex) -> vec3<f32> {
-    return edge_between(from_vertex.at, from_vertex.place, to_vertex.at, to_vertex.place);
+fn vertex_in(chunk: Chunk, at: vec2<u32>) -> Vertex {
+    return vertex_of(chunk, at, vertex_index(chunk, at));
 }
 
 // How the two facets of a quad face the eye, as long as six times the volume between eye and facet; 0 where there is none.
@@ -27,9 +17,7 @@ fn facing_of(nw: Vertex, ne: Vertex, sw: Vertex, se: Vertex) -> vec2<f32> {
     let to_se = edge_of(nw, se);
     let below = dot(cross(edge_of(nw, sw), to_se), from_eye);
     let above = dot(cross(to_se, edge_of(nw, ne)), from_eye);
-    let diagonal = max(nw.place.w, se.place.w);
-    let missing = vec2<bool>(max(diagonal, sw.place.w) >= NO_HEIGHT, max(diagonal, ne.place.w) >= NO_HEIGHT);
-    return select(vec2<f32>(-below, -above), vec2<f32>(0.0), missing);
+    return select(vec2<f32>(-below, -above), vec2<f32>(0.0), lacking(nw, ne, sw, se));
 }
 
 @compute @workgroup_size(17, 4)
@@ -49,14 +37,14 @@ fn turn(@builtin(global_invocation_id) invocation: vec3<u32>) {
     let number = invocation.y * CHUNK_VERTICES + column;
     let side = around[slot * AROUND + SIDES_AT] * SIDE_VERTICES;
     var sum = 0.0;
-    var west = vertex_of(chunk, vec2<u32>(west_column, 0u));
-    var here = vertex_of(chunk, vec2<u32>(column, 0u));
-    var east = vertex_of(chunk, vec2<u32>(east_column, 0u));
+    var west = vertex_in(chunk, vec2<u32>(west_column, 0u));
+    var here = vertex_in(chunk, vec2<u32>(column, 0u));
+    var east = vertex_in(chunk, vec2<u32>(east_column, 0u));
     for (var y = 0u; y < CHUNK_SIDE; y++) {
         let south = min(y + 1u, CHUNK_QUADS);
-        let south_west = vertex_of(chunk, vec2<u32>(west_column, south));
-        let south_here = vertex_of(chunk, vec2<u32>(column, south));
-        let south_east = vertex_of(chunk, vec2<u32>(east_column, south));
+        let south_west = vertex_in(chunk, vec2<u32>(west_column, south));
+        let south_here = vertex_in(chunk, vec2<u32>(column, south));
+        let south_east = vertex_in(chunk, vec2<u32>(east_column, south));
         let counts_here = counts & vec2<bool>(y < CHUNK_QUADS);
         let of_west = select(vec2<f32>(0.0), facing_of(west, here, south_west, south_here), counts_here.x);
         let of_east = select(vec2<f32>(0.0), facing_of(here, east, south_here, south_east), counts_here.y);

@@ -56,8 +56,7 @@ fn place_of(id: u32, at: vec2<f32>) -> vec2<f32> {
     let c = vec2<f32>(vec2<i32>(f.c) - vec2<i32>(f.a)) * f32(UNITS);
     let area = b.x * c.y - b.y * c.x;
     let weights = max(vec2<f32>(at.x * c.y - at.y * c.x, b.x * at.y - b.y * at.x) / area, vec2<f32>(0.0));
-    let q = camera_space(t.p + t.edge_1 * weights.x + t.edge_2 * weights.y);
-    return vec2<f32>(q.x, -q.y) * (camera.focal / q.z) + camera.centre;
+    return on_paper(camera_space(t.p + t.edge_1 * weights.x + t.edge_2 * weights.y));
 }
 
 // Centre of a pixel on the page.

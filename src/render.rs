@@ -145,9 +145,15 @@ impl Renderer {
     /// pieces, of which the device holds the last alone; [`Error::Mistake`] when there was no frame, or a pixel has a
     /// depth and no ID.
     pub fn read(&mut self) -> Result<Drawn> {
+        let (frame, piece) = self.last_whole()?;
+        self.read_piece(&frame, piece)
+    }
+
+    /// The frame that lies on the device, if it is a page in one piece.
+    fn last_whole(&self) -> Result<(Frame, Piece)> {
         let (frame, piece) = self.last.clone().ok_or_else(|| Error::mistake("there is no frame to read"))?;
         match frame.pieces.iter().len() {
-            1 => self.read_piece(&frame, piece),
+            1 => Ok((frame, piece)),
             pieces => {
                 let what = format!("the page takes {pieces} pieces, one can be read");
                 Err(Error::limit(what, message!["draw it piece by piece, or use a smaller ", Setting::Size]))

@@ -444,3 +444,8 @@ pub const NAMES_KEPT: f64 = 0.9;
 ///
 /// Example: of 500 px of line 0.02 px off, four pieces of a quarter pixel, 0.02 px off, too, lie half beside the page.
 pub const CUT_PX: f64 = 1e-4;
+
+/// Pixels of chains without ink, and of ink without a chain, as shares of all ink.
+///
+/// Example: of 14 023 px of ink 23 px have no chain, of 10 872 px of steeper land 69 px: folds narrower than a facet.
+pub const STRAYS: f64 = 0.01;

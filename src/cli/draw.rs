@@ -1,15 +1,13 @@
 //! `hachure draw`: a DEM as ink on a page.
 
 use std::panic::resume_unwind;
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::thread;
 use std::time::Instant;
 
-use serde::Serialize;
-
 use super::cache::CacheArguments;
 use super::device::DeviceArguments;
+use super::draw_report::{ChainsReport, DemReport, LeftOutReport, Report};
 use super::flat_earth::FlatEarth;
 use super::outputs::OutputArguments;
 use super::talk::Talk;
@@ -20,14 +18,12 @@ use super::viewpoint::{View, ViewArguments};
 use super::words::told;
 use super::{blank, cells, choices};
 use crate::cache::Cache;
-use crate::dem::Dem;
 use crate::error::{Error, Result, Setting, shown};
 use crate::files::Taken;
 use crate::geo::Reading;
 use crate::gpu::Gpu;
 use crate::ink::{self, Drawing, Style};
-use crate::line::{Chain, Economy, Lines, Strays};
-use crate::measure::figures::DrawnLevel;
+use crate::line::{Economy, Lines};
 use crate::plan::detail::ERROR_PX;
 use crate::plan::left_out::LeftOut;
 use crate::plan::{Border, Curves, Detail, Frame, Method, Plan, Share};
@@ -121,61 +117,6 @@ pub struct DrawArguments {
     cache: CacheArguments,
 }
 
-/// `--json`.
-#[derive(Serialize)]
-struct Report {
-    version: &'static str,
-    dem: DemReport,
-    method: &'static str,
-    level: DrawnLevel,
-    facets: u64,
-    inked: usize,
-    chains: Option<ChainsReport>,
-    covered: u64,
-    longest_walk: u32,
-    pieces: usize,
-    warm_frames: usize,
-    frame_ms: f64,
-    timing: &'static str,
-    passes: Vec<PassTime>,
-    adapter: String,
-    int64: bool,
-    view: ViewReport,
-    flat_earth: Option<FlatEarth>,
-    left_out: Vec<LeftOutReport>,
-}
-
-/// The chains of contours that were found, and where they and the mask do not tell of the same lines.
-#[derive(Serialize)]
-struct ChainsReport {
-    count: usize,
-    length_px: f64,
-    without_ink_px: usize,
-    ink_without_chain_px: usize,
-}
-
-/// What was drawn, and what became of the files on the way.
-#[derive(Serialize)]
-struct DemReport {
-    files: Vec<String>,
-    columns: usize,
-    rows: usize,
-    cell_m: [f64; 2],
-    extent_m: [f64; 4],
-    voids: usize,
-    steps_m: Vec<f64>,
-    converted: Vec<String>,
-    assumed: Vec<String>,
-}
-
-/// What the frame did without.
-#[derive(Serialize)]
-struct LeftOutReport {
-    what: &'static str,
-    why: String,
-    saved: Option<String>,
-}
-
 /// A DEM on a device, and its page as seen from somewhere.
 struct Drawn<'a> {
     renderer: &'a mut Renderer,
@@ -203,7 +144,7 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     let page = renderer.page(&plan, &view.camera, |share| talk.progress("drawing", 0.3 + 0.3 * share))?;
     cache.discard_damaged(surface.dem(), &|message| talk.warn(&told(message)));
     let mut drawn = Drawn { renderer: &mut renderer, view: &view, page };
-    let economy = arguments.economy(view.camera.width)?;
+    let economy = arguments.economy(&plan, view.camera.width)?;
     let drawing = drawn.stroked(economy.as_ref());
     let report = outputs.want_report().then(|| arguments.report(&mut drawn, talk)).transpose()?;
     if arguments.explain || talk.is_verbose() {
@@ -231,10 +172,11 @@ impl DrawArguments {
         let (method, detail) = (self.method()?, self.detail()?);
         self.view.check()?;
         self.outputs.check()?;
-        self.economy(1)?;
         // Strokes of the walk's mask are contours.
         let curves = if method == Method::Walk { Curves::On } else { Curves::Off };
-        Ok(Plan { curves, ..Plan::new(detail, method, self.border) })
+        let plan = Plan { curves, ..Plan::new(detail, method, self.border) };
+        self.economy(&plan, 1)?;
+        Ok(plan)
     }
 
     /// Reads the DEM and finds its normals.
@@ -305,8 +247,8 @@ impl DrawArguments {
     }
 
     /// How sparing lines are on a page `width` pixels wide; `None` where strokes are traced from the mask.
-    fn economy(&self, width: u32) -> Result<Option<Economy>> {
-        if matches!(self.method, Method::TowardAway { .. } | Method::Adjacency { .. }) {
+    fn economy(&self, plan: &Plan, width: u32) -> Result<Option<Economy>> {
+        if !plan.has_curves() {
             let given = self.min_jump.map(|_| Setting::MinJump).or(self.min_gap.map(|_| Setting::MinGap));
             let refuse = |setting| Error::setting(setting, "goes with contours only", "leave out --method");
             return given.map_or(Ok(None), |setting| Err(refuse(setting)));
@@ -395,41 +337,4 @@ fn explain(talk: &Talk, frame: &Frame, surface: &Surface, report: Option<&Report
         talk.say(&format!("pass {name}: {ms:.2} ms"))?;
     }
     report.map_or(Ok(()), |report| talk.say(&format!("median frame: {:.2} ms", report.frame_ms)))
-}
-
-impl LeftOutReport {
-    fn of(LeftOut { what, why, saved }: LeftOut) -> Self {
-        Self { what, why: told(&why), saved }
-    }
-}
-
-impl ChainsReport {
-    fn of(page: &Page) -> Self {
-        let strays = Strays::of(&page.chains, &page.marks);
-        Self {
-            count: page.chains.len(),
-            length_px: page.chains.iter().flat_map(Chain::pairs).map(|[a, b]| a.place.distance(b.place)).sum(),
-            without_ink_px: strays.chains,
-            ink_without_chain_px: strays.ink,
-        }
-    }
-}
-
-impl DemReport {
-    fn of(files: &[PathBuf], dem: &Dem) -> Self {
-        // What cannot be read fails elsewhere, with its reason.
-        let surveyed = dem.survey(&|_| ()).map(|survey| survey.assumed.clone()).unwrap_or_default();
-        let assumed = [dem.history().assumed(), &surveyed, dem.history().usual()];
-        Self {
-            files: files.iter().map(|file| file.to_string_lossy().into_owned()).collect(),
-            columns: dem.columns(),
-            rows: dem.rows(),
-            cell_m: dem.cell().to_array(),
-            extent_m: dem.extent(),
-            voids: dem.voids(),
-            steps_m: dem.history().steps().to_vec(),
-            converted: dem.history().converted().iter().map(told).collect(),
-            assumed: assumed.into_iter().flatten().map(told).collect(),
-        }
-    }
 }

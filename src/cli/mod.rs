@@ -7,6 +7,7 @@ pub mod choices;
 pub mod compare;
 pub mod device;
 pub mod draw;
+mod draw_report;
 pub mod flat_earth;
 pub mod generate;
 pub mod info;

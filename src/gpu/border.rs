@@ -6,7 +6,7 @@ use super::{Gpu, Pass};
 use crate::error::Result;
 
 /// The composed shader.
-pub const SOURCE: &str = crate::shader!("scene", "lattice", "surface", "ink", "border");
+pub const SOURCE: &str = crate::shader!("scene", "lattice", "surface", "ink", "border", "rim");
 
 /// Compiles the pass.
 ///

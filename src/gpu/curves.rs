@@ -2,7 +2,7 @@
 
 use super::buffers::Buffers;
 use super::device::Gpu;
-use super::sizes::{self, SEGMENT_BYTES, WORD_BYTES};
+use super::sizes::{SEGMENT_BYTES, WORD_BYTES};
 use super::uniforms::{Segment, Tally};
 use crate::error::{Error, Result};
 use crate::plan::Frame;
@@ -16,7 +16,7 @@ pub const SIDE_VERTICES: u32 = 4 * CHUNK_QUADS;
 
 /// For how much there is room; what is found of it may be more.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Room {
+pub struct CurveCapacity {
     /// Chunks whose vertices count.
     pub wanted: u32,
     /// Facets through which contours run.
@@ -26,7 +26,7 @@ pub struct Room {
 }
 
 /// At first: 1.5 MB.
-impl Default for Room {
+impl Default for CurveCapacity {
     fn default() -> Self {
         Self { wanted: 1 << 9, crossed: 1 << 14, segments: 1 << 14 }
     }
@@ -37,7 +37,7 @@ impl Default for Room {
 pub struct CurveBuffers {
     buffers: Buffers,
     chunks: u32,
-    room: Room,
+    capacity: CurveCapacity,
     /// How often some were made anew: what binds them must then bind them again.
     generation: u64,
 }
@@ -59,18 +59,17 @@ impl CurveBuffers {
         self.buffers.create(gpu, "turns", of_batch * u64::from(CHUNK_VERTICES) * WORD_BYTES)?;
         self.buffers.create(gpu, "tally", size_of::<Tally>() as u64)?;
         self.chunks = chunks;
-        self.make_room(gpu, self.room)
+        self.make_room(gpu, self.capacity)
     }
 
-    fn make_room(&mut self, gpu: &Gpu, room: Room) -> Result<()> {
-        sizes::segments_fit(u64::from(room.segments))?;
-        let [wanted, crossed, segments] = [room.wanted, room.crossed, room.segments].map(u64::from);
+    fn make_room(&mut self, gpu: &Gpu, capacity: CurveCapacity) -> Result<()> {
+        let [wanted, crossed, segments] = [capacity.wanted, capacity.crossed, capacity.segments].map(u64::from);
         self.generation += 1;
         self.buffers.create(gpu, "sides", wanted * u64::from(SIDE_VERTICES) * WORD_BYTES)?;
         self.buffers.create(gpu, "crossed", crossed * WORD_BYTES)?;
         self.buffers.create(gpu, "segments", segments * SEGMENT_BYTES)?;
         self.buffers.create(gpu, "asked", segments * WORD_BYTES)?;
-        self.room = room;
+        self.capacity = capacity;
         gpu.check()
     }
 
@@ -86,21 +85,21 @@ impl CurveBuffers {
             return Err(Error::Gpu { what: format!("the driver cut {cut_short} walks short") });
         }
         let grown = |has: u32, needs: u32| if needs > has { needs + needs / 4 } else { has };
-        let room = Room {
-            wanted: grown(self.room.wanted, wanted),
-            crossed: grown(self.room.crossed, crossed),
-            segments: grown(self.room.segments, segments),
+        let capacity = CurveCapacity {
+            wanted: grown(self.capacity.wanted, wanted),
+            crossed: grown(self.capacity.crossed, crossed),
+            segments: grown(self.capacity.segments, segments),
         };
-        if room != self.room {
-            self.make_room(gpu, room)?;
+        if capacity != self.capacity {
+            self.make_room(gpu, capacity)?;
             return Ok(None);
         }
         gpu.read(self.buffers.get("segments")?, segments as usize).map(Some)
     }
 
     /// For how much there is room.
-    pub fn room(&self) -> Room {
-        self.room
+    pub fn capacity(&self) -> CurveCapacity {
+        self.capacity
     }
 
     /// The buffers.

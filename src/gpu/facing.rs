@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::surface::lattice::CHUNK_WORDS;
 
 /// The composed shader.
-pub const SOURCE: &str = crate::shader!("scene", "lattice", "surface", "cull", "facing");
+pub const SOURCE: &str = crate::shader!("scene", "lattice", "surface", "cull", "vertex", "facing");
 
 /// Compiles the pass.
 ///

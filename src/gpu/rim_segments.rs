@@ -7,7 +7,7 @@ use crate::error::Result;
 
 /// The composed shader.
 pub fn source(keeps_vertices: bool) -> String {
-    [segments::listing(keeps_vertices).as_str(), crate::shader!("rim_segments")].concat()
+    [segments::listing(keeps_vertices).as_str(), crate::shader!("rim_segments", "rim")].concat()
 }
 
 /// Compiles the pass.

@@ -101,15 +101,6 @@ pub fn rim_fits(edges: u64) -> Result<()> {
     binds(edges * RIM_EDGE_BYTES, "border lines", message!["use ", Setting::Border.at("off"), ", or a ", Setting::Crop])
 }
 
-/// Whether a list of so many segments of curves can be bound whole.
-///
-/// # Errors
-/// [`Error::Limit`] when it cannot.
-pub fn segments_fit(segments: u64) -> Result<()> {
-    let remedy = message!["use a larger ", Setting::ErrorPx, " or a ", Setting::Crop];
-    binds(LIST_HEADER + segments * SEGMENT_BYTES, "curves", remedy)
-}
-
 /// Whether so many words that tell voids from samples can be bound whole.
 ///
 /// # Errors

@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::surface::lattice::CHUNK_SIDE;
 
 /// The composed shader.
-pub const SOURCE: &str = crate::shader!("scene", "lattice", "surface", "cull", "curve", "turn");
+pub const SOURCE: &str = crate::shader!("scene", "lattice", "surface", "cull", "curve", "vertex", "turn");
 
 /// Compiles the pass.
 ///

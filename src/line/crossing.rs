@@ -12,6 +12,7 @@ use std::ops::Range;
 
 use glam::DVec2;
 use rayon::prelude::*;
+use xxhash_rust::xxh3::xxh3_64;
 
 use super::Curve;
 
@@ -104,17 +105,9 @@ impl<'a> Crossings<'a> {
         // `as` takes what is left of the page to its first cell; a stretch beside it has an empty range.
         let (columns, rows) = (low.x as u64..=high.x as u64, low.y as u64..=high.y as u64);
         let mask = self.starts.len() as u64 - 2;
-        let bucket = move |column: u64, row: u64| (hash(column << 32 | row) & mask) as usize;
+        let bucket = move |column: u64, row: u64| (xxh3_64(&(column << 32 | row).to_le_bytes()) & mask) as usize;
         rows.flat_map(move |row| columns.clone().map(move |column| bucket(column, row)))
     }
-}
-
-/// Bits of a number, well mixed (Steele, Lea and Flood 2014: the finisher of SplitMix).
-pub fn hash(number: u64) -> u64 {
-    let mixed = number.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let mixed = (mixed ^ mixed >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let mixed = (mixed ^ mixed >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-    mixed ^ mixed >> 31
 }
 
 /// Where a stretch passes under a nearer one, if it does.

@@ -13,9 +13,9 @@
 use std::collections::HashSet;
 
 use glam::DVec2;
+use xxhash_rust::xxh3::xxh3_64;
 
 use super::Id;
-use super::crossing::hash;
 use super::curve::Place;
 
 /// Steps of a [`Place`] across a cell of level 1: 64 of the finest lattice, in 256 parts.
@@ -65,6 +65,6 @@ pub fn names(held: &[Vec<Held>]) -> Vec<Option<Id>> {
 /// What a chain bids for a cell with all that it holds of it.
 fn bid(held: &[Held]) -> f64 {
     let length: f64 = held.iter().map(|held| held.length).sum();
-    let u = ((hash(held[0].key) >> 11) + 1) as f64 / (1_u64 << 53) as f64;
+    let u = ((xxh3_64(&held[0].key.to_le_bytes()) >> 11) + 1) as f64 / (1_u64 << 53) as f64;
     length / u
 }

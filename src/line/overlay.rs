@@ -8,6 +8,7 @@ use glam::{DVec2, DVec3};
 
 use super::{Chain, ChainPoint, InkRaster, Kind, Line, Pixel};
 use crate::view::Perspective;
+use crate::view::cut::share_within;
 
 /// How much nearer than a line the cover must be to hide it, as a share of the distance.
 ///
@@ -81,24 +82,7 @@ fn clip_near(a: DVec3, b: DVec3, perspective: &Perspective) -> Option<[DVec3; 2]
 /// The part of a segment on the page.
 fn clip_page(a: (DVec2, f64), b: (DVec2, f64), page: DVec2) -> Option<((DVec2, f64), (DVec2, f64))> {
     let at = |t: f64| (a.0 + (b.0 - a.0) * t, a.1 + (b.1 - a.1) * t);
-    on_page(a.0, b.0, page).map(|[enter, leave]| (at(enter), at(leave)))
-}
-
-/// From which to which share a segment is on a page of this size (Liang and Barsky 1984).
-pub(super) fn on_page(a: DVec2, b: DVec2, page: DVec2) -> Option<[f64; 2]> {
-    let along = b - a;
-    let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
-    for (step, from, size) in [(along.x, a.x, page.x), (along.y, a.y, page.y)] {
-        if step == 0.0 {
-            if !(0.0..=size).contains(&from) {
-                return None;
-            }
-            continue;
-        }
-        let (t0, t1) = (-from / step, (size - from) / step);
-        (enter, leave) = (enter.max(t0.min(t1)), leave.min(t0.max(t1)));
-    }
-    (enter <= leave).then_some([enter, leave])
+    share_within([DVec2::ZERO, page], a.0, b.0).map(|[enter, leave]| (at(enter), at(leave)))
 }
 
 /// Points from a to b, both included, at most [`SAMPLE`] px apart.

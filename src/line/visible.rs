@@ -20,9 +20,9 @@ use super::doubt::{Span, doubtful, join, seen};
 use super::folds::convex;
 use super::identity::{Held, key, names};
 use super::labels::{Labelled, cheapest};
-use super::overlay::on_page;
 use super::simplify::needed;
 use super::{Bound, Chain, ChainPoint, Curve, CurvePoint, Line, Sight, Stretch};
+use crate::view::cut::share_within;
 
 /// Least length of what is drawn and of a gap, px.
 const LEAST: f64 = 2.0;
@@ -89,7 +89,7 @@ fn clipped(curve: &Curve, spans: &[Span], page: DVec2) -> Vec<Span> {
     for [from, to] in pieces(spans) {
         let i = from.trunc();
         let [a, b] = curve.ends(i as usize).map(|end| end.place);
-        if let Some([enter, leave]) = on_page(a, b, page) {
+        if let Some([enter, leave]) = share_within([DVec2::ZERO, page], a, b) {
             let [from, to] = [from.max(i + enter), to.min(i + leave)];
             if from < to {
                 join(&mut parts, [from, to]);

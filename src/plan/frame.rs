@@ -166,22 +166,20 @@ impl Frame {
     /// The passes that find curves, in their order, each with its batch. Where batches share one vertex buffer, the values of
     /// all sides come first: what meets there may lie in several batches.
     pub fn of_curves(&self) -> Vec<(PassName, u32)> {
-        use PassName::{Crossed, Meet, RimSegments, Seam, Segments, Sight, Tessellate, Turn, Turning, Wanted};
-        let (turn, list) = (&[Tessellate, Seam, Turn][..], &[Meet, Crossed, Segments, RimSegments][..]);
-        let batches = 0..self.batches.len() as u32;
-        let mut passes = vec![(Turning, 0), (Wanted, 0)];
-        let mut over_batches = |names: &[PassName]| {
-            passes.extend(batches.clone().flat_map(|batch| names.iter().map(move |name| (*name, batch))));
-        };
-        if self.keeps_vertices() {
-            over_batches(&[&[Turn], list].concat());
-        } else {
-            over_batches(turn);
-            over_batches(&[turn, list].concat());
+        let all = |often| self.passes.iter().filter(move |pass| pass.often == often).map(|pass| pass.name);
+        let (before, behind): (Vec<_>, Vec<_>) = all(Often::ForCurves).partition(|name| *name != PassName::Sight);
+        let mut sweeps = vec![all(Often::ForCurvesOfBatch).collect::<Vec<_>>()];
+        if !self.keeps_vertices() {
+            let vertices: Vec<_> = all(Often::ForVertices).filter(|name| *name != PassName::Project).collect();
+            sweeps[0].splice(..0, vertices.iter().copied());
+            sweeps.insert(0, [&vertices[..], &[PassName::Turn]].concat());
         }
-        passes.push((Sight, 0));
-        passes.retain(|(name, _)| self.passes.iter().any(|pass| pass.name == *name));
-        passes
+        let batches = 0..self.batches.len() as u32;
+        let over_batches = sweeps
+            .iter()
+            .flat_map(|sweep| batches.clone().flat_map(move |batch| sweep.iter().map(move |name| (*name, batch))));
+        let once = |names: Vec<PassName>| names.into_iter().map(|name| (name, 0));
+        once(before).chain(over_batches).chain(once(behind)).collect()
     }
 
     /// The lists of pixels that these fill and go over.

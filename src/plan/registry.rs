@@ -103,7 +103,7 @@ pub(super) const WALK: Entry = Entry {
 pub(super) const CONTOUR: Entry = Entry {
     name: "contour",
     family: "contour",
-    brief: "Follow the silhouette curve, not a line of equal height: smooth, connected, to a hundredth of a pixel",
+    brief: "Follow the silhouette curve, not a line of equal height: smooth and connected, but short lines are missing",
     aside: "",
     rule: "A pixel is ink if a visible part of the curve along which the surface turns away, or of its rim, passes through \
            it (Hertzmann and Zorin 2000).",

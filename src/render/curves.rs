@@ -1,26 +1,21 @@
 //! The curves of a frame: found piece by piece, linked once all are in.
 
 use super::Renderer;
-use crate::error::{Error, Result, Setting};
+use crate::error::Result;
 use crate::gpu::clock::Timer;
 use crate::gpu::uniforms::Segment;
 use crate::gpu::work::Work;
 use crate::line::{Chain, Curve, link, visible};
-use crate::message;
 use crate::plan::{Frame, Piece};
 
 impl Renderer {
     /// Finds the curves of the last frame and brings them back.
     ///
     /// # Errors
-    /// Whatever the driver reports; [`Error::Limit`] where there are more than a device binds, or the page takes several
-    /// pieces, of which the device holds the last alone; [`Error::Mistake`] where there was no frame, or one without curves.
+    /// As [`Self::read`]; [`Error::Limit`](crate::error::Error::Limit) where there are more than a device binds,
+    /// [`Error::Mistake`](crate::error::Error::Mistake) for a frame without curves.
     pub fn curves(&mut self) -> Result<Vec<Curve>> {
-        let (frame, piece) = self.last.clone().ok_or_else(|| Error::mistake("there is no frame to read"))?;
-        if frame.pieces.iter().len() > 1 {
-            let what = format!("the page takes {} pieces, one can be read", frame.pieces.iter().len());
-            return Err(Error::limit(what, message!["draw it piece by piece, or use a smaller ", Setting::Size]));
-        }
+        let (frame, piece) = self.last_whole()?;
         let segments = self.segments(&frame, piece)?;
         Ok(self.linked(&frame, segments))
     }

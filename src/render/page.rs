@@ -37,12 +37,14 @@ impl Renderer {
     /// As [`Self::page`].
     pub fn page_of(&mut self, frame: Frame, progress: impl Fn(f64)) -> Result<Page> {
         let (mut list, mut segments, mut covered, mut longest_walk) = (Vec::new(), Vec::new(), 0, 0);
-        let count = frame.pieces.iter().len() as f64;
+        let (count, yields) = (frame.pieces.iter().len() as f64, frame.plan.method.entry().yields);
         self.upload(&frame)?;
         for (done, piece) in (1..).zip(frame.pieces.iter()) {
             self.passes(&frame, piece, None)?;
             let drawn = self.read_piece(&frame, piece)?;
-            list.append(&mut marks::of_piece(&drawn.raster, piece));
+            if yields == Yields::Ink {
+                list.append(&mut marks::of_piece(&drawn.raster, piece));
+            }
             covered += marks::covered(&drawn.raster, piece);
             longest_walk = longest_walk.max(drawn.longest_walk);
             if frame.plan.has_curves() {
@@ -52,7 +54,7 @@ impl Renderer {
         }
         let size = frame.pieces.page();
         let chains = visible::chains(self.linked(&frame, segments), size);
-        let marks = match frame.plan.method.entry().yields {
+        let marks = match yields {
             Yields::Ink => Marks::new(size, list),
             Yields::Curves => one_pixel_wide(&chains, size),
         };

@@ -1,0 +1,106 @@
+//! What `draw --json` writes: what was done.
+
+use std::path::PathBuf;
+
+use serde::Serialize;
+
+use super::flat_earth::FlatEarth;
+use super::view_report::ViewReport;
+use super::words::told;
+use crate::dem::Dem;
+use crate::line::{Chain, Strays};
+use crate::measure::figures::DrawnLevel;
+use crate::plan::left_out::LeftOut;
+use crate::render::{Page, PassTime};
+
+/// `--json`.
+#[derive(Serialize)]
+pub(super) struct Report {
+    pub version: &'static str,
+    pub dem: DemReport,
+    pub method: &'static str,
+    pub level: DrawnLevel,
+    pub facets: u64,
+    pub inked: usize,
+    pub chains: Option<ChainsReport>,
+    pub covered: u64,
+    pub longest_walk: u32,
+    pub pieces: usize,
+    pub warm_frames: usize,
+    pub frame_ms: f64,
+    pub timing: &'static str,
+    pub passes: Vec<PassTime>,
+    pub adapter: String,
+    pub int64: bool,
+    pub view: ViewReport,
+    pub flat_earth: Option<FlatEarth>,
+    pub left_out: Vec<LeftOutReport>,
+}
+
+/// The chains of contours that were found, and where they and the mask do not tell of the same lines.
+#[derive(Serialize)]
+pub(super) struct ChainsReport {
+    pub count: usize,
+    pub length_px: f64,
+    pub without_ink_px: usize,
+    pub ink_without_chain_px: usize,
+}
+
+/// What was drawn, and what became of the files on the way.
+#[derive(Serialize)]
+pub(super) struct DemReport {
+    pub files: Vec<String>,
+    pub columns: usize,
+    pub rows: usize,
+    pub cell_m: [f64; 2],
+    pub extent_m: [f64; 4],
+    pub voids: usize,
+    pub steps_m: Vec<f64>,
+    pub converted: Vec<String>,
+    pub assumed: Vec<String>,
+}
+
+/// What the frame did without.
+#[derive(Serialize)]
+pub(super) struct LeftOutReport {
+    pub what: &'static str,
+    pub why: String,
+    pub saved: Option<String>,
+}
+
+impl LeftOutReport {
+    pub fn of(LeftOut { what, why, saved }: LeftOut) -> Self {
+        Self { what, why: told(&why), saved }
+    }
+}
+
+impl ChainsReport {
+    pub fn of(page: &Page) -> Self {
+        let strays = Strays::of(&page.chains, &page.marks);
+        Self {
+            count: page.chains.len(),
+            length_px: page.chains.iter().flat_map(Chain::pairs).map(|[a, b]| a.place.distance(b.place)).sum(),
+            without_ink_px: strays.chains,
+            ink_without_chain_px: strays.ink,
+        }
+    }
+}
+
+impl DemReport {
+    pub fn of(files: &[PathBuf], dem: &Dem) -> Self {
+        // What cannot be read fails elsewhere, with its reason.
+        let surveyed = dem.survey(&|_| ()).map(|survey| survey.assumed.clone()).unwrap_or_default();
+        let assumed = [dem.history().assumed(), &surveyed, dem.history().usual()];
+        Self {
+            files: files.iter().map(|file| file.to_string_lossy().into_owned()).collect(),
+            columns: dem.columns(),
+            rows: dem.rows(),
+            cell_m: dem.cell().to_array(),
+            extent_m: dem.extent(),
+            voids: dem.voids(),
+            steps_m: dem.history().steps().to_vec(),
+            converted: dem.history().converted().iter().map(told).collect(),
+            assumed: assumed.into_iter().flatten().map(told).collect(),
+        }
+    }
+}
