@@ -1,6 +1,8 @@
 // 17 invocations a chunk whose values are wanted, each a column of vertices from north to south: of each vertex g = n . (eye - p),
 // where n is the sum of the normals of the chunk's own facets around it, as long as twice their areas (Hertzmann, Zorin
-// 2000). Above 0 the surface faces the eye. What other chunks add on a side adds `meet`.
+// 2000). Above 0 the surface faces the eye. What other chunks add on a side adds `meet`. Inside, where these facets do not all
+// face one way, n is that of the surface nearer to the vertex: the mean of whole facets smooths away folds that are
+// narrower than two of them.
 
 @group(0) @binding(20) var<storage, read_write> out_turns: array<f32>;
 @group(0) @binding(21) var<storage, read> turning: array<u32>;
@@ -20,6 +22,48 @@ fn facing_of(nw: Vertex, ne: Vertex, sw: Vertex, se: Vertex) -> vec2<f32> {
     return select(vec2<f32>(-below, -above), vec2<f32>(0.0), lacking(nw, ne, sw, se));
 }
 
+// Whether of the facets about a vertex, all of them there, some face the eye and some away.
+fn is_mixed(north: vec3<f32>, south: vec3<f32>) -> bool {
+    return all(north != vec3<f32>(0.0)) && all(south != vec3<f32>(0.0))
+        && any(min(north, south) < vec3<f32>(0.0)) && any(max(north, south) > vec3<f32>(0.0));
+}
+
+// Normal of a patch, to scale of its cell, at (u, v) of the cell as in `patch_point`: up from its surface.
+fn patch_normal(p: Patch, at: vec2<f32>, above: bool) -> vec3<f32> {
+    let a = 1.0 - max(at.x, at.y);
+    let b = min(at.x, at.y);
+    let c = abs(at.x - at.y);
+    // De Casteljau: what is left when one step to each corner is still to be made.
+    let to_a = p.ba * (b * b) + p.ca * (c * c) + (p.ab * (a * b) + p.ac * (a * c) + p.centre * (b * c)) * 2.0;
+    let to_b = p.ab * (a * a) + p.b * (b * b) + p.cb * (c * c) + (p.ba * (a * b) + p.centre * (a * c) + p.bc * (b * c)) * 2.0;
+    let to_c = p.ac * (a * a) + p.bc * (b * b) + p.c * (c * c) + (p.centre * (a * b) + p.ca * (a * c) + p.cb * (b * c)) * 2.0;
+    let normal = cross(to_b - to_a, to_c - to_a);
+    return select(-normal, normal, above);
+}
+
+// How the surface at a vertex inside a chunk faces the eye, as much as whole facets would add up to: by the normals of the
+// patches that meet there.
+fn turn_near(chunk: Chunk, here: Vertex) -> f32 {
+    let sub = here.at % CELL_STEPS;
+    let place = tile_place(chunk, here.at);
+    let share = vec2<f32>(sub) / f32(CELL_STEPS);
+    let on_column = sub.x == 0u;
+    let on_row = sub.y == 0u;
+    var normal = normal_of(sample_of(chunk.tile, place)) * (scene.cell.x * scene.cell.y / 9.0);
+    if !(on_column && on_row) {
+        let above = sub.x > sub.y;
+        normal = patch_normal(patch_of(chunk.tile, place, above), share, above);
+        if on_column || on_row || sub.x == sub.y {
+            // Across the edge: west of a column, north of a row, above a diagonal.
+            let beyond = place - select(vec2<u32>(0u), vec2<u32>(1u), vec2<bool>(on_column, on_row));
+            let from_beyond = select(share, vec2<f32>(1.0), vec2<bool>(on_column, on_row));
+            normal = (normal + patch_normal(patch_of(chunk.tile, beyond, !above), from_beyond, !above)) * 0.5;
+        }
+    }
+    let quads = f32(chunk.step) / f32(CELL_STEPS);
+    return -dot(normal, eye_relative(here.at / CELL_STEPS, here.place)) * (54.0 * quads * quads);
+}
+
 @compute @workgroup_size(17, 4)
 fn turn(@builtin(global_invocation_id) invocation: vec3<u32>) {
     let slot = batch.first_slot + invocation.y;
@@ -36,7 +80,8 @@ fn turn(@builtin(global_invocation_id) invocation: vec3<u32>) {
     let is_made = batch.passing == 0u || in_wedge(bounds_of(slot));
     let number = invocation.y * CHUNK_VERTICES + column;
     let side = around[slot * AROUND + SIDES_AT] * SIDE_VERTICES;
-    var sum = 0.0;
+    // Of the three facets north of a vertex.
+    var north = vec3<f32>(0.0);
     var west = vertex_in(chunk, vec2<u32>(west_column, 0u));
     var here = vertex_in(chunk, vec2<u32>(column, 0u));
     var east = vertex_in(chunk, vec2<u32>(east_column, 0u));
@@ -48,8 +93,12 @@ fn turn(@builtin(global_invocation_id) invocation: vec3<u32>) {
         let counts_here = counts & vec2<bool>(y < CHUNK_QUADS);
         let of_west = select(vec2<f32>(0.0), facing_of(west, here, south_west, south_here), counts_here.x);
         let of_east = select(vec2<f32>(0.0), facing_of(here, east, south_here, south_east), counts_here.y);
-        let g = sum + of_west.y + (of_east.x + of_east.y);
-        sum = (of_west.x + of_west.y) + of_east.x;
+        let of_south = vec3<f32>(of_west.y, of_east);
+        var g = (north.x + north.y + north.z) + of_south.x + (of_south.y + of_south.z);
+        if chunk.step < CELL_STEPS && all(counts) && is_mixed(north, of_south) {
+            g = turn_near(chunk, here);
+        }
+        north = vec3<f32>(of_west, of_east.x);
         let value = select(0.0, select(g, NO_HEIGHT, here.place.w >= NO_HEIGHT), is_made);
         out_turns[number + y * CHUNK_SIDE] = value;
         let at = vec2<u32>(column, y);

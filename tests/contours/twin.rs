@@ -1,7 +1,7 @@
 //! A twin of the contours in f64: the boundary of what faces the eye, on the facets of a lattice.
 //!
 //! Method: g = n . (eye - p) at every vertex of every chunk, n the sum of the cross products of all facets that have the
-//! vertex; on each facet with both signs (zero is away) one piece between the two sides it crosses (Hertzmann, Zorin 2000,
+//! vertex or, inside a chunk where they do not all face one way, as much of the normals of the patches there; on each facet with both signs (zero is away) one piece between the two sides it crosses (Hertzmann, Zorin 2000,
 //! section 3); sides with one facet where the land ends, as far as g > 0. Pieces have what faces the eye on their left and
 //! are strung together by lattice vertices alone. Brute force: every chunk, every facet, no look at what may be left out.
 //! Cost: about a microsecond a facet.
@@ -13,7 +13,8 @@ use std::hash::Hash;
 use glam::DVec3;
 use hachure::dem::Dem;
 use hachure::line::Bound;
-use hachure::surface::lattice::{CELL_STEPS, CHUNK_FACETS};
+use hachure::surface::lattice::{CELL_STEPS, CHUNK_FACETS, CHUNK_QUADS};
+use hachure::surface::patch::Patch;
 use hachure::surface::{Chunk, Lattice, LatticePoint, Surface};
 use rayon::prelude::*;
 
@@ -131,17 +132,32 @@ impl Twin {
         let vertex = |at| Vertex { p: position(at), n: DVec3::ZERO, g: 0.0, along: 0.0 };
         let vertices = points.par_iter().map(vertex).collect();
         let mut twin = Self { eye, points, vertices, facets, rim: Vec::new() };
-        twin.face();
+        twin.face(surface, chunks);
         let sides = (0..twin.facets.len()).flat_map(|f| (0..3).map(move |k| (f, k)));
         twin.rim = sides.filter(|(f, k)| twin.ends_land(dem, twin.side(*f, *k))).collect();
         twin
     }
 
     /// Sums normals, then g, then its change along the view.
-    fn face(&mut self) {
+    fn face(&mut self, surface: &Surface, chunks: &[Chunk]) {
+        // Of each vertex how many facets face the eye, and how many away.
+        let mut faces = vec![[0; 2]; self.points.len()];
         for facet in &self.facets {
-            let normal = normal(facet.map(|v| self.vertices[v].p));
+            let corners = facet.map(|v| self.vertices[v].p);
+            let normal = normal(corners);
             facet.iter().for_each(|v| self.vertices[*v].n += normal);
+            let is_away = usize::from(normal.dot(corners[0]) >= 0.0);
+            facet.iter().for_each(|v| faces[*v][is_away] += 1);
+        }
+        for chunk in chunks.iter().filter(|chunk| chunk.step < CELL_STEPS) {
+            let inside = (1..CHUNK_QUADS).flat_map(|row| (1..CHUNK_QUADS).map(move |column| [column, row]));
+            for at in inside.map(|at| chunk.vertex(at)) {
+                let Ok(v) = self.points.binary_search(&at) else { continue };
+                if faces[v].iter().all(|count| *count > 0) && faces[v].iter().sum::<i32>() == 6 {
+                    let quads = f64::from(chunk.step) / f64::from(CELL_STEPS);
+                    self.vertices[v].n = 6.0 * quads * quads * patch_normal(surface, at);
+                }
+            }
         }
         self.vertices.iter_mut().for_each(|vertex| vertex.g = -vertex.n.dot(vertex.p));
         for facet in &self.facets {
@@ -315,6 +331,34 @@ pub fn string_pieces(pieces: &[Piece]) -> Vec<Strung<Node>> {
 fn facets(dem: &Dem, chunk: &Chunk) -> Vec<Corners> {
     let all = (0..CHUNK_FACETS).map(|local| chunk.facet(local));
     all.filter(|[a, b, c]| a != b && b != c && c != a && exists(dem, [*a, *b, *c])).collect()
+}
+
+/// The mean normal of the patches at a lattice vertex, as long as a cell is large: by central differences.
+fn patch_normal(surface: &Surface, at: LatticePoint) -> DVec3 {
+    const STEP: f64 = 1e-4;
+    let dem = surface.dem();
+    if at.x.is_multiple_of(CELL_STEPS) && at.y.is_multiple_of(CELL_STEPS) {
+        let gradient = surface.gradient((at.x / CELL_STEPS) as usize, (at.y / CELL_STEPS) as usize);
+        return (-gradient).extend(1.0) * dem.cell().element_product();
+    }
+    let cells = |at: u32| at.saturating_sub(1) / CELL_STEPS..=at / CELL_STEPS;
+    let (mut sum, mut count) = (DVec3::ZERO, 0.0);
+    for (c, r) in cells(at.x).flat_map(|c| cells(at.y).map(move |r| (c, r))) {
+        let [u, v] = [(at.x, c), (at.y, r)].map(|(at, cell)| (f64::from(at) / f64::from(CELL_STEPS)) - f64::from(cell));
+        let corners = [r, r + 1].map(|r| surface.corners(r as usize));
+        let corner = |down: usize, right: u32| corners[down][(c + right) as usize];
+        for half in (0..2).filter(|half| if *half == 0 { v >= u } else { u >= v }) {
+            let patch = Patch::of_cell([corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)], half);
+            let point = |u: f64, v: f64| {
+                patch.point(if half == 0 { [1.0 - v, v - u, u] } else { [1.0 - u, v, u - v] }) - dem.position(0, 0)
+            };
+            let east = point(u + STEP, v) - point(u - STEP, v);
+            let south = point(u, v + STEP) - point(u, v - STEP);
+            sum += south.cross(east) / (4.0 * STEP * STEP);
+            count += 1.0;
+        }
+    }
+    sum / count
 }
 
 /// Up from a facet, as long as twice its area.
