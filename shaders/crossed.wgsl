@@ -1,4 +1,4 @@
-// 16 invocations a chunk through which a contour may run, one a row of quads: lists the facets whose vertices do not all face one
+// 16 invocations a chunk whose contours may be seen, one a row of quads: lists the facets whose vertices do not all face one
 // way. A vertex with a value of 0 faces away.
 
 @group(0) @binding(20) var<storage, read> turns: array<f32>;
@@ -19,7 +19,7 @@ fn facing_row(first: u32) -> vec2<u32> {
 @compute @workgroup_size(16, 4)
 fn crossed(@builtin(global_invocation_id) invocation: vec3<u32>) {
     let slot = batch.first_slot + invocation.y;
-    if slot >= camera.seen || (turning[slot] & BOTH) != BOTH || !in_view(bounds_of(slot)) {
+    if slot >= camera.seen || (turning[slot] & DRAWN) == 0u {
         return;
     }
     let first = invocation.y * CHUNK_VERTICES;

@@ -1,11 +1,14 @@
 // What the passes share that look for the boundary of the surface that faces the eye: contours and rim.
 
-// What is noted of a chunk: it or a neighbour holds facets toward the eye, away from it; it is wanted for its own lines or a
-// neighbour's.
+// What is noted of a chunk: it or a neighbour holds facets toward the eye, away from it; its values are wanted for its own
+// lines or a neighbour's; it has contours that may be seen.
 const HOLDS_TOWARD: u32 = 1u;
 const HOLDS_AWAY: u32 = 2u;
 const BOTH: u32 = 3u;
 const WANTED: u32 = 4u;
+const DRAWN: u32 = 8u;
+// How much nearer than a line the surface about it must be for it to be certainly hidden.
+const NEARER: f32 = 1.02;
 // Chunks that share the values of one batch.
 const BATCH_CHUNKS: u32 = 16384u;
 // Words that tell what lies around a chunk: slots by column and row of a 4 x 4 grid, of which the chunk itself fills the

@@ -1,4 +1,4 @@
-// 64 invocations a chunk through which a contour may run, one a vertex of its side: adds what all chunks that meet there have for it,
+// 64 invocations a chunk whose contours may be seen, one a vertex of its side: adds what all chunks that meet there have for it,
 // in the order of the lattice. Each of them does the same sum of the same numbers and has the same bits.
 
 @group(0) @binding(20) var<storage, read_write> out_turns: array<f32>;
@@ -31,7 +31,7 @@ fn share_of(slot: u32, at: vec2<u32>) -> f32 {
 @compute @workgroup_size(64)
 fn meet(@builtin(global_invocation_id) invocation: vec3<u32>) {
     let slot = batch.first_slot + invocation.y;
-    if slot >= camera.seen || (turning[slot] & BOTH) != BOTH || !in_view(bounds_of(slot)) {
+    if slot >= camera.seen || (turning[slot] & DRAWN) == 0u {
         return;
     }
     let chunk = chunks[slot];

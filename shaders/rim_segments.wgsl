@@ -39,6 +39,10 @@ fn at_rim(slot: u32, quad: vec2<u32>, half: u32, from_vertex: vec2<u32>, to_vert
     if slot < batch.first_slot || slot - batch.first_slot >= BATCH_CHUNKS || slot >= camera.seen || !in_view(bounds_of(slot)) {
         return;
     }
+    if (turning[slot] & (BOTH | DRAWN)) == BOTH {
+        // All of it lies hidden.
+        return;
+    }
     let chunk = chunks[slot];
     let vertex_p = shared_vertex(chunk.coarser, select(from_vertex, to_vertex, turned));
     let vertex_q = shared_vertex(chunk.coarser, select(to_vertex, from_vertex, turned));

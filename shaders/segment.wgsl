@@ -35,8 +35,6 @@ const NEAREST_FREE: u32 = 2u;
 const NEAREST_HIDDEN: u32 = 3u;
 const NOT_ASKED: u32 = 4u;
 
-// How much nearer than a segment the surface about it must be for it to be certainly hidden.
-const NEARER: f32 = 1.02;
 // How steeply facing rises along the view where the surface certainly hides the segment itself.
 const CONCAVE: f32 = -0.5;
 

@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::surface::lattice::CHUNK_QUADS;
 
 /// The composed shader.
-pub const SOURCE: &str = crate::shader!("scene", "lattice", "cull", "curve", "meet");
+pub const SOURCE: &str = crate::shader!("scene", "lattice", "curve", "meet");
 
 /// Compiles the pass.
 ///

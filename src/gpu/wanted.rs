@@ -6,7 +6,7 @@ use super::{Gpu, Pass};
 use crate::error::Result;
 
 /// The composed shader.
-pub const SOURCE: &str = crate::shader!("scene", "lattice", "cull", "curve", "tally", "wanted");
+pub const SOURCE: &str = crate::shader!("scene", "lattice", "surface", "cull", "curve", "tally", "wanted");
 
 /// Compiles the pass.
 ///
