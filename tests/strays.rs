@@ -12,7 +12,8 @@ use hachure::surface::Surface;
 use hachure::view::Camera;
 
 use crate::common::gpu;
-use crate::tolerances::STRAYS;
+use crate::scenes::{look, rough};
+use crate::tolerances::{FAR_STRAYS, STRAYS};
 
 const PAGE: [u32; 2] = [64, 32];
 
@@ -54,8 +55,7 @@ fn what_one_of_them_has_alone_is_counted() {
 }
 
 /// Pixels of chains and of ink that one of them has alone, and of all ink.
-fn strays_of(dem: &Path, camera: &Camera) -> [usize; 3] {
-    let surface = Arc::new(Surface::new(read(dem, &ReadOptions::default()).expect("a DEM")));
+fn strays_of(surface: Arc<Surface>, camera: &Camera) -> [usize; 3] {
     let mut renderer = Renderer::new(gpu().clone(), surface).expect("a renderer");
     let plan = Plan { curves: Curves::On, ..Plan::default() };
     let page = renderer.page(&plan, camera, |_| ()).expect("a page");
@@ -75,9 +75,15 @@ fn contours_and_the_walk_tell_of_the_same_lines() {
         height: 900,
     };
     let low = Camera { eye: DVec3::new(547_500.0, 4_183_300.0, 330.0), azimuth: 318.0, altitude: -6.0, ..far };
-    for camera in [far, low] {
-        let [chains, ink, all] = strays_of(&dem, &camera);
+    let sample = Arc::new(Surface::new(read(dem, &ReadOptions::default()).expect("a DEM")));
+    // From so far that no ridge is nearer than another by a share worth speaking of: what is hidden the walk alone tells.
+    let hills = Arc::new(Surface::new(rough(120, 100, 1.0, 0.5, false)));
+    let [west, south, east, north] = hills.dem().extent();
+    let middle = DVec3::new((west + east) / 2.0, (south + north) / 2.0, 0.0);
+    let away = look(middle + DVec3::new(30_000.0, -200_000.0, 9_000.0), middle, 0.6, [640, 240]);
+    for (surface, camera, share) in [(&sample, far, STRAYS), (&sample, low, STRAYS), (&hills, away, FAR_STRAYS)] {
+        let [chains, ink, all] = strays_of(surface.clone(), &camera);
         println!("{chains} px of chains without ink, {ink} px of ink without a chain, {all} px of ink");
-        assert!(all > 5000 && chains.max(ink) as f64 <= STRAYS * all as f64, "{chains} and {ink} of {all} px");
+        assert!(all > 2500 && chains.max(ink) as f64 <= share * all as f64, "{chains} and {ink} of {all} px");
     }
 }
