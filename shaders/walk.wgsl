@@ -39,12 +39,17 @@ fn from_a(f: Facet, w: vec2<f32>) -> vec2<f32> {
     return vec2<f32>(vec2<i32>(f.b) - vec2<i32>(f.a)) * w.x + vec2<f32>(vec2<i32>(f.c) - vec2<i32>(f.a)) * w.y;
 }
 
-// Where the ray through a page place meets a facet, clamped to the facet, in walk units.
+// Barycentrics of where the ray through a page place meets a facet, clamped to the facet.
+fn hit_weights(t: Corners, px: vec2<f32>) -> vec3<f32> {
+    let w = max(volumes(t, ray_through(px)), vec3<f32>(0.0));
+    let sum = w.x + w.y + w.z;
+    return select(w / sum, vec3<f32>(1.0, 0.0, 0.0), sum == 0.0);
+}
+
+// The same place in walk units.
 fn facet_hit(id: u32, px: vec2<f32>) -> vec2<i32> {
     let f = facet_of(id);
-    var w = max(volumes(corners_of(chunks[id / CHUNK_FACETS], f), ray_through(px)), vec3<f32>(0.0));
-    let sum = w.x + w.y + w.z;
-    w = select(w / sum, vec3<f32>(1.0, 0.0, 0.0), sum == 0.0);
+    let w = hit_weights(corners_of(chunks[id / CHUNK_FACETS], f), px);
     return vec2<i32>(f.a * UNITS) + vec2<i32>(round(from_a(f, w.yz) * f32(UNITS)));
 }
 

@@ -25,6 +25,10 @@ fn map_exit(px: vec2<f32>, origin: vec2<i32>) -> vec2<i32> {
 // to it is aimed beyond its centre by this share.
 const OVERSHOOT: f32 = 1.0 / 64.0;
 
+fn ray_beyond(centre: vec2<f32>, to_centre: vec2<f32>) -> vec3<f32> {
+    return ray_through(to_centre + (to_centre - centre) * OVERSHOOT);
+}
+
 // Where a walk ends, and whether it then follows the ray of the pixel it leads to.
 struct Goal {
     at: vec2<i32>,
@@ -39,7 +43,7 @@ fn open_goal(id: u32, centre: vec2<f32>, to_centre: vec2<f32>, origin: vec2<i32>
     let f = facet_of(id);
     let t = corners_of(chunks[id / CHUNK_FACETS], f);
     let normal = cross(t.edge_1, t.edge_2);
-    let ray = ray_through(to_centre + (to_centre - centre) * OVERSHOOT);
+    let ray = ray_beyond(centre, to_centre);
     if dot(normal, ray) >= 0.0 {
         return Goal(map_exit(to_centre, origin), false);
     }
@@ -56,6 +60,13 @@ fn open_goal(id: u32, centre: vec2<f32>, to_centre: vec2<f32>, origin: vec2<i32>
     return Goal(at, dot(normal, camera.right.xyz * px.x - camera.up.xyz * px.y) >= 0.0);
 }
 
+// What the cut of the surface from a pixel to one without surface meets.
+fn cut_between(id: u32, centre: vec2<f32>, to_centre: vec2<f32>) -> Meeting {
+    let t = corners_of(chunks[id / CHUNK_FACETS], facet_of(id));
+    let w = hit_weights(t, centre);
+    return follow_section(id, t.p + t.edge_1 * w.y + t.edge_2 * w.z, ray_beyond(centre, to_centre));
+}
+
 // Inks the nearer pixel of a pair if the walk to the farther one meets an away facet. Says how far it walked.
 fn walk_pair(one: vec2<i32>, other: vec2<i32>) -> u32 {
     let first = pixels[pixel_index(one)];
@@ -67,8 +78,9 @@ fn walk_pair(one: vec2<i32>, other: vec2<i32>) -> u32 {
     let centre = centre_of(at);
     let to_centre = centre_of(select(other, one, swapped));
     let origin = facet_hit(p.x - 1u, centre);
+    let to_open = q.y == 0u || is_away(q.x - 1u);
     var goal: Goal;
-    if q.y == 0u || is_away(q.x - 1u) {
+    if to_open {
         goal = open_goal(p.x - 1u, centre, to_centre, origin);
     } else {
         goal = Goal(facet_hit(q.x - 1u, to_centre), false);
@@ -76,15 +88,22 @@ fn walk_pair(one: vec2<i32>, other: vec2<i32>) -> u32 {
     var meeting: Meeting;
     var start = origin;
     var longest = 0u;
-    for (var legs = select(1u, 2u, goal.goes_on); legs > 0u; legs--) {
+    var by_rim = false;
+    for (var leg = 0u; leg < select(1u, 2u, goal.goes_on); leg++) {
         meeting = walk_between(start, goal.at);
         longest = max(longest, meeting.steps);
         check_done(meeting);
         if meeting.met || meeting.left_land {
+            by_rim = meeting.left_land && leg == 0u;
             break;
         }
         start = goal.at;
         goal.at = map_exit(to_centre, start);
+    }
+    if to_open && !meeting.met && !by_rim {
+        meeting = cut_between(p.x - 1u, centre, to_centre);
+        longest = max(longest, meeting.steps);
+        check_done(meeting);
     }
     ink(at, meeting);
     return longest;

@@ -64,6 +64,7 @@ mod seen;
 mod shell;
 mod silhouettes;
 mod smoothest;
+mod spires;
 mod stepless;
 mod steps;
 mod strays;
