@@ -80,6 +80,8 @@ fn turn(@builtin(global_invocation_id) invocation: vec3<u32>) {
     let is_made = batch.passing == 0u || in_wedge(bounds_of(slot));
     let number = invocation.y * CHUNK_VERTICES + column;
     let side = around[slot * AROUND + SIDES_AT] * SIDE_VERTICES;
+    // Of what is not drawn the sides alone count.
+    let has_near = all(counts) && chunk.step < CELL_STEPS && (turning[slot] & DRAWN) != 0u;
     // Of the three facets north of a vertex.
     var north = vec3<f32>(0.0);
     var west = vertex_in(chunk, vec2<u32>(west_column, 0u));
@@ -95,7 +97,7 @@ fn turn(@builtin(global_invocation_id) invocation: vec3<u32>) {
         let of_east = select(vec2<f32>(0.0), facing_of(here, east, south_here, south_east), counts_here.y);
         let of_south = vec3<f32>(of_west.y, of_east);
         var g = (north.x + north.y + north.z) + of_south.x + (of_south.y + of_south.z);
-        if chunk.step < CELL_STEPS && all(counts) && is_mixed(north, of_south) {
+        if has_near && is_mixed(north, of_south) {
             g = turn_near(chunk, here);
         }
         north = vec3<f32>(of_west, of_east.x);
