@@ -24,7 +24,13 @@ fn hides(at: vec2<i32>, place: vec2<i32>, reach: f32) -> bool {
     if is_away(id) {
         return true;
     }
-    let meeting = walk_between(facet_hit(id, centre_of(at)), place);
+    let hit = facet_hit(id, centre_of(at));
+    let from_line = abs(vec2<f32>(hit - place));
+    if !has_voids && max(from_line.x, from_line.y) <= reach {
+        // So are all facets on the way.
+        return false;
+    }
+    let meeting = walk_between(hit, place);
     if !meeting.done {
         atomicAdd(&out_tally.cut_short, 1u);
     }

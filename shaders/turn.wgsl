@@ -82,6 +82,8 @@ fn turn(@builtin(global_invocation_id) invocation: vec3<u32>) {
     let side = around[slot * AROUND + SIDES_AT] * SIDE_VERTICES;
     // Of what is not drawn the sides alone count.
     let has_near = all(counts) && chunk.step < CELL_STEPS && (turning[slot] & DRAWN) != 0u;
+    // The vertices that want a closer look, as bits.
+    var mixed = 0u;
     // Of the three facets north of a vertex.
     var north = vec3<f32>(0.0);
     var west = vertex_in(chunk, vec2<u32>(west_column, 0u));
@@ -96,10 +98,8 @@ fn turn(@builtin(global_invocation_id) invocation: vec3<u32>) {
         let of_west = select(vec2<f32>(0.0), facing_of(west, here, south_west, south_here), counts_here.x);
         let of_east = select(vec2<f32>(0.0), facing_of(here, east, south_here, south_east), counts_here.y);
         let of_south = vec3<f32>(of_west.y, of_east);
-        var g = (north.x + north.y + north.z) + of_south.x + (of_south.y + of_south.z);
-        if has_near && is_mixed(north, of_south) {
-            g = turn_near(chunk, here);
-        }
+        let g = (north.x + north.y + north.z) + of_south.x + (of_south.y + of_south.z);
+        mixed |= select(0u, 1u << y, has_near && is_mixed(north, of_south));
         north = vec3<f32>(of_west, of_east.x);
         let value = select(0.0, select(g, NO_HEIGHT, here.place.w >= NO_HEIGHT), is_made);
         out_turns[number + y * CHUNK_SIDE] = value;
@@ -113,5 +113,9 @@ fn turn(@builtin(global_invocation_id) invocation: vec3<u32>) {
         west = south_west;
         here = south_here;
         east = south_east;
+    }
+    for (; mixed != 0u; mixed &= mixed - 1u) {
+        let y = firstTrailingBit(mixed);
+        out_turns[number + y * CHUNK_SIDE] = turn_near(chunk, vertex_in(chunk, vec2<u32>(column, y)));
     }
 }

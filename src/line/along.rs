@@ -2,7 +2,7 @@
 //!
 //! Method: an average weighs what lies `a` px away along the chain by exp(-a / reach), which one pass forward and one
 //! backward sum up exactly. It has no edge at which a point falls out of a window: points that move a little move averages
-//! a little. Cost: some 10 ns a point and value.
+//! a little. Cost: two passes along the chain.
 
 use glam::DVec2;
 

@@ -10,7 +10,7 @@
 //! on the left, as [curves](super::curve) do.
 //!
 //! Source: the rule of halftoning by strokes (Salisbury et al. 1994: a stroke is drawn where the page has room), here
-//! without its order of arrival. Cost: a look at the samples within the gap; 40 000 in some 5 ms on one core. Does not
+//! without its order of arrival. Cost: a look at the samples within the gap. Does not
 //! handle: many weak lines beside a strong one that press no harder than one of them.
 
 use std::ops::Range;

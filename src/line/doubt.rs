@@ -6,7 +6,7 @@
 //! without a crossing costs as much as [`UNEXPLAINED`] px of doubtful stretches against what the nearest pixel says. So a
 //! curve that passes behind a nearer one ends on it, to the last bit; pixels decide only where nothing else is known.
 //!
-//! Cost: crossings of the doubtful stretches, some 20 ns for each of their pieces. Does not handle: sure stretches that
+//! Cost: crossings of the doubtful stretches, and a look at each of their pieces. Does not handle: sure stretches that
 //! are wrong for longer than [`MARGIN`].
 
 use std::ops::Range;

@@ -7,8 +7,8 @@
 //! over some pixels where they leap; the skyline has weight 1 and yields to no one. Every step is continuous in place and
 //! jump: when the eye moves a little, weights change a little.
 //!
-//! Cost: 40 000 points in some 10 ms. Does not handle: chains that fall apart or join from one frame to the next, beyond
-//! what their length says.
+//! Cost: some passes along each chain, and that of clearance. Does not handle: chains that fall apart or join from one
+//! frame to the next, beyond what their length says.
 
 use glam::{DVec2, FloatExt};
 use rayon::prelude::*;

@@ -6,7 +6,7 @@
 //! points that no pen shows are left out. Chains are [named](super::identity) and stand in an order of their own: the
 //! same curves, in any order and begun anywhere, give the same bytes.
 //!
-//! Cost: some 3500 instructions a stretch, spread over all cores. Does not handle: curves that join; where two
+//! Cost: some looks at each stretch, spread over all cores. Does not handle: curves that join; where two
 //! meet on the page one ends on the other.
 
 use std::cmp::Ordering;

@@ -12,14 +12,16 @@ use wgpu::naga;
 use super::{all_modules, bound, constants, layouts, shared_constants, shared_structs};
 
 /// Constants that are the shaders' own, and why Rust need not know them.
-const OWN_CONSTANTS: [(&str, &str); 32] = [
+const OWN_CONSTANTS: [(&str, &str); 34] = [
     ("HOLDS_TOWARD", "bit of a word of a chunk: set by turning and wanted, read by the passes behind them"),
     ("HOLDS_AWAY", "as HOLDS_TOWARD"),
     ("BOTH", "as HOLDS_TOWARD"),
     ("WANTED", "as HOLDS_TOWARD"),
+    ("DRAWN", "as HOLDS_TOWARD"),
+    ("MOST_PIXELS", "how many pixels wanted looks at before a chunk counts as seen"),
     ("SIDES_AT", "which word around a chunk wanted writes, and turn and meet read"),
     ("MOST_PARTS", "into how many parts list_line cuts a line"),
-    ("NEARER", "room for rounding and slopes where list_line leaves out what is hidden"),
+    ("NEARER", "room for rounding and slopes where wanted and list_line leave out what is hidden"),
     ("CONCAVE", "where list_line leaves out what hides itself"),
     ("NUDGE", "how far off the surface sight looks"),
     ("MOST_NUDGE", "as NUDGE"),
