@@ -100,7 +100,9 @@ fn the_csv_holds_what_the_json_holds() {
         assert_eq!(cell("min_frame_range_ms"), &run["frame_range_ms"][0].to_string());
         assert_eq!(cell("mask_hashes"), "9f86d081 60303ae2");
         let walk = run["method"] == "walk";
-        assert_eq!(cell("ids_kept").is_empty(), run["method"] != "contour");
+        for key in ["ids_kept", "economy_removed"] {
+            assert_eq!(cell(key).is_empty(), run["method"] != "contour", "{key}");
+        }
         for key in ["pixel_recall", "chains", "chains_px", "short_chains", "chain_precision", "chain_recall"] {
             assert_eq!(cell(key), &run[key].to_string(), "{key}");
         }
@@ -164,8 +166,9 @@ fn a_run_is_told_with_its_chains() {
         let run = results.runs.iter().find(|run| run.method == method).expect("a run");
         lines(&Found::Run(run))[0].clone()
     };
-    let chains = "  214 chains, 3721 px: 0.057 px from truth, 95 % within 0.110; P 0.8317 R 0.9044; 11.2 % under 6 px";
-    assert_eq!(said("contour")[1], format!("{chains}; 93.8 % of ids kept"));
+    let chains =
+        "  214 chains, 3721 px: 0.057 px from truth, 95 % within 0.110; P 0.8317 R 0.9044 (economy removes 6.4 %)";
+    assert_eq!(said("contour")[1], format!("{chains}; 11.2 % under 6 px; 93.8 % of ids kept"));
     let traced = "P 0.8391 R 0.8649; 11.2 % under 6 px";
     assert!(said("toward-away")[1].ends_with(traced), "{:?}", said("toward-away"));
     assert_eq!(said("adjacency")[1], "  0 chains, 0 px: P 0.0339 R 0.9722; 11.2 % under 6 px");

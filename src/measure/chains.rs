@@ -3,14 +3,22 @@
 use glam::DVec2;
 
 use super::figures::ChainFigures;
-use crate::line::{Chain, Kind, Mark, Marks, Pixel, trace};
+use crate::line::{Chain, Economy, Kind, Mark, Marks, Pixel, economised, trace};
 use crate::truth::metrics::{Judge, Offsets};
 use crate::truth::{Inked, Mask};
 use crate::view::{Camera, Perspective};
 
-/// The figures of chains; `ids_kept` is their share that the next frame keeps, if it is known.
-pub(super) fn figures(judge: &Judge<'_>, chains: &[Chain], ids_kept: Option<f64>) -> ChainFigures {
+/// The figures of chains; `ids_kept` is their share that the next frame keeps, if it is known, and `economy` that of their
+/// page, where they are drawn by one.
+pub(super) fn figures(
+    judge: &Judge<'_>,
+    chains: &[Chain],
+    ids_kept: Option<f64>,
+    economy: Option<&Economy>,
+) -> ChainFigures {
     let scores = judge.measure_chains(&chains.iter().map(places).collect::<Vec<_>>());
+    let recall = scores.agreement.recall;
+    let removed = |economy| recall - judge.recalled(&drawn(&economised(chains, economy)));
     let of_offsets = |figure: fn(&Offsets) -> f64| scores.offsets.as_ref().map(figure);
     ChainFigures {
         chains: scores.count,
@@ -19,7 +27,8 @@ pub(super) fn figures(judge: &Judge<'_>, chains: &[Chain], ids_kept: Option<f64>
         chain_mean_px: of_offsets(|offsets| offsets.mean),
         chain_p95_px: of_offsets(|offsets| offsets.p95),
         chain_precision: scores.agreement.precision,
-        chain_recall: scores.agreement.recall,
+        chain_recall: recall,
+        economy_removed: economy.map(removed),
         ids_kept,
     }
 }
@@ -32,6 +41,12 @@ pub(super) fn short_of_drawing(judge: &Judge<'_>, drawing: &Mask, camera: &Camer
     let marks = Marks::new(drawing.size, drawing.inked.iter().map(mark).collect());
     let chains = trace(&marks, &Perspective::new(camera, 1.0));
     judge.measure_chains(&chains.iter().map(places).collect::<Vec<_>>()).short
+}
+
+/// The pieces of chains that economy leaves at least half their width.
+fn drawn(chains: &[Chain]) -> Vec<Vec<DVec2>> {
+    let pairs = chains.iter().flat_map(Chain::pairs);
+    pairs.filter(|[a, b]| a.weight + b.weight >= 1.0).map(|[a, b]| vec![a.place, b.place]).collect()
 }
 
 /// Its corners on the page.

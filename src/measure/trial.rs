@@ -14,7 +14,7 @@ use super::figures::{AtDistance, Band, ChainFigures, DrawnLevel, FloorFigures, P
 use super::kept::{Seen, ids_kept};
 use super::{chains, memory};
 use crate::error::Result;
-use crate::line::Chain;
+use crate::line::{Chain, Economy};
 use crate::truth::Mask;
 use crate::truth::metrics::{BandScore, DISTANCES, Judge, Scores};
 use crate::view::Camera;
@@ -214,7 +214,8 @@ impl Trial<'_> {
         let next = if named { next.chains() } else { Vec::new() };
         let camera = moved(self.camera, 1);
         let kept = ids_kept(Seen { camera: self.camera, chains: &chains }, Seen { camera: &camera, chains: &next });
-        chains::figures(self.judge, &chains, kept)
+        let economy = named.then(|| Economy::for_page(self.camera.width));
+        chains::figures(self.judge, &chains, kept, economy.as_ref())
     }
 }
 

@@ -130,10 +130,11 @@ fn the_page_tells_how_chains_lie_beside_truths_own() {
     let short = "<td data-v=\"0.1125\">0.113</td><td data-v=\"0.0875\">0.087</td>";
     assert!(contour.contains(figures) && contour.contains(short), "{contour}");
     assert!(contour.contains("<td data-v=\"0.9375\">0.938</td>"), "{contour}");
-    // What is traced has no names, and where nothing is drawn there are no distances.
+    assert!(contour.contains("<td data-v=\"0.064\">0.064</td>"), "{contour}");
+    // What is traced has no names and no economy, and where nothing is drawn there are no distances.
     let none = "<td data-v=\"\">–</td>";
-    assert_eq!(rows[of("toward-away")].matches(none).count(), 1);
-    assert_eq!(rows[of("adjacency")].matches(none).count(), 3);
+    assert_eq!(rows[of("toward-away")].matches(none).count(), 2);
+    assert_eq!(rows[of("adjacency")].matches(none).count(), 4);
     assert!(rows[of("adjacency")].contains("<td data-v=\"0\">0</td>"));
     // Recall by pixels stands in the table of all runs.
     let run = &results.runs[0];
