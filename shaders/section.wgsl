@@ -3,8 +3,8 @@
 // does not: on toward facets it goes on along the page, so that it has turned away or ended before a place without surface.
 
 const NO_FACET: u32 = 0xffffffffu;
-// Facets that a cut is followed over at most: along four cells at the finest level, while a spire of one sample is two cells
-// wide. Longer ones lie in plains seen edge-on: there the straight way alone decides.
+// Facets that a cut is followed over at most: some two cells of them at the finest level, more cells at coarser ones. What
+// takes longer, as a plain seen edge-on, the straight way alone decides.
 const LONGEST_SECTION: u32 = 4u * CELL_STEPS;
 
 // Whether a place in walk units lies inside a facet.

@@ -1,8 +1,8 @@
 // 17 invocations a chunk whose values are wanted, each a column of vertices from north to south: of each vertex g = n . (eye - p),
 // where n is the sum of the normals of the chunk's own facets around it, as long as twice their areas (Hertzmann, Zorin
-// 2000). Above 0 the surface faces the eye. What other chunks add on a side adds `meet`. Inside, where these facets do not all
-// face one way, n is that of the surface nearer to the vertex: the mean of whole facets smooths away folds that are
-// narrower than two of them.
+// 2000). Above 0 the surface faces the eye. What other chunks add on a side adds `meet`. Inside, not on sides, where these
+// facets do not all face one way, n is that of the surface nearer to the vertex: the mean of whole facets smooths away folds
+// that are narrower than two of them. There g leaps when the first of the facets turns.
 
 @group(0) @binding(20) var<storage, read_write> out_turns: array<f32>;
 @group(0) @binding(21) var<storage, read> turning: array<u32>;
@@ -80,8 +80,11 @@ fn turn(@builtin(global_invocation_id) invocation: vec3<u32>) {
     let is_made = batch.passing == 0u || in_wedge(bounds_of(slot));
     let number = invocation.y * CHUNK_VERTICES + column;
     let side = around[slot * AROUND + SIDES_AT] * SIDE_VERTICES;
-    // Of what is not drawn the sides alone count.
-    let has_near = all(counts) && chunk.step < CELL_STEPS && (turning[slot] & DRAWN) != 0u;
+    // Of what is not drawn the sides alone count. Beside a coarser chunk, where facets have collapsed, whole ones do.
+    let low = select(vec2<u32>(1u), vec2<u32>(2u), (vec2<u32>(chunk.coarser) & vec2<u32>(WEST, NORTH)) != vec2<u32>(0u));
+    let margin = select(vec2<u32>(1u), vec2<u32>(2u), (vec2<u32>(chunk.coarser) & vec2<u32>(EAST, SOUTH)) != vec2<u32>(0u));
+    let high = CHUNK_QUADS - margin;
+    let is_near = chunk.step < CELL_STEPS && (turning[slot] & DRAWN) != 0u && column >= low.x && column <= high.x;
     // The vertices that want a closer look, as bits.
     var mixed = 0u;
     // Of the three facets north of a vertex.
@@ -99,7 +102,7 @@ fn turn(@builtin(global_invocation_id) invocation: vec3<u32>) {
         let of_east = select(vec2<f32>(0.0), facing_of(here, east, south_here, south_east), counts_here.y);
         let of_south = vec3<f32>(of_west.y, of_east);
         let g = (north.x + north.y + north.z) + of_south.x + (of_south.y + of_south.z);
-        mixed |= select(0u, 1u << y, has_near && is_mixed(north, of_south));
+        mixed |= select(0u, 1u << y, is_near && y >= low.y && y <= high.y && is_mixed(north, of_south));
         north = vec3<f32>(of_west, of_east.x);
         let value = select(0.0, select(g, NO_HEIGHT, here.place.w >= NO_HEIGHT), is_made);
         out_turns[number + y * CHUNK_SIDE] = value;

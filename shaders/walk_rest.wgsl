@@ -1,5 +1,5 @@
 // One invocation a pixel with pairs that `walk` has left: with neighbours that show no surface, or with a walk past
-// squares that lack facets or past facets beside a coarser chunk.
+// squares that lack facets or past facets beside a coarser chunk. Where no surface shows, the cut of the land is followed too.
 
 @group(0) @binding(25) var<storage, read> rest: ListRead;
 
@@ -67,7 +67,7 @@ fn cut_between(id: u32, centre: vec2<f32>, to_centre: vec2<f32>) -> Meeting {
     return follow_section(id, t.p + t.edge_1 * w.y + t.edge_2 * w.z, ray_beyond(centre, to_centre));
 }
 
-// Inks the nearer pixel of a pair if the walk to the farther one meets an away facet. Says how far it walked.
+// Inks the nearer pixel of a pair if the walk to the farther one, or the cut, meets an away facet. Says how far it walked.
 fn walk_pair(one: vec2<i32>, other: vec2<i32>) -> u32 {
     let first = pixels[pixel_index(one)];
     let second = pixels[pixel_index(other)];
@@ -94,7 +94,7 @@ fn walk_pair(one: vec2<i32>, other: vec2<i32>) -> u32 {
         longest = max(longest, meeting.steps);
         check_done(meeting);
         if meeting.met || meeting.left_land {
-            by_rim = meeting.left_land && leg == 0u;
+            by_rim = meeting.left_land && goal.goes_on && leg == 0u;
             break;
         }
         start = goal.at;

@@ -14,8 +14,8 @@ fn want(slot: u32) {
 // So many pixels are looked at before a chunk counts as seen.
 const MOST_PIXELS: i32 = 1024;
 
-// Whether all pixels that a box may touch, and those about them, show surface that is certainly nearer: then so it is
-// about each of its segments.
+// Whether all pixels that a box may touch, and two about them, show surface that is certainly nearer: then so it is about
+// each of its segments, a pixel to either side.
 fn lies_buried(box: Bounds) -> bool {
     let middle = camera_space(box.middle);
     let reach = vec3<f32>(
@@ -33,8 +33,8 @@ fn lies_buried(box: Bounds) -> bool {
     let from_px = low * camera.focal / select(vec2<f32>(farthest), vec2<f32>(nearest), low < vec2<f32>(0.0)) + camera.centre;
     let to_px = high * camera.focal / select(vec2<f32>(nearest), vec2<f32>(farthest), high < vec2<f32>(0.0)) + camera.centre;
     let page = 2.0 * camera.centre;
-    let first = max(vec2<i32>(floor(clamp(from_px, vec2<f32>(0.0), page))) - camera.origin - 1, vec2<i32>(0));
-    let last = min(vec2<i32>(floor(clamp(to_px, vec2<f32>(0.0), page))) - camera.origin + 1, vec2<i32>(camera.size) - 1);
+    let first = max(vec2<i32>(floor(clamp(from_px, vec2<f32>(0.0), page))) - camera.origin - 2, vec2<i32>(0));
+    let last = min(vec2<i32>(floor(clamp(to_px, vec2<f32>(0.0), page))) - camera.origin + 2, vec2<i32>(camera.size) - 1);
     let across = last - first + 1;
     if any(across <= vec2<i32>(0)) || across.x > MOST_PIXELS || across.y > MOST_PIXELS || across.x * across.y > MOST_PIXELS {
         return false;
@@ -57,7 +57,7 @@ fn wanted(@builtin(global_invocation_id) invocation: vec3<u32>) {
         return;
     }
     let box = bounds_of(slot);
-    if !in_view(box) || lies_buried(box) {
+    if !in_view(box) || (thrifty && lies_buried(box)) {
         return;
     }
     atomicOr(&out_turning[slot], DRAWN);

@@ -45,7 +45,7 @@ pub struct Renderer {
 pub struct Drawn {
     /// Ink, kind, sub-pixel place and depth of each pixel.
     pub raster: InkRaster,
-    /// Nodes the longest walk visited; 0 for other methods.
+    /// Nodes the longest walk visited, or facets of the longest cut; 0 for other methods.
     pub longest_walk: u32,
 }
 
@@ -209,7 +209,7 @@ impl Renderer {
     }
 }
 
-/// The nodes that the longest walk visited, where all went well.
+/// The nodes that the longest walk visited, or the facets of the longest cut, where all went well.
 fn checked(counts: &[Counts]) -> Result<u32> {
     let orphans: u32 = counts.iter().map(|counts| counts.orphans).sum();
     if orphans > 0 {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use hachure::plan::frame::Kept;
-use hachure::plan::{Border, Detail, Frame, Method, PassName, Plan, Thrift, detail};
+use hachure::plan::{Border, Curves, Detail, Frame, Method, PassName, Plan, Thrift, detail};
 use hachure::surface::{Surface, Tile};
 use hachure::view::Camera;
 
@@ -52,6 +52,41 @@ fn compare(surface: &Arc<Surface>, detail: Detail, method: Method, frames: usize
         inked += expected.chunks_exact(8).filter(|p| p[0] & 2 != 0).count();
     }
     inked
+}
+
+/// Chunks whose contours are looked for, as curve.wgsl notes it.
+const DRAWN: u32 = 8;
+
+#[test]
+fn what_is_left_out_changes_no_curve() {
+    let surface = Arc::new(Surface::new(rough(90, 75, 1.0, 0.5, false)));
+    let [west, south, east, north] = surface.dem().extent();
+    let [low, _] = surface.dem().range().expect("land").map(f64::from);
+    for detail in [Detail::Uniform(level(2)), Detail::Uniform(level(8))] {
+        let plan = |thrift| Plan { thrift, curves: Curves::On, ..Plan::new(detail, Method::Walk, Border::On) };
+        let frames = [Thrift::LeaveOut, Thrift::Nothing].map(|thrift| Planned::new(gpu(), &surface, plan(thrift)));
+        let [mut thrifty, mut whole] = frames;
+        let (mut random, mut left_out, mut points) = (Random::new(5), 0, 0);
+        for _ in 0..6 {
+            let (x, y) = (random.between(west, east), random.between(south, north));
+            let eye = DVec3::new(x, y, low + random.between(20.0, 60.0));
+            let azimuth = random.between(0.0, 360.0);
+            let camera = Camera { eye, azimuth, altitude: -5.0, fov: 60.0, width: 256, height: 160 };
+            let curves = [&mut thrifty, &mut whole].map(|renderer| {
+                renderer.draw(&camera).expect("a frame");
+                renderer.curves().expect("curves")
+            });
+            assert!(curves[0] == curves[1], "{detail:?}: {camera:?} differs");
+            points += curves[0].iter().map(|curve| curve.points.len()).sum::<usize>();
+            let drawn = |renderer: &Planned| {
+                let words: Vec<u32> = renderer.values("turning", renderer.lattice().chunks().len());
+                words.iter().filter(|word| **word & DRAWN != 0).count()
+            };
+            left_out += drawn(&whole) - drawn(&thrifty);
+        }
+        println!("{detail:?}: {points} points of curves, {left_out} chunks left out");
+        assert!(points > 400 && left_out > 50, "{points} points, {left_out} chunks left out");
+    }
 }
 
 #[test]

@@ -182,7 +182,7 @@ pub struct Tally {
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct Counts {
-    /// Nodes the longest walk visited.
+    /// Nodes the longest walk visited, or facets of the longest cut.
     pub longest_walk: u32,
     /// Pixels with a depth and no ID: must be 0.
     pub orphans: u32,

@@ -189,8 +189,8 @@ pub struct ChainFigures {
     pub chain_precision: f64,
     /// Share of truth's length within 1 px of a chain.
     pub chain_recall: f64,
-    /// Share of truth's length within 1 px of a chain that economy takes more than half its width; `None` of chains that
-    /// are traced.
+    /// Share of truth's length within 1 px of a chain and not of one that economy leaves half its width or more; `None` of
+    /// chains that are traced.
     pub economy_removed: Option<f64>,
     /// Share of the length of chains over 12 px that is called the same in the next frame, the eye 1 m on; `None` of chains
     /// without names.

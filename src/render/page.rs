@@ -15,7 +15,7 @@ pub struct Page {
     pub chains: Vec<Chain>,
     /// How many pixels show land, inked or not.
     pub covered: u64,
-    /// Nodes the longest walk visited; 0 for other methods.
+    /// Nodes the longest walk visited, or facets of the longest cut; 0 for other methods.
     pub longest_walk: u32,
     /// What was drawn.
     pub frame: Frame,

@@ -327,9 +327,10 @@ fn a_wrong_piece_is_noticed() {
     let frame = frames.take(20).find(|(.., met)| met.both - met.rim > 200 && met.rim > 50);
     let (camera, mut scene, twin, met) = frame.expect("a frame with contours");
     assert!(scene.compare(&twin.reversed()).map_or(true, |met| met.px > CROSSING_PX), "g's sign is not noticed");
-    let aside = Twin::new(&surface, &scene.lattice, camera.eye + DVec3::X * 0.1);
-    let moved = |met: Met| met.px > CROSSING_PX || met.doubtful as f64 > TURNING_SHARE * met.both as f64;
-    assert!(scene.compare(&aside).map_or(true, moved), "an eye 10 cm to the side is not noticed");
+    let aside = Twin::new(&surface, &scene.lattice, camera.eye + DVec3::X);
+    assert!(scene.compare(&aside).is_err(), "an eye 1 m to the side is not noticed");
+    let smoothed = Twin::of_whole_facets(&surface, &scene.lattice, camera.eye);
+    assert!(scene.compare(&smoothed).is_err(), "the mean of whole facets is not noticed");
     // One lattice edge crossed elsewhere, then one piece lost that shows.
     let names: Vec<Name> = scene.found.keys().copied().collect();
     let lost = names.into_iter().filter(|name| {

@@ -13,7 +13,7 @@ use std::hash::Hash;
 use glam::DVec3;
 use hachure::dem::Dem;
 use hachure::line::Bound;
-use hachure::surface::lattice::{CELL_STEPS, CHUNK_FACETS, CHUNK_QUADS};
+use hachure::surface::lattice::{CELL_STEPS, CHUNK_FACETS, CHUNK_QUADS, EAST, NORTH, SOUTH, WEST};
 use hachure::surface::patch::Patch;
 use hachure::surface::{Chunk, Lattice, LatticePoint, Surface};
 use rayon::prelude::*;
@@ -119,8 +119,17 @@ impl Twin {
         Self::of(surface, lattice.chunks(), eye)
     }
 
+    /// The same where n is the sum of whole facets at every vertex.
+    pub fn of_whole_facets(surface: &Surface, lattice: &Lattice, eye: DVec3) -> Self {
+        Self::made(surface, lattice.chunks(), eye, false)
+    }
+
     /// Of these chunks alone.
     pub fn of(surface: &Surface, chunks: &[Chunk], eye: DVec3) -> Self {
+        Self::made(surface, chunks, eye, true)
+    }
+
+    fn made(surface: &Surface, chunks: &[Chunk], eye: DVec3, looks_closely: bool) -> Self {
         let dem = surface.dem();
         let facets: Vec<Corners> = chunks.par_iter().flat_map_iter(|chunk| facets(dem, chunk)).collect();
         let mut points = facets.as_flattened().to_vec();
@@ -132,7 +141,7 @@ impl Twin {
         let vertex = |at| Vertex { p: position(at), n: DVec3::ZERO, g: 0.0, along: 0.0 };
         let vertices = points.par_iter().map(vertex).collect();
         let mut twin = Self { eye, points, vertices, facets, rim: Vec::new() };
-        twin.face(surface, chunks);
+        twin.face(surface, if looks_closely { chunks } else { &[] });
         let sides = (0..twin.facets.len()).flat_map(|f| (0..3).map(move |k| (f, k)));
         twin.rim = sides.filter(|(f, k)| twin.ends_land(dem, twin.side(*f, *k))).collect();
         twin
@@ -150,7 +159,13 @@ impl Twin {
             facet.iter().for_each(|v| faces[*v][is_away] += 1);
         }
         for chunk in chunks.iter().filter(|chunk| chunk.step < CELL_STEPS) {
-            let inside = (1..CHUNK_QUADS).flat_map(|row| (1..CHUNK_QUADS).map(move |column| [column, row]));
+            // Not on sides, nor beside them where the next chunk is coarser.
+            let beside = |first, last, at| {
+                (at == 1 && chunk.coarser & first != 0) || (at == CHUNK_QUADS - 1 && chunk.coarser & last != 0)
+            };
+            let columns = (1..CHUNK_QUADS).filter(|column| !beside(WEST, EAST, *column));
+            let rows = (1..CHUNK_QUADS).filter(|row| !beside(NORTH, SOUTH, *row));
+            let inside = rows.flat_map(|row| columns.clone().map(move |column| [column, row]));
             for at in inside.map(|at| chunk.vertex(at)) {
                 let Ok(v) = self.points.binary_search(&at) else { continue };
                 if faces[v].iter().all(|count| *count > 0) && faces[v].iter().sum::<i32>() == 6 {
