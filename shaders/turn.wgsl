@@ -49,8 +49,10 @@ fn turn_near(chunk: Chunk, here: Vertex) -> f32 {
     let share = vec2<f32>(sub) / f32(CELL_STEPS);
     let on_column = sub.x == 0u;
     let on_row = sub.y == 0u;
-    var normal = normal_of(sample_of(chunk.tile, place)) * (scene.cell.x * scene.cell.y / 9.0);
-    if !(on_column && on_row) {
+    var normal = vec3<f32>(0.0);
+    if on_column && on_row {
+        normal = normal_of(sample_of(chunk.tile, place)) * (scene.cell.x * scene.cell.y / 9.0);
+    } else {
         let above = sub.x > sub.y;
         normal = patch_normal(patch_of(chunk.tile, place, above), share, above);
         if on_column || on_row || sub.x == sub.y {

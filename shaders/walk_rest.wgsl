@@ -94,7 +94,7 @@ fn walk_pair(one: vec2<i32>, other: vec2<i32>) -> u32 {
         longest = max(longest, meeting.steps);
         check_done(meeting);
         if meeting.met || meeting.left_land {
-            by_rim = meeting.left_land && goal.goes_on && leg == 0u;
+            by_rim = meeting.left_land && leg == 0u;
             break;
         }
         start = goal.at;

@@ -4,9 +4,13 @@ use std::time::{Duration, Instant};
 
 use glam::{DVec2, DVec3};
 use hachure::line::{Chain, ChainPoint, Economy, Id, Line, economised};
+use hachure::measure::chains::drawn_recall;
+use hachure::truth::metrics::Judge;
 
+use crate::judged::truth;
 use crate::scenes::Random;
 use crate::tolerances::{VISIBLE_WEIGHT, WEIGHT_STEP};
+use crate::truth::metrics::straight;
 
 const ECONOMY: Economy = Economy { min_jump: 0.01, min_gap: 3.0 };
 /// Depth of lines unless said otherwise.
@@ -326,4 +330,18 @@ fn time_grows_with_the_line() {
     let ((few, short), (many, long)) = (time(2), time(16));
     println!("{few} points in {short:?}, {many} in {long:?}");
     assert!(many > 7 * few && long < short * 24, "{few} points in {short:?}, {many} in {long:?}");
+}
+
+#[test]
+fn what_economy_removes_of_truth_is_what_no_line_tells_any_more() {
+    let ends = |y: f64| ([10.0, y], [110.0, y]);
+    let lines = [20.0, 60.0].map(ends).map(|(from, to)| straight(from, to, 1.0)).concat();
+    let truth = truth([128, 96], lines);
+    let judge = Judge::new(&truth).expect("lines on the page");
+    let chain = |jump: f64, y: f64| level(Line::Occluding, jump, y, [10.0, 110.0]);
+    let recall = |chains: &[Chain]| drawn_recall(&judge, chains, &ECONOMY);
+    assert_eq!(recall(&[chain(0.5, 20.0), chain(0.5, 60.0)]), 1.0);
+    assert_eq!(recall(&[chain(0.5, 20.0), chain(0.005, 60.0)]), 0.5, "one of two has too small a jump");
+    // Half a pixel beside a strong line a weak one is left out, and truth is told of all the same.
+    assert_eq!(recall(&[chain(0.5, 20.0), chain(0.5, 60.5), chain(0.02, 60.0)]), 1.0);
 }

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use hachure::gpu::uniforms::SceneUniform;
+use hachure::gpu::walk;
 use hachure::line::Kind as LineKind;
 use hachure::plan::{Border, Detail, Method, Plan};
 use hachure::surface::lattice::CHUNK_FACETS;
@@ -20,22 +21,6 @@ use crate::mixed::{Kind, exists, flat, lattice, variety};
 use crate::scenes::{ORIGIN, Random, gpu, hashed, level, look, rough, surface};
 use crate::tolerances::SPIRE;
 
-const BEYOND: &str = concat!(
-    hachure::shader!(
-        "scene",
-        "lattice",
-        "surface",
-        "vertex_anew",
-        "wide",
-        "ink",
-        "list",
-        "levels",
-        "walk_between",
-        "walk",
-        "section"
-    ),
-    include_str!("kernels/beyond_probe.wgsl")
-);
 /// What a kernel says where there is no facet.
 const NO_FACET: u32 = u32::MAX;
 
@@ -65,9 +50,13 @@ const SPIRES: [Spire; 3] = [
 ];
 
 impl Spire {
-    fn surface(&self) -> Arc<Surface> {
+    /// With a ring of voids about it, or none.
+    fn surface(&self, voids: bool) -> Arc<Surface> {
         let height = |i: usize| {
             let (x, y) = ((i % SIDE) as f64, (i / SIDE) as f64);
+            if voids && (9.0..10.0).contains(&DVec2::new(x - 32.0, y - 32.0).abs().max_element()) {
+                return f32::NAN;
+            }
             let land = 0.2 * (x / 7.0).sin() * (y / 5.0).cos() + 0.02 * hashed(i as u64);
             let spire = if [x, y] == [32.0, 32.0] { self.height } else { 0.0 };
             (land * self.cell + spire) as f32
@@ -90,17 +79,17 @@ impl Spire {
 
 #[test]
 fn a_spire_as_thin_as_a_pixel_has_its_skyline() {
-    for spire in &SPIRES {
-        let surface = spire.surface();
+    for (spire, voids) in SPIRES.iter().flat_map(|spire| [(spire, false), (spire, true)]) {
+        let surface = spire.surface(voids);
         for way in [DVec2::new(0.0, -1.0), DVec2::new(1.0, 0.0), DVec2::new(-0.8, -0.6)] {
             let camera = spire.camera(way);
             let truth = Terrain::new(&surface).truth(&camera, level(16));
             for detail in [level(4).into(), level(8).into(), Detail::default()] {
                 let found = spire.score(&surface, &camera, detail, &truth);
-                println!("{} m on {} m from {way}, {detail:?}: {found:?}", spire.height, spire.cell);
+                println!("{} m on {} m, voids {voids}, from {way}, {detail:?}: {found:?}", spire.height, spire.cell);
                 assert!(
                     found.precision >= SPIRE && found.recall >= SPIRE,
-                    "{} m from {way}, {detail:?}: {found:?}",
+                    "{} m, voids {voids}, from {way}, {detail:?}: {found:?}",
                     spire.height
                 );
             }
@@ -132,6 +121,8 @@ const KINDS: [(Kind, u32); 4] = [
 
 #[test]
 fn beyond_each_edge_lies_the_facet_that_shares_it() {
+    let section = concat!(hachure::shader!("section"), include_str!("kernels/beyond_probe.wgsl"));
+    let source = [walk::source(false).as_str(), section].concat();
     for (seed, (kind, dropped)) in (1..).zip(KINDS) {
         let mut random = Random::new(seed * 6007);
         let dem = flat(kind, &mut random);
@@ -151,7 +142,7 @@ fn beyond_each_edge_lies_the_facet_that_shares_it() {
             ("edges", bytemuck::cast_slice(&edges)),
         ];
         let constants = [("has_voids", f64::from(u8::from(dem.voids() > 0)))];
-        let found = run("beyond_probe", BEYOND, &constants, &data, edges.len() as u32);
+        let found = run("beyond_probe", &source, &constants, &data, edges.len() as u32);
         let mut rim = 0;
         for (edge, found) in edges.iter().zip(found.chunks_exact(4)) {
             let [from, to] = ends(*edge);

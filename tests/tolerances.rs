@@ -452,7 +452,7 @@ pub const STRAYS: f64 = 0.005;
 
 /// The same of hills so far that no ridge is nearer than another by a share worth speaking of.
 ///
-/// Example: of 2 725 px of ink 54 px of chains lie where pixels are too few to tell.
+/// Example: of 2 725 px of ink; chains have 54 px more, 785 px where what is hidden counts as seen.
 pub const FAR_STRAYS: f64 = 0.04;
 
 /// Least precision and recall of the walk where a spire as thin as a pixel stands against the sky.

@@ -4,7 +4,7 @@ mod chains;
 mod level;
 mod mask;
 mod mathematics;
-mod metrics;
+pub mod metrics;
 mod noticed;
 mod pieces;
 mod slow;

@@ -1,4 +1,4 @@
-//! Pass `turn`: how the vertices of a chunk face the eye, as far as its own facets tell.
+//! Pass `turn`: how the vertices of a chunk face the eye, as far as its own facets and patches tell.
 
 use std::sync::Arc;
 

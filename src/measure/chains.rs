@@ -17,8 +17,6 @@ pub(super) fn figures(
     economy: Option<&Economy>,
 ) -> ChainFigures {
     let scores = judge.measure_chains(&chains.iter().map(places).collect::<Vec<_>>());
-    let recall = scores.agreement.recall;
-    let removed = |economy| recall - judge.recalled(&drawn(&economised(chains, economy)));
     let of_offsets = |figure: fn(&Offsets) -> f64| scores.offsets.as_ref().map(figure);
     ChainFigures {
         chains: scores.count,
@@ -27,8 +25,8 @@ pub(super) fn figures(
         chain_mean_px: of_offsets(|offsets| offsets.mean),
         chain_p95_px: of_offsets(|offsets| offsets.p95),
         chain_precision: scores.agreement.precision,
-        chain_recall: recall,
-        economy_removed: economy.map(removed),
+        chain_recall: scores.agreement.recall,
+        economy_removed: economy.map(|economy| scores.agreement.recall - drawn_recall(judge, chains, economy)),
         ids_kept,
     }
 }
@@ -43,10 +41,11 @@ pub(super) fn short_of_drawing(judge: &Judge<'_>, drawing: &Mask, camera: &Camer
     judge.measure_chains(&chains.iter().map(places).collect::<Vec<_>>()).short
 }
 
-/// The pieces of chains that economy leaves at least half their width.
-fn drawn(chains: &[Chain]) -> Vec<Vec<DVec2>> {
-    let pairs = chains.iter().flat_map(Chain::pairs);
-    pairs.filter(|[a, b]| a.weight + b.weight >= 1.0).map(|[a, b]| vec![a.place, b.place]).collect()
+/// Share of truth's length within 1 px of what economy draws of chains at half its width or more.
+pub fn drawn_recall(judge: &Judge<'_>, chains: &[Chain], economy: &Economy) -> f64 {
+    let chains = economised(chains, economy);
+    let drawn = chains.iter().flat_map(Chain::pairs).filter(|[a, b]| a.weight + b.weight >= 1.0);
+    judge.recalled(&drawn.map(|[a, b]| vec![a.place, b.place]).collect::<Vec<_>>())
 }
 
 /// Its corners on the page.

@@ -5,7 +5,7 @@
 //! move; [`Floor`] times a bare copy and a hardware draw beside it; [`Growth`] is time against size, judged by what was
 //! promised. The clock itself stands in [`gpu::clock`](crate::gpu::clock): it stamps passes while they are recorded.
 
-mod chains;
+pub mod chains;
 pub mod compare;
 pub mod copy;
 pub mod cost;
