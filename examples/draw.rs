@@ -4,10 +4,11 @@ use std::{env, error::Error, fs::File, io::BufWriter, sync::Arc};
 
 use hachure::geo::{ReadOptions, read};
 use hachure::gpu::{AdapterChoice, Gpu, Int64};
-use hachure::line::{Economy, Lines};
+use hachure::ink::{self, Sheet, Style};
+use hachure::line::Lines;
 use hachure::plan::{Curves, Plan};
 use hachure::view::{Fixed, choose};
-use hachure::{ink, render::Renderer, surface::Surface};
+use hachure::{render::Renderer, surface::Surface};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let [dem, picture] = [1, 2].map(|i| env::args().nth(i));
@@ -18,7 +19,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut renderer = Renderer::new(gpu, surface)?;
     let plan = Plan { curves: Curves::On, ..Plan::default() };
     let page = renderer.page(&plan, &camera, |_| ())?;
-    let lines = Lines::sparing(&page.chains, [1200, 600], &Economy::for_page(1200));
-    let drawing = ink::draw(&lines, &ink::Style::for_page(1200));
-    Ok(ink::write_png(&drawing, BufWriter::new(File::create(picture)?))?)
+    let (style, sheet) = (Style::default(), Sheet::for_frame([1200, 600]));
+    let px_per_mm = sheet.placement([1200, 600]).px_per_mm;
+    let perspective = renderer.perspective(&page.frame);
+    let lines = Lines::sparing(&page.chains, &perspective, &style.economy(px_per_mm));
+    let drawing = ink::draw(&lines, &sheet, &style, &[])?;
+    Ok(ink::write_png(&drawing, px_per_mm, BufWriter::new(File::create(picture)?))?)
 }

@@ -5,10 +5,11 @@
 //! ```no_run
 //! use hachure::geo::{ReadOptions, read};
 //! use hachure::gpu::{AdapterChoice, Gpu, Int64};
-//! use hachure::line::{Economy, Lines};
+//! use hachure::line::Lines;
 //! use hachure::plan::{Curves, Plan};
 //! use hachure::view::{Fixed, choose};
-//! use hachure::{ink, render::Renderer, surface::Surface};
+//! use hachure::ink::{self, Sheet, Style};
+//! use hachure::{render::Renderer, surface::Surface};
 //! use std::sync::Arc;
 //!
 //! let surface = Arc::new(Surface::new(read("dem/golden-gate.tif", &ReadOptions::default())?));
@@ -17,9 +18,12 @@
 //! let mut renderer = Renderer::new(gpu, surface)?;
 //! let plan = Plan { curves: Curves::On, ..Plan::default() };
 //! let page = renderer.page(&plan, &camera, |_| ())?;
-//! let lines = Lines::sparing(&page.chains, [1200, 600], &Economy::for_page(1200));
-//! let drawing = ink::draw(&lines, &ink::Style::for_page(1200));
-//! ink::write_png(&drawing, std::fs::File::create("picture.png")?)?;
+//! let (style, sheet) = (Style::default(), Sheet::for_frame([1200, 600]));
+//! let px_per_mm = sheet.placement([1200, 600]).px_per_mm;
+//! let perspective = renderer.perspective(&page.frame);
+//! let lines = Lines::sparing(&page.chains, &perspective, &style.economy(px_per_mm));
+//! let drawing = ink::draw(&lines, &sheet, &style, &[])?;
+//! ink::write_png(&drawing, px_per_mm, std::fs::File::create("picture.png")?)?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!

@@ -5,7 +5,8 @@ use std::f64::consts::TAU;
 use glam::{DVec2, DVec3};
 use hachure::error::Error;
 use hachure::files::Output;
-use hachure::ink::{Drawing, Layer, Pen, Stroke, StrokePoint, Style, draw, write_png};
+use hachure::ink::style::Weight;
+use hachure::ink::{Colour, Drawing, Form, Layer, Pen, Sheet, Stroke, StrokePoint, Style, draw, write_png};
 use hachure::line::{
     Chain, ChainPoint, Cover, InkRaster, Kind, Line, Lines, Marks, Pixel, Recession, crowded, project_polyline,
 };
@@ -65,16 +66,31 @@ fn polylines_are_clipped_to_the_near_plane_and_the_page() {
     // Off the page and back on it: two chains, not one across the margin.
     let out_and_in = [(-5.0, 0.0), (-99.0, 0.0), (-99.0, 5.0), (-5.0, 5.0)].map(|(x, z)| DVec3::new(x, 20.0, z));
     assert_eq!(project_polyline(&out_and_in, Line::Own, &seen, &raster, Cover::Off).len(), 2);
-    let drawing = draw(&lines(chains, &raster, &seen), &Style::for_page(100));
+    let drawing = drawn(&lines(chains, &raster, &seen));
     let layers: Vec<_> = drawing.layers.iter().map(|layer| (layer.name.as_str(), layer.strokes.len())).collect();
-    assert_eq!(layers, [("crease", 1)]);
+    assert_eq!(layers, [("1 crease", 1)]);
+}
+
+/// The drawing of lines, blunt, a pixel a millimetre.
+fn drawn(lines: &Lines) -> Drawing {
+    let weight = Weight { taper: 0.0, ..Weight::default() };
+    let sheet = Sheet { size: DVec2::new(lines.width.into(), lines.height.into()), margin: 0.0 };
+    draw(lines, &sheet, &Style { weight, ..Style::default() }, &[]).expect("a drawing")
 }
 
 /// The lines of a page of chains over a raster.
 fn lines(chains: Vec<Chain>, raster: &InkRaster, seen: &Perspective) -> Lines {
     let marks = Marks::from(raster);
     let (width, height) = (raster.width, raster.height);
-    Lines { width, height, chains: crowded(&chains, &marks, seen), recession: Recession::of(marks.depths()) }
+    let (eye, hidden) = (seen.eye(), Vec::new());
+    Lines {
+        width,
+        height,
+        eye,
+        hidden,
+        chains: crowded(&chains, &marks, seen),
+        recession: Recession::of(marks.depths()),
+    }
 }
 
 #[test]
@@ -88,7 +104,7 @@ fn every_kind_of_line_stands_in_a_layer() {
     let layer_of = |line: Line| {
         let points = [10.0, 20.0].map(|x| ChainPoint { line, ..point(x) }).to_vec();
         let chain = Chain { id: None, points, closed: false };
-        let layers = draw(&lines(vec![chain], &raster, &seen), &Style::for_page(100)).layers;
+        let layers = drawn(&lines(vec![chain], &raster, &seen)).layers;
         layers.into_iter().map(|layer| layer.name).collect::<Vec<_>>()
     };
     for (kinds, layer) in [
@@ -96,7 +112,7 @@ fn every_kind_of_line_stands_in_a_layer() {
         (&[Line::Border], "border"),
         (&[Line::Shore, Line::Drainage, Line::Ridge, Line::Hachure, Line::Own], "crease"),
     ] {
-        assert!(kinds.iter().all(|line| layer_of(*line) == [layer]), "{layer}: {kinds:?}");
+        assert!(kinds.iter().all(|line| layer_of(*line) == [format!("1 {layer}")]), "{layer}: {kinds:?}");
     }
 }
 
@@ -110,8 +126,9 @@ fn strokes_of(points: &[(f32, f32)], closed: bool) -> Vec<Vec<f64>> {
     };
     let points = (0..).map(f64::from).zip(points).map(point).collect();
     let chains = vec![Chain { id: None, points, closed }];
-    let lines = Lines { width: 100, height: 80, chains, recession: Recession::of([0.01].into_iter()) };
-    let layers = draw(&lines, &Style::for_page(100)).layers;
+    let (eye, hidden) = (seen.eye(), Vec::new());
+    let lines = Lines { width: 100, height: 80, eye, hidden, chains, recession: Recession::of([0.01].into_iter()) };
+    let layers = drawn(&lines).layers;
     let strokes = layers.iter().flat_map(|layer| &layer.strokes);
     strokes.map(|stroke| stroke.points.iter().map(|point| point.width).collect()).collect()
 }
@@ -136,17 +153,18 @@ fn jumps_thicken_lines() {
 
 /// The page of one layer in black on white, gray values by row and column.
 fn page(width: u32, height: u32, pen: f64, strokes: Vec<Stroke>) -> image::GrayImage {
-    let pen = Pen { width: pen, colour: [0, 0, 0, 255] };
-    let layers = vec![Layer { name: "ink".into(), pen, strokes }];
+    let pen = Pen { width: pen, colour: Colour([0; 3]), opacity: 1.0 };
+    let layers = vec![Layer { name: "1 ink".into(), pen, form: Form::Outlines, strokes }];
+    let sheet = Sheet { size: DVec2::new(width.into(), height.into()), margin: 0.0 };
     let mut file = Vec::new();
-    write_png(&Drawing { width, height, paper: [255; 4], layers }, &mut file).unwrap();
+    write_png(&Drawing { sheet, paper: Colour([255; 3]), layers }, 1.0, &mut file).unwrap();
     image::load_from_memory(&file).unwrap().to_luma8()
 }
 
 /// A stroke of full width through these places.
 fn through(places: &[(f64, f64)]) -> Stroke {
     let point = |&(x, y): &(f64, f64)| StrokePoint { place: DVec2::new(x, y), width: 1.0 };
-    Stroke { points: places.iter().map(point).collect(), closed: false }
+    Stroke { chain: None, piece: 0, points: places.iter().map(point).collect(), closed: false }
 }
 
 /// Ink on a page in whole black pixels.
@@ -187,11 +205,12 @@ fn junctions_are_not_darker_and_dots_are_round() {
 fn closed_strokes_and_huge_pages_are_drawn_whole() {
     let corners = (0..40).map(|i| DVec2::from_angle(TAU * f64::from(i) / 40.0) * 20.0 + 32.0);
     let points = corners.map(|place| StrokePoint { place, width: 1.0 }).collect();
-    let ring = ink_of(&page(64, 64, 2.0, vec![Stroke { points, closed: true }]));
+    let ring = ink_of(&page(64, 64, 2.0, vec![Stroke { chain: None, piece: 0, points, closed: true }]));
     assert!((ring - TAU * 20.0 * 2.0).abs() < 3.0, "{ring}");
     let wide = page(40_000, 4, 1.0, vec![through(&[(-10.0, 2.5), (40_010.0, 2.5)])]);
     assert!(wide.enumerate_pixels().all(|(_, y, p)| (p.0[0] < 5) == (y == 2)));
-    assert!(write_png(&Drawing { width: 0, height: 5, paper: [255; 4], layers: vec![] }, Vec::new()).is_err());
+    let sheet = Sheet { size: DVec2::new(0.0, 5.0), margin: 0.0 };
+    assert!(write_png(&Drawing { sheet, paper: Colour([255; 3]), layers: vec![] }, 1.0, Vec::new()).is_err());
 }
 
 #[test]

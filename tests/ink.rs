@@ -1,7 +1,7 @@
 //! Ink: from pixels to strokes, on rasters made here.
 
-use glam::{DVec2, DVec3};
-use hachure::ink::{self, Drawing, Style, write_mask};
+use glam::{DVec2, DVec3, UVec2};
+use hachure::ink::{self, Drawing, Sheet, Style, write_mask};
 use hachure::line::{self, Chain, InkRaster, Kind, Line, Lines, Marks, Pixel};
 use hachure::view::{Camera, Perspective};
 
@@ -23,10 +23,11 @@ fn smooth(chains: &[Chain], tolerance: f64) -> Vec<Chain> {
     line::smooth(chains, &perspective([64, 64]), tolerance)
 }
 
-/// The drawing of a raster's ink.
+/// The drawing of a raster's ink, a pixel a millimetre.
 fn draw(raster: &InkRaster, style: &Style) -> Drawing {
-    let (marks, perspective) = (Marks::from(raster), perspective([raster.width, raster.height]));
-    ink::draw(&Lines::of(&marks, &perspective, style.tolerance), style)
+    let (marks, frame) = (Marks::from(raster), [raster.width, raster.height]);
+    let sheet = Sheet { size: UVec2::from(frame).as_dvec2(), margin: 0.0 };
+    ink::draw(&Lines::of(&marks, &perspective(frame), TOLERANCE), &sheet, style, &[]).expect("a drawing")
 }
 
 /// A raster of cover at depth 0.01 with ink wherever `ink` gives a kind and a depth for column and row.
@@ -162,7 +163,7 @@ fn rings_close_and_lone_pixels_are_dots() {
     assert_eq!(chains.iter().map(|c| c.closed).collect::<Vec<_>>(), [true]);
     let dot = trace(&picture(&["...", ".#.", "..."]));
     assert_eq!((dot.len(), dot[0].points.len(), dot[0].points[0].place), (1, 1, DVec2::new(1.5, 1.5)));
-    let style = Style::for_page(3);
+    let style = Style::default();
     assert!(draw(&picture(&["...", ".#.", "..."]), &style).layers.is_empty());
     assert_eq!(draw(&picture(&["...", ".#.", "..."]), &Style { dots: true, ..style }).layers[0].strokes.len(), 1);
 }
@@ -258,9 +259,9 @@ fn a_jump_in_depth_ends_a_line() {
 #[test]
 fn border_and_silhouette_go_to_layers_of_their_own() {
     let raster = picture(&["####################bbbbbbbbbbbbbbbbbbbb", "........................................"]);
-    let drawing = draw(&raster, &Style::for_page(1280));
+    let drawing = draw(&raster, &Style::default());
     let names: Vec<&str> = drawing.layers.iter().map(|l| l.name.as_str()).collect();
-    assert_eq!(names, ["border", "silhouette"]);
+    assert_eq!(names, ["1 border", "2 silhouette"]);
     assert!(drawing.layers[0].pen.width < drawing.layers[1].pen.width);
     assert!(drawing.layers.iter().all(|l| l.strokes.len() == 1));
 }
@@ -325,10 +326,10 @@ fn lines_thin_with_distance_and_in_crowds() {
     let rows: Vec<i64> = vec![5, 25, 45];
     let depths = [1.0, 0.1, 0.01];
     let single = raster(200, 60, |_, y| rows.iter().position(|&r| r == y).map(|i| (Kind::Silhouette, depths[i])));
-    let layer = &draw(&single, &Style::for_page(200)).layers[0];
+    let layer = &draw(&single, &Style::default()).layers[0];
     let widths: Vec<f64> = layer.strokes.iter().map(|s| s.points[s.points.len() / 2].width).collect();
     assert!((widths[0] - 1.0).abs() < 0.01 && (widths[1] - 0.675).abs() < 0.01 && (widths[2] - 0.35).abs() < 0.01);
     let crowd = raster(200, 60, |_, y| (y % 2 == 0).then_some((Kind::Silhouette, 1.0)));
-    let crowded = &draw(&crowd, &Style::for_page(200)).layers[0].strokes[10].points[3];
+    let crowded = &draw(&crowd, &Style::default()).layers[0].strokes[10].points[3];
     assert!(crowded.width < 0.8, "{}", crowded.width);
 }

@@ -7,7 +7,7 @@ use std::path::Path;
 use clap::CommandFactory;
 use hachure::cli::Arguments;
 use hachure::cli::choices::default_share;
-use hachure::line::Economy;
+use hachure::ink::Style;
 use hachure::plan::detail::ERROR_PX;
 
 use crate::cli::{DRAW, Place, refuses, stderr};
@@ -135,13 +135,12 @@ fn defaults(command: &clap::Command) -> Vec<(String, String)> {
 #[test]
 fn help_says_the_defaults_that_the_code_has() {
     let share = default_share().to_owned();
-    let [px, width] = [Economy::MIN_GAP, Economy::WIDTH];
-    let gap = format!("{px}px on a page {width}px wide, and in proportion");
+    let style = Style::default();
     let expected = [
         ("error_px".to_owned(), ERROR_PX.to_string()),
         ("share".to_owned(), share),
-        ("min_jump".to_owned(), Economy::MIN_JUMP.to_string()),
-        ("min_gap".to_owned(), gap),
+        ("min_jump".to_owned(), style.min_jump.to_string()),
+        ("min_gap".to_owned(), format!("{}mm", style.min_gap)),
     ];
     assert_eq!(defaults(&Arguments::command()), expected);
     let arg = clap::Arg::new("x").long("x").help("Metres [default: 7]");

@@ -5,12 +5,12 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use hachure::geo::{ReadOptions, read};
-use hachure::ink::{Style, draw, write_png};
+use hachure::ink::{Sheet, Style, draw, write_png};
 use hachure::line::{Chain, ChainPoint, Economy, InkRaster, Kind, Lines};
 use hachure::plan::{Border, Detail, Method, Plan};
 use hachure::render::Renderer;
 use hachure::surface::Surface;
-use hachure::view::Camera;
+use hachure::view::{Camera, Perspective};
 
 use crate::common::{gpu, shared_dems};
 use crate::tolerances::{BLOCK_DARKNESS, LINES_KEPT, SKYLINE_PX, VISIBLE_WEIGHT};
@@ -23,6 +23,7 @@ const BLOCK: usize = 12;
 struct Seen {
     chains: Vec<Chain>,
     raster: InkRaster,
+    perspective: Perspective,
 }
 
 /// What can be said of a drawing.
@@ -45,21 +46,23 @@ impl Seen {
         let mut renderer = Renderer::new(gpu().clone(), surface).expect("a renderer");
         let drawn =
             renderer.draw(&Plan::new(Detail::default(), Method::Contour, Border::On), &camera).expect("a frame");
-        Self { chains: renderer.chains().expect("chains"), raster: drawn.raster }
+        let perspective = renderer.perspective(renderer.last().expect("a frame"));
+        Self { chains: renderer.chains().expect("chains"), raster: drawn.raster, perspective }
     }
 
     fn drawn(&self, economy: &Economy) -> Figures {
-        let lines = Lines::sparing(&self.chains, PAGE, economy);
+        let lines = Lines::sparing(&self.chains, &self.perspective, economy);
         Figures { darkest: self.darkest(&lines), kept: kept(&lines, economy), missing: self.missing(&lines) }
     }
 
     /// Darkness of the darkest block whose land lies mostly beyond the 67 % quantile of distance, anywhere on the page.
     fn darkest(&self, lines: &Lines) -> f64 {
-        let style = Style::for_page(PAGE[0]);
+        let (style, sheet) = (Style::default(), Sheet::for_frame(PAGE));
         let mut file = Vec::new();
-        write_png(&draw(lines, &style), &mut file).expect("a picture");
+        let drawing = draw(lines, &sheet, &style, &[]).expect("a drawing");
+        write_png(&drawing, sheet.placement(PAGE).px_per_mm, &mut file).expect("a picture");
         let page = image::load_from_memory(&file).expect("a picture").to_rgb8();
-        let [paper, ink] = [style.paper[0], style.silhouette.colour[0]].map(f64::from);
+        let [paper, ink] = [style.paper.0[0], style.pens.silhouette.colour.0[0]].map(f64::from);
         let depths = || self.raster.pixels.iter().map(|p| if p.kind() == Kind::Sky { 0.0 } else { p.depth() });
         let mut land: Vec<f32> = depths().filter(|depth| *depth > 0.0).collect();
         land.sort_unstable_by(f32::total_cmp);
@@ -136,8 +139,13 @@ fn kept(lines: &Lines, economy: &Economy) -> f64 {
     kept / all
 }
 
+/// The economy of such a page unless told otherwise.
+fn economy() -> Economy {
+    Style::default().economy(Sheet::for_frame(PAGE).placement(PAGE).px_per_mm)
+}
+
 fn check(name: &str, seen: &Seen) -> Figures {
-    let economy = Economy::for_page(PAGE[0]);
+    let economy = economy();
     let sparing = seen.drawn(&economy);
     let all = seen.drawn(&Economy { min_jump: 0.0, min_gap: 0.0 });
     println!("{name}: {sparing:?}, of all lines {all:?}");
@@ -154,12 +162,15 @@ fn the_sample_stays_open_and_keeps_its_lines() {
     let all = check("the sample", &seen);
     assert_eq!(all.missing, 0, "columns of the skyline have no line");
     // Negative controls: half of the skyline gone, a gap that leaves little.
-    let mut broken = Lines::sparing(&seen.chains, PAGE, &Economy::for_page(PAGE[0]));
+    let mut broken = Lines::sparing(&seen.chains, &seen.perspective, &economy());
     let left = |point: &&mut ChainPoint| point.place.x < 800.0;
     broken.chains.iter_mut().flat_map(|c| &mut c.points).filter(left).for_each(|point| point.weight = 0.0);
     assert!(seen.missing(&broken) > 400, "a broken skyline is not noticed");
-    let wide = Economy { min_gap: 60.0, ..Economy::for_page(PAGE[0]) };
-    assert!(kept(&Lines::sparing(&seen.chains, PAGE, &wide), &wide) < LINES_KEPT, "lost lines are not noticed");
+    let wide = Economy { min_gap: 60.0, ..economy() };
+    assert!(
+        kept(&Lines::sparing(&seen.chains, &seen.perspective, &wide), &wide) < LINES_KEPT,
+        "lost lines are not noticed"
+    );
 }
 
 #[test]

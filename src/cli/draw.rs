@@ -22,7 +22,7 @@ use crate::error::{Error, Result, Setting, shown};
 use crate::files::Taken;
 use crate::geo::Reading;
 use crate::gpu::Gpu;
-use crate::ink::{self, Drawing, Style};
+use crate::ink::{self, Drawing, Sheet, Style};
 use crate::line::{Economy, Lines};
 use crate::plan::detail::ERROR_PX;
 use crate::plan::left_out::LeftOut;
@@ -94,7 +94,7 @@ pub struct DrawArguments {
         help = format!(
             "Leave lines out where what lies behind is less than this share farther than they are; from twice that on they are \
              whole. 0 draws all [default: {}]",
-            Economy::MIN_JUMP
+            Style::default().min_jump
         )
     )]
     min_jump: Option<f64>,
@@ -102,8 +102,8 @@ pub struct DrawArguments {
         long, value_name = "3px", value_parser = values::min_gap, allow_hyphen_values = true, help_heading = "Style",
         help = format!(
             "Of two lines nearer to each other than this the weaker fades, by kind, jump and length; the skyline never does. In \
-             pixels, 0 leaves all lines [default: {}px on a page {}px wide, and in proportion]",
-            Economy::MIN_GAP, Economy::WIDTH
+             pixels, 0 leaves all lines [default: {}mm]",
+            Style::default().min_gap
         )
     )]
     min_gap: Option<f64>,
@@ -145,13 +145,13 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     cache.discard_damaged(surface.dem(), &|message| talk.warn(&told(message)));
     let mut drawn = Drawn { renderer: &mut renderer, view: &view, page };
     let economy = arguments.economy(&plan, view.camera.width)?;
-    let drawing = drawn.stroked(economy.as_ref());
+    let (drawing, px_per_mm) = drawn.stroked(economy.as_ref())?;
     let report = outputs.want_report().then(|| arguments.report(&mut drawn, talk)).transpose()?;
     if arguments.explain || talk.is_verbose() {
         explain(talk, &drawn.page.frame, &surface, report.as_ref())?;
     }
     talk.progress("writing", 0.8);
-    outputs.write(&drawing, &drawn.page, report.as_ref())?;
+    outputs.write(&drawing, px_per_mm, &drawn.page, report.as_ref())?;
     surface.dem().check()?;
     talk.progress("writing", 1.0);
     outputs.publish()?;
@@ -253,7 +253,8 @@ impl DrawArguments {
             let refuse = |setting| Error::setting(setting, "goes with contours only", "leave out --method");
             return given.map_or(Ok(None), |setting| Err(refuse(setting)));
         }
-        let Economy { min_jump, min_gap } = Economy::for_page(width);
+        let px_per_mm = f64::from(width) / Sheet::WIDTH;
+        let Economy { min_jump, min_gap } = Style::default().economy(px_per_mm);
         Ok(Some(Economy { min_jump: self.min_jump.unwrap_or(min_jump), min_gap: self.min_gap.unwrap_or(min_gap) }))
     }
 
@@ -308,15 +309,17 @@ impl DrawArguments {
 
 impl Drawn<'_> {
     /// The drawing of the page: of contours as sparingly as is asked, or traced from the mask.
-    fn stroked(&self, economy: Option<&Economy>) -> Drawing {
+    fn stroked(&self, economy: Option<&Economy>) -> Result<(Drawing, f64)> {
         let Page { marks, chains, .. } = &self.page;
-        let style = Style::for_page(marks.width);
+        let style = Style::default();
+        let sheet = Sheet::for_frame([marks.width, marks.height]);
+        let px_per_mm = sheet.placement([marks.width, marks.height]).px_per_mm;
         let perspective = Perspective::new(&self.view.camera, self.renderer.near());
         let lines = match economy {
-            Some(economy) => Lines::sparing(chains, [marks.width, marks.height], economy),
-            None => Lines::of(marks, &perspective, style.tolerance),
+            Some(economy) => Lines::sparing(chains, &perspective, economy),
+            None => Lines::of(marks, &perspective, style.tolerance * px_per_mm),
         };
-        ink::draw(&lines, &style)
+        Ok((ink::draw(&lines, &sheet, &style, &[])?, px_per_mm))
     }
 
     /// Where the DEM lies on Earth.

@@ -79,7 +79,7 @@ impl ChainsReport {
         let strays = Strays::of(&page.chains, &page.marks);
         Self {
             count: page.chains.len(),
-            length_px: page.chains.iter().flat_map(Chain::pairs).map(|[a, b]| a.place.distance(b.place)).sum(),
+            length_px: page.chains.iter().map(Chain::length).sum(),
             without_ink_px: strays.chains,
             ink_without_chain_px: strays.ink,
         }

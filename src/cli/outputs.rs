@@ -95,8 +95,14 @@ impl Outputs {
     ///
     /// # Errors
     /// [`Error::Output`] where one cannot be written.
-    pub fn write(&mut self, drawing: &ink::Drawing, page: &Page, report: Option<&impl Serialize>) -> Result<()> {
-        self.drawing.write(|out| ink::write_png(drawing, out))?;
+    pub fn write(
+        &mut self,
+        drawing: &ink::Drawing,
+        px_per_mm: f64,
+        page: &Page,
+        report: Option<&impl Serialize>,
+    ) -> Result<()> {
+        self.drawing.write(|out| ink::write_png(drawing, px_per_mm, out))?;
         if let Some(mask) = &mut self.mask {
             let marks = &page.marks;
             mask.write(|out| ink::write_mask([marks.width, marks.height], marks.places(), out))?;

@@ -56,6 +56,8 @@ settings! {
     Crop = "crop",
     /// The coordinate system of places that are given.
     Crs = "CRS",
+    /// Pixels of a picture for each inch of the sheet.
+    Dpi = "dpi",
     /// The file or files of the DEM.
     Dem = "DEM",
     /// Where the eye stands, on the map.
@@ -72,6 +74,8 @@ settings! {
     FillVoids = "fill voids",
     /// Metres of what is smoothed away.
     Generalise = "generalise",
+    /// Whether hidden lines are drawn.
+    Hidden = "hidden",
     /// The file of what was done.
     Json = "JSON file",
     /// Whether heights stay as coarse as the file has them.
@@ -96,20 +100,32 @@ settings! {
     MinJump = "min jump",
     /// Numbers that are no data.
     Nodata = "nodata",
+    /// The blank edge of the sheet.
+    Margin = "margin",
     /// What azimuths are counted from.
     North = "north",
     /// Which files lie on top.
     Order = "order",
     /// The file or folder that is written.
     Output = "output",
+    /// The sheet of paper.
+    Page = "page",
+    /// Whether the land is drawn from straight above.
+    Plan = "plan",
     /// Metres of the cells that are resampled to.
     Resample = "resample",
+    /// Millimetres of land for one of the sheet.
+    Scale = "scale",
     /// What neighbouring facets share.
     Share = "share",
     /// Pixels of the page.
     Size = "size",
     /// Several pages.
     Sizes = "sizes",
+    /// Distances that part layers.
+    Split = "split",
+    /// The look of the drawing.
+    Style = "style",
     /// The file of views.
     Views = "file of views",
     /// Whether maps off the ground stay as they are.

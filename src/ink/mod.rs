@@ -1,12 +1,24 @@
 //! From lines to pen strokes: the drawing.
 //!
-//! Lines are data until the last step. The chains of a page's [`Lines`](crate::line::Lines) are stroked: a [`Drawing`] is
-//! a page with layers, a layer has a pen and strokes. Only the writers know file formats.
+//! Lines are data until the last step. The chains of a page's [`Lines`](crate::line::Lines) are stroked as a [`Style`] says:
+//! a [`Drawing`] is a [`Sheet`] with layers, a layer has a pen and strokes, all in millimetres. Only the writers know file
+//! formats.
 
+mod colour;
+mod draw;
 pub mod drawing;
 pub mod mask;
+pub mod plot;
 pub mod png;
+mod sheet;
+mod strokes;
+pub mod style;
+mod wobble;
 
-pub use drawing::{Drawing, Layer, Pen, Stroke, StrokePoint, Style, draw};
+pub use colour::Colour;
+pub use draw::draw;
+pub use drawing::{Drawing, Form, Layer, Pen, Stroke, StrokePoint};
 pub use mask::write_mask;
 pub use png::write_png;
+pub use sheet::{Placement, Sheet};
+pub use style::Style;

@@ -5,19 +5,19 @@
 //! page is filled in tiles, at four times its resolution and then averaged, since an anti-aliased fill knows four
 //! steps across a pixel only, too few for far lines of half a pixel. Each tile has coordinates of its own, so that pages
 //! may be of any size: beyond 32 767 px fills lose their anti-aliasing or are dropped. A row of tiles is a band; some
-//! bands at a time are filled and sent on to the file.
+//! bands at a time are filled and sent on to the file. The opacity of a layer counts once, where strokes cross too.
 //!
-//! Cost: tiles with ink, about 1 ms each and core; memory for a band a core. Does not handle: opacity of the paper (it is
-//! painted over white).
+//! Cost: tiles with ink, about 1 ms each and core; memory for a band a core.
 
 use std::f64::consts::TAU;
 use std::io::{self, Write};
 
+use ::png::{PixelDimensions, Unit};
 use glam::DVec2;
 use rayon::prelude::*;
 use tiny_skia::{FillRule, Mask, PathBuilder, Transform};
 
-use super::{Drawing, Layer, Stroke};
+use super::{Drawing, Layer, Pen, Sheet, Stroke, StrokePoint};
 
 /// Side of a tile, px.
 const TILE: u32 = 128;
@@ -40,21 +40,30 @@ struct Segment {
     first: bool,
 }
 
-/// Renders the drawing anti-aliased, one pixel of the page to one of the file, and writes it as 8-bit RGB.
+/// Pixels across and down of a picture with so many for each millimetre of the sheet.
+pub fn size(sheet: &Sheet, px_per_mm: f64) -> [u32; 2] {
+    (sheet.size * px_per_mm).to_array().map(|px| px.round() as u32)
+}
+
+/// Renders the drawing anti-aliased, with so many pixels for each millimetre, and writes it as 8-bit RGB that tells its size in
+/// metres.
 ///
 /// Errors are those of the writer, and `InvalidInput` where PNG cannot hold the size (an empty page).
-pub fn write_png(drawing: &Drawing, out: impl Write) -> io::Result<()> {
-    let mut encoder = ::png::Encoder::new(out, drawing.width, drawing.height);
+pub fn write_png(drawing: &Drawing, px_per_mm: f64, out: impl Write) -> io::Result<()> {
+    let [width, height] = size(&drawing.sheet, px_per_mm);
+    let mut encoder = ::png::Encoder::new(out, width, height);
     encoder.set_color(::png::ColorType::Rgb);
     encoder.set_compression(::png::Compression::Fast);
     encoder.set_filter(::png::Filter::Adaptive);
-    let layers: Vec<Vec<Segment>> = drawing.layers.iter().map(segments).collect();
-    let columns = drawing.width.div_ceil(TILE) as usize;
-    let tiles = sort_into_tiles(&layers, columns, drawing.height.div_ceil(TILE) as usize);
+    let per_metre = (px_per_mm * 1000.0).round() as u32;
+    encoder.set_pixel_dims(Some(PixelDimensions { xppu: per_metre, yppu: per_metre, unit: Unit::Meter }));
+    let layers: Vec<Vec<Segment>> = drawing.layers.iter().map(|layer| segments(layer, px_per_mm)).collect();
+    let columns = width.div_ceil(TILE) as usize;
+    let tiles = sort_into_tiles(&layers, columns, height.div_ceil(TILE) as usize);
     let bands: Vec<_> = tiles.chunks(columns.max(1)).enumerate().collect();
     let at_a_time = bands.chunks(rayon::current_num_threads());
     let filled = at_a_time.flat_map(|bands| {
-        let fill = |&(row, tiles): &(usize, &[_])| band(drawing, &layers, row, tiles);
+        let fill = |&(row, tiles): &(usize, &[_])| band(drawing, [width, height], &layers, row, tiles);
         bands.par_iter().map(fill).collect::<Vec<_>>()
     });
     stream(encoder, filled)
@@ -81,20 +90,26 @@ fn io_error(error: ::png::EncodingError) -> io::Error {
 }
 
 /// A row of tiles, three bytes a pixel: each with its segments as (layer, index), layers in order.
-fn band(drawing: &Drawing, layers: &[Vec<Segment>], row: usize, tiles: &[Vec<(usize, usize)>]) -> Vec<u8> {
-    let width = drawing.width as usize;
-    let rows = (drawing.height as usize - row * TILE as usize).min(TILE as usize);
-    let mut pixels = blend([255; 3], drawing.paper, 255).repeat(width * rows);
+fn band(
+    drawing: &Drawing,
+    [width, height]: [u32; 2],
+    layers: &[Vec<Segment>],
+    row: usize,
+    tiles: &[Vec<(usize, usize)>],
+) -> Vec<u8> {
+    let width = width as usize;
+    let rows = (height as usize - row * TILE as usize).min(TILE as usize);
+    let mut pixels = drawing.paper.0.repeat(width * rows);
     for (column, tile) in tiles.iter().enumerate() {
         let corner = DVec2::new(column as f64, row as f64) * f64::from(TILE);
         for group in tile.chunk_by(|a, b| a.0 == b.0) {
             let layer = group[0].0;
             let coverage = fill(group.iter().map(|&(_, i)| &layers[layer][i]), corner);
-            let colour = drawing.layers[layer].pen.colour;
+            let pen = drawing.layers[layer].pen;
             for (row, coverage) in pixels.chunks_mut(3 * width).zip(coverage.chunks(TILE as usize)) {
                 let pixels = row[3 * column * TILE as usize..].chunks_exact_mut(3);
                 for (pixel, &coverage) in pixels.zip(coverage).filter(|(_, coverage)| **coverage > 0) {
-                    pixel.copy_from_slice(&blend([pixel[0], pixel[1], pixel[2]], colour, coverage));
+                    pixel.copy_from_slice(&blend([pixel[0], pixel[1], pixel[2]], pen, coverage));
                 }
             }
         }
@@ -123,14 +138,16 @@ fn sort_into_tiles(layers: &[Vec<Segment>], columns: usize, rows: usize) -> Vec<
     tiles
 }
 
-/// A layer's strokes, cut into segments; a dot is a segment without length.
-fn segments(layer: &Layer) -> Vec<Segment> {
-    layer.strokes.iter().flat_map(|stroke| stroke_segments(stroke, layer.pen.width / 2.0)).collect()
+/// A layer's strokes in pixels, cut into segments; a dot is a segment without length.
+fn segments(layer: &Layer, px_per_mm: f64) -> Vec<Segment> {
+    layer.strokes.iter().flat_map(|stroke| stroke_segments(stroke, layer.pen.width / 2.0, px_per_mm)).collect()
 }
 
 /// The segments of one stroke; those without length are left out, unless the stroke is a dot.
-fn stroke_segments(stroke: &Stroke, half: f64) -> Vec<Segment> {
-    let mut points = stroke.points.clone();
+fn stroke_segments(stroke: &Stroke, half: f64, px_per_mm: f64) -> Vec<Segment> {
+    let half = half * px_per_mm;
+    let in_px = |point: &StrokePoint| StrokePoint { place: point.place * px_per_mm, ..*point };
+    let mut points: Vec<StrokePoint> = stroke.points.iter().map(in_px).collect();
     if stroke.closed {
         points.extend(stroke.points.first().copied());
     }
@@ -216,8 +233,8 @@ fn polygon(corners: &[DVec2], path: &mut PathBuilder) {
 }
 
 /// A colour laid over another with this coverage, 0 to 255.
-fn blend(below: [u8; 3], colour: [u8; 4], coverage: u8) -> [u8; 3] {
-    let alpha = f32::from(colour[3]) * f32::from(coverage) / (255.0 * 255.0);
-    let mix = |i: usize| f32::from(below[i]) + (f32::from(colour[i]) - f32::from(below[i])) * alpha;
+fn blend(below: [u8; 3], pen: Pen, coverage: u8) -> [u8; 3] {
+    let alpha = pen.opacity as f32 * f32::from(coverage) / 255.0;
+    let mix = |i: usize| f32::from(below[i]) + (f32::from(pen.colour.0[i]) - f32::from(below[i])) * alpha;
     [0, 1, 2].map(|i| mix(i).round() as u8)
 }

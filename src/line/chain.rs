@@ -101,6 +101,11 @@ impl Chain {
         steps.chain(closing.filter(|_| self.closed && lone.is_none())).chain(lone)
     }
 
+    /// Length of line, px.
+    pub fn length(&self) -> f64 {
+        self.pairs().map(|[a, b]| a.place.distance(b.place)).sum()
+    }
+
     /// What most of its points draw; of equals the first in the order of [`Line`].
     pub fn line(&self) -> Line {
         let mut lines: Vec<Line> = self.points.iter().map(|point| point.line).collect();

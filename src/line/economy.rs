@@ -55,22 +55,6 @@ pub struct Economy {
     pub min_gap: f64,
 }
 
-impl Economy {
-    /// Jumps under this say little of the land, as a share of the distance.
-    pub const MIN_JUMP: f64 = 0.01;
-
-    /// Gap on a page [`Self::WIDTH`] wide, px; wider pages have wider pens and gaps, in proportion.
-    pub const MIN_GAP: f64 = 3.0;
-
-    /// Width of the page with that gap, px.
-    pub const WIDTH: f64 = 1600.0;
-
-    /// The economy of a page this many pixels wide.
-    pub fn for_page(width: u32) -> Self {
-        Self { min_jump: Self::MIN_JUMP, min_gap: Self::MIN_GAP * f64::from(width) / Self::WIDTH }
-    }
-}
-
 /// The chains with weights, and with more points between those far from each other.
 pub fn economised(chains: &[Chain], economy: &Economy) -> Vec<Chain> {
     let longest = (STEP * economy.min_gap).max(LEAST_STEP);

@@ -14,6 +14,7 @@ pub mod crowd;
 pub mod curve;
 mod doubt;
 pub mod economy;
+pub mod ends;
 mod folds;
 mod graph;
 mod grid;
@@ -47,6 +48,8 @@ pub use smooth::smooth;
 pub use strays::Strays;
 pub use trace::trace;
 
+use glam::DVec3;
+
 use crate::view::Perspective;
 
 /// The lines of a page, ready to be stroked.
@@ -56,8 +59,12 @@ pub struct Lines {
     pub width: u32,
     /// Page height, px.
     pub height: u32,
+    /// Where from they are seen, metres of the exaggerated world.
+    pub eye: DVec3,
     /// In no particular order on the page, but the same in every run.
     pub chains: Vec<Chain>,
+    /// What nearer land hides.
+    pub hidden: Vec<Chain>,
     /// From near to far.
     pub recession: Recession,
 }
@@ -69,15 +76,19 @@ impl Lines {
         Self {
             width: marks.width,
             height: marks.height,
+            eye: perspective.eye(),
+            hidden: Vec::new(),
             chains: crowded(&chains, marks, perspective),
             recession: Recession::of(marks.depths()),
         }
     }
 
-    /// The lines of a page of so many pixels across and down from chains of curves, drawn as sparingly as `economy` says.
-    pub fn sparing(chains: &[Chain], [width, height]: [u32; 2], economy: &Economy) -> Self {
+    /// The lines of a page from chains of curves that are seen so, drawn as sparingly as `economy` says.
+    pub fn sparing(chains: &[Chain], perspective: &Perspective, economy: &Economy) -> Self {
         let chains = economised(chains, economy);
         let depths = chains.iter().flat_map(|chain| &chain.points).map(|point| point.depth);
-        Self { width, height, recession: Recession::of(depths), chains }
+        let [width, height] = perspective.size().to_array().map(|px| px as u32);
+        let recession = Recession::of(depths);
+        Self { width, height, eye: perspective.eye(), chains, hidden: Vec::new(), recession }
     }
 }

@@ -14,7 +14,8 @@ use super::figures::{AtDistance, Band, ChainFigures, DrawnLevel, FloorFigures, P
 use super::kept::{Seen, ids_kept};
 use super::{chains, memory};
 use crate::error::Result;
-use crate::line::{Chain, Economy};
+use crate::ink::{Sheet, Style};
+use crate::line::Chain;
 use crate::truth::Mask;
 use crate::truth::metrics::{BandScore, DISTANCES, Judge, Scores};
 use crate::view::Camera;
@@ -214,7 +215,9 @@ impl Trial<'_> {
         let next = if named { next.chains() } else { Vec::new() };
         let camera = moved(self.camera, 1);
         let kept = ids_kept(Seen { camera: self.camera, chains: &chains }, Seen { camera: &camera, chains: &next });
-        let economy = named.then(|| Economy::for_page(self.camera.width));
+        let frame = [self.camera.width, self.camera.height];
+        let px_per_mm = Sheet::for_frame(frame).placement(frame).px_per_mm;
+        let economy = named.then(|| Style::default().economy(px_per_mm));
         chains::figures(self.judge, &chains, kept, economy.as_ref())
     }
 }

@@ -1,0 +1,235 @@
+//! From the lines of a page to a drawing: which layers there are, and what stands in them.
+//!
+//! Each kind of line has a layer with a pen; distances may split it, and where lines of varying width are drawn by pens of
+//! one width, so do those. From bottom to top, which is the order of plotting: hidden lines, borders, silhouettes, creases,
+//! of each the farthest first and the finest.
+
+use std::collections::BTreeMap;
+
+use glam::DVec2;
+use rustc_hash::FxHashMap;
+
+use super::strokes::{Inked, Inking, Run};
+use super::wobble::Hand;
+use super::{Drawing, Form, Layer, Pen, Sheet, Stroke, StrokePoint, Style, plot};
+use crate::error::{Error, Result, Setting};
+use crate::line::{Chain, Id, Line, Lines, ends};
+use crate::message;
+
+/// Most strokes of a drawing.
+const MOST_STROKES: f64 = 4e6;
+/// A run that is shorter is drawn with the pen of what lies beside it, mm.
+const SHORT: f64 = 1.5;
+/// Length of an arm of a registration mark, mm.
+const MARK: f64 = 4.0;
+
+/// What a layer draws, from bottom to top.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Hidden,
+    Border,
+    Silhouette,
+    Crease,
+}
+
+impl Kind {
+    const ALL: [Self; 4] = [Self::Hidden, Self::Border, Self::Silhouette, Self::Crease];
+
+    /// What shows a kind of line.
+    fn of(line: Line) -> Self {
+        match line {
+            Line::Occluding | Line::Skyline => Self::Silhouette,
+            Line::Border => Self::Border,
+            Line::Shore | Line::Drainage | Line::Ridge | Line::Hachure | Line::Own => Self::Crease,
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Hidden => "hidden",
+            Self::Border => "border",
+            Self::Silhouette => "silhouette",
+            Self::Crease => "crease",
+        }
+    }
+
+    fn pen(self, style: &Style) -> Pen {
+        match self {
+            Self::Hidden => style.pens.hidden,
+            Self::Border => style.pens.border,
+            Self::Silhouette => style.pens.silhouette,
+            Self::Crease => style.pens.crease,
+        }
+    }
+}
+
+/// A run, and the chain it draws.
+type Named = (Option<Id>, Run);
+
+/// The drawing of a page's lines on a sheet that its frame fills; layers without a line are left out. `split` gives
+/// distances from the eye, metres, which rise: each kind of line has a layer for every zone between them.
+///
+/// # Errors
+/// [`Error::Limit`] where the style asks for more strokes than a drawing holds.
+pub fn draw(lines: &Lines, sheet: &Sheet, style: &Style, split: &[f64]) -> Result<Drawing> {
+    let inking = Inking {
+        placement: sheet.placement([lines.width, lines.height]),
+        area: sheet.area(),
+        weight: &style.weight,
+        recession: &lines.recession,
+        hand: Hand(style.wobble),
+        eye: lines.eye,
+    };
+    check_dashes(lines, &inking, style)?;
+    let free = ends::free(&lines.chains, [lines.width, lines.height]);
+    let mut layers: Vec<Layer> = Vec::new();
+    for kind in Kind::ALL {
+        let runs = match kind {
+            Kind::Hidden => of_each(lines.hidden.iter(), |chain| inking.even(chain).dashed(style.dashes)),
+            _ => {
+                let shown = lines.chains.iter().zip(&free).filter(|(chain, _)| Kind::of(chain.line()) == kind);
+                let drawn = shown.filter(|(chain, _)| style.dots || chain.points.len() > 1);
+                drawn.flat_map(|(chain, free)| of_each([chain], |chain| inking.weighed(chain, *free))).collect()
+            }
+        };
+        for (zone, runs) in by_distance(runs, split) {
+            for (width, runs) in by_width(runs, kind.pen(style), style) {
+                let pen = Pen { width: width.unwrap_or(kind.pen(style).width), ..kind.pen(style) };
+                let words = [zone_name(zone, split), width.map(|width| format!("{width} mm"))];
+                let number = format!("{} {}", layers.len() + 1, kind.name());
+                let name = [number].into_iter().chain(words.into_iter().flatten()).collect::<Vec<_>>().join(" ");
+                let finished = |(id, run)| inking.finished(run, pen.width).into_iter().map(move |run| stroke(id, &run));
+                let strokes: Vec<Stroke> = runs.into_iter().flat_map(finished).collect();
+                if !strokes.is_empty() {
+                    layers.push(layer(name, pen, strokes, sheet, style));
+                }
+            }
+        }
+    }
+    number_pieces(&mut layers);
+    Ok(Drawing { sheet: *sheet, paper: style.paper, layers })
+}
+
+/// The runs of each chain, with its name.
+fn of_each<'a>(chains: impl IntoIterator<Item = &'a Chain>, runs: impl Fn(&Chain) -> Vec<Run>) -> Vec<Named> {
+    chains.into_iter().flat_map(|chain| runs(chain).into_iter().map(|run| (chain.id, run))).collect()
+}
+
+/// Whether hidden lines fall into more dashes than a drawing holds.
+fn check_dashes(lines: &Lines, inking: &Inking, style: &Style) -> Result<()> {
+    let length: f64 = lines.hidden.iter().map(|chain| inking.even(chain).length()).sum();
+    let dashes = length / (style.dashes.dash + style.dashes.gap);
+    if dashes <= MOST_STROKES {
+        return Ok(());
+    }
+    let what = format!("hidden lines fall into {dashes:.0} dashes; a drawing holds {MOST_STROKES} strokes");
+    Err(Error::limit(what, message!["lengthen `dashes` of ", Setting::Style, " or leave out ", Setting::Hidden]))
+}
+
+/// Runs by zones of distance, the farthest first.
+fn by_distance(runs: Vec<Named>, split: &[f64]) -> impl Iterator<Item = (usize, Vec<Named>)> {
+    let mut zones: BTreeMap<usize, Vec<Named>> = BTreeMap::new();
+    for (id, run) in runs {
+        for (zone, run) in run.banded(split, |point| point.distance) {
+            zones.entry(zone).or_default().push((id, run));
+        }
+    }
+    zones.into_iter().rev()
+}
+
+/// What a zone of distance is called, if there are several.
+fn zone_name(zone: usize, split: &[f64]) -> Option<String> {
+    let km = |bound: usize| split[bound] / 1000.0;
+    match zone {
+        _ if split.is_empty() => None,
+        0 => Some(format!("to {} km", km(0))),
+        last if last == split.len() => Some(format!("beyond {} km", km(last - 1))),
+        zone => Some(format!("{} to {} km", km(zone - 1), km(zone))),
+    }
+}
+
+/// Runs by the width of the pen that draws them, the finest first: as wide as that everywhere. `None` where one pen draws
+/// lines of all widths.
+fn by_width(runs: Vec<Named>, pen: Pen, style: &Style) -> Vec<(Option<f64>, Vec<Named>)> {
+    if !style.plot.centre_lines {
+        return vec![(None, runs)];
+    }
+    let widths = if style.plot.widths.is_empty() { vec![pen.width] } else { style.plot.widths.clone() };
+    // What is finer than half the finest pen is not drawn.
+    let bounds = [widths[0] / 2.0].into_iter().chain(widths.windows(2).map(|pair| (pair[0] + pair[1]) / 2.0));
+    let bounds: Vec<f64> = bounds.map(|bound| bound / pen.width).collect();
+    let mut layers: Vec<Vec<Named>> = vec![Vec::new(); widths.len()];
+    for (id, run) in runs {
+        for (band, mut run) in settled(run.banded(&bounds, |point| point.width)) {
+            if let Some(pen) = band.checked_sub(1) {
+                run.points.iter_mut().for_each(|point| point.width = 1.0);
+                layers[pen].push((id, run));
+            }
+        }
+    }
+    widths.into_iter().map(Some).zip(layers).collect()
+}
+
+/// Parts of one run without short ones in bands of their own: these go to the longer of their neighbours.
+fn settled(mut parts: Vec<(usize, Run)>) -> Vec<(usize, Run)> {
+    let is_short = |parts: &[(usize, Run)], i: usize| parts[i].1.length() < SHORT;
+    while let Some(short) = (0..parts.len()).filter(|_| parts.len() > 1).find(|&i| is_short(&parts, i)) {
+        let length = |i: Option<usize>| i.and_then(|i| parts.get(i)).map_or(-1.0, |part| part.1.length());
+        let joins_last = length(short.checked_sub(1)) >= length(Some(short + 1));
+        let first = if joins_last { short - 1 } else { short };
+        let band = parts[if joins_last { short - 1 } else { short + 1 }].0;
+        let (_, next) = parts.remove(first + 1);
+        let points: Vec<Inked> = next.points.into_iter().skip(1).collect();
+        parts[first].0 = band;
+        parts[first].1.points.extend(points);
+        // Neighbours of one band are one part.
+        while let Some(i) = (1..parts.len()).find(|&i| parts[i - 1].0 == parts[i].0) {
+            let (_, next) = parts.remove(i);
+            parts[i - 1].1.points.extend(next.points.into_iter().skip(1));
+        }
+    }
+    parts
+}
+
+fn stroke(chain: Option<Id>, run: &Run) -> Stroke {
+    let point = |point: &Inked| StrokePoint { place: point.place, width: point.width };
+    Stroke { chain, piece: 0, points: run.points.iter().map(point).collect(), closed: run.closed }
+}
+
+/// A layer, in the order of plotting where a pen follows its lines.
+fn layer(name: String, pen: Pen, mut strokes: Vec<Stroke>, sheet: &Sheet, style: &Style) -> Layer {
+    if style.plot.registration {
+        strokes.extend(marks(sheet, pen.width));
+    }
+    let is_even = strokes.iter().flat_map(|stroke| &stroke.points).all(|point| point.width == 1.0);
+    match is_even {
+        true => Layer { name, pen, form: Form::CentreLines, strokes: plot::planned(strokes) },
+        false => Layer { name, pen, form: Form::Outlines, strokes },
+    }
+}
+
+/// Brackets in the corners of the area, by which one layer is laid over another.
+fn marks(sheet: &Sheet, pen: f64) -> impl Iterator<Item = Stroke> {
+    let [low, high] = sheet.area();
+    let (low, high) = (low + pen / 2.0, high - pen / 2.0);
+    let arm = (high - low).min_element().clamp(0.0, MARK);
+    let corners = [low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)];
+    corners.into_iter().map(move |corner| {
+        let inward = ((low + high) / 2.0 - corner).signum() * arm;
+        let places = [corner + DVec2::new(inward.x, 0.0), corner, corner + DVec2::new(0.0, inward.y)];
+        let points = places.map(|place| StrokePoint { place, width: 1.0 }).to_vec();
+        Stroke { chain: None, piece: 0, points, closed: false }
+    })
+}
+
+/// Tells the strokes of each chain apart, in the order of the drawing.
+fn number_pieces(layers: &mut [Layer]) {
+    let mut next: FxHashMap<Id, u32> = FxHashMap::default();
+    for stroke in layers.iter_mut().flat_map(|layer| &mut layer.strokes) {
+        if let Some(chain) = stroke.chain {
+            let count = next.entry(chain).or_default();
+            stroke.piece = *count;
+            *count += 1;
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! The sheet of paper: its size, its margins, and how the pixels of a frame lie on it.
+//!
+//! A frame fills the sheet less its margins. Its pixels are as wide as the area divided by their number, and square; so the
+//! last row may stand over by less than one, half of that on either side.
+
+use glam::{DVec2, UVec2};
+
+use crate::error::{Error, Result, Setting};
+use crate::message;
+
+/// A sheet, in millimetres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sheet {
+    /// Across and down.
+    pub size: DVec2,
+    /// Blank on all four sides.
+    pub margin: f64,
+}
+
+impl Sheet {
+    /// Pixels of a frame for each millimetre, unless told otherwise: lines are found to some .01 mm.
+    pub const FRAME_PX_PER_MM: f64 = 8.0;
+
+    /// Width of a sheet of which nothing is known but a frame's pixels, mm: 1920 of these at 8 a millimetre.
+    pub const WIDTH: f64 = 240.0;
+
+    /// The sheet for a frame of so many pixels across and down: [`Self::WIDTH`] wide, without margins.
+    pub fn for_frame([width, height]: [u32; 2]) -> Self {
+        let height = Self::WIDTH * f64::from(height) / f64::from(width);
+        Self { size: DVec2::new(Self::WIDTH, height), margin: 0.0 }
+    }
+
+    /// Where lines may lie: its corners towards the top left and the bottom right.
+    pub fn area(&self) -> [DVec2; 2] {
+        [DVec2::splat(self.margin), self.size - self.margin]
+    }
+
+    /// Size of that, mm.
+    fn inner(&self) -> DVec2 {
+        self.size - 2.0 * self.margin
+    }
+
+    /// Pixels across and down of a frame that fills the area, at least one, at about so many for each millimetre.
+    pub fn frame(&self, px_per_mm: f64) -> [u32; 2] {
+        let across = (self.inner().x * px_per_mm).round().max(1.0);
+        self.frame_across(across)
+    }
+
+    fn frame_across(&self, across: f64) -> [u32; 2] {
+        // A rounding of millimetres is no row.
+        let down = (self.inner().y * across / self.inner().x - 1e-6).ceil().max(1.0);
+        [across, down].map(|px| px as u32)
+    }
+
+    /// Whether a frame fills the area.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] where it is longer or shorter by more than a pixel.
+    pub fn check_frame(&self, [width, height]: [u32; 2]) -> Result<()> {
+        let fitting = self.frame_across(f64::from(width));
+        if height.abs_diff(fitting[1]) <= 1 {
+            return Ok(());
+        }
+        let DVec2 { x, y } = self.inner();
+        let what = format!("{width}x{height} is not as the page less its margins, {x} x {y} mm");
+        let fits = format!("{}x{}", fitting[0], fitting[1]);
+        Err(Error::setting(Setting::Size, what, message!["use ", Setting::Size.at(fits), ", or leave it out"]))
+    }
+
+    /// How the pixels of a frame lie on the sheet.
+    pub fn placement(&self, frame: [u32; 2]) -> Placement {
+        let px_per_mm = f64::from(frame[0]) / self.inner().x;
+        Placement { px_per_mm, centre: self.size / 2.0, frame_centre: UVec2::from(frame).as_dvec2() / 2.0 }
+    }
+}
+
+/// From pixels of a frame to millimetres of its sheet.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Placement {
+    /// Pixels for each millimetre.
+    pub px_per_mm: f64,
+    centre: DVec2,
+    frame_centre: DVec2,
+}
+
+impl Placement {
+    /// The place on the sheet of one in the frame.
+    pub fn on_sheet(&self, place: DVec2) -> DVec2 {
+        self.centre + (place - self.frame_centre) / self.px_per_mm
+    }
+}

@@ -1,0 +1,254 @@
+//! From chains to strokes: where on the sheet, and how wide.
+//!
+//! Lines thin with distance, where little lies between them and what is behind, and by the weight that
+//! [economy](crate::line::economy) leaves contours; traced lines thin where many crowd together. Free ends taper. A hand's
+//! [wobble](super::wobble) moves the sheet under the pen. All is cut at the margins, half a pen inside them.
+
+use glam::{DVec2, FloatExt};
+
+use super::sheet::Placement;
+use super::style::{Dashes, Weight};
+use super::wobble::Hand;
+use crate::line::{Chain, ChainPoint, Recession};
+use crate::view::cut::share_within;
+
+/// Pixels of the square in which ink crowds.
+const SQUARE: f64 = 81.0;
+
+/// A point of a line on the sheet.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Inked {
+    /// Millimetres from the sheet's top left corner.
+    pub place: DVec2,
+    /// As a share of the pen's.
+    pub width: f64,
+    /// From the eye, metres of the exaggerated world.
+    pub distance: f64,
+}
+
+/// A line on the sheet, without lifting the pen.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Run {
+    /// At least one.
+    pub points: Vec<Inked>,
+    /// Whether the last point is joined to the first, which is not repeated.
+    pub closed: bool,
+}
+
+/// How the chains of a page come to lie on the sheet.
+#[derive(Debug)]
+pub struct Inking<'a> {
+    /// From pixels to millimetres.
+    pub placement: Placement,
+    /// Where lines may lie, mm.
+    pub area: [DVec2; 2],
+    /// How wide they are.
+    pub weight: &'a Weight,
+    /// How they recede.
+    pub recession: &'a Recession,
+    /// Who draws them.
+    pub hand: Hand,
+    /// Where from they are seen, metres of the exaggerated world.
+    pub eye: glam::DVec3,
+}
+
+impl Inked {
+    fn lerp(&self, other: &Self, t: f64) -> Self {
+        Self {
+            place: self.place.lerp(other.place, t),
+            width: self.width.lerp(other.width, t),
+            distance: self.distance.lerp(other.distance, t),
+        }
+    }
+}
+
+impl Inking<'_> {
+    /// The runs of a chain, cut where it has no weight; `free` tells which of its ends taper.
+    pub fn weighed(&self, chain: &Chain, free: [bool; 2]) -> Vec<Run> {
+        let points = chain.points.iter().map(|point| self.inked(point, self.width(point))).collect();
+        let mut run = Run { points, closed: chain.closed };
+        run.taper(free, self.weight.taper);
+        run.without_blanks()
+    }
+
+    /// The run of a chain that is as wide as the pen everywhere.
+    pub fn even(&self, chain: &Chain) -> Run {
+        Run { points: chain.points.iter().map(|point| self.inked(point, 1.0)).collect(), closed: chain.closed }
+    }
+
+    /// What lies inside the margins of a run that a pen so wide draws, as the hand draws it.
+    pub fn finished(&self, run: Run, pen: f64) -> Vec<Run> {
+        let strayed = self.strayed(run);
+        let [low, high] = self.area;
+        strayed.within([low + pen / 2.0, high - pen / 2.0])
+    }
+
+    fn inked(&self, point: &ChainPoint, width: f64) -> Inked {
+        Inked { place: self.placement.on_sheet(point.place), width, distance: point.world.distance(self.eye) }
+    }
+
+    /// Width of a line at a point, as a share of the pen's.
+    fn width(&self, point: &ChainPoint) -> f64 {
+        let Weight { far, flat, crowd, .. } = *self.weight;
+        let receding = 1.0 - (1.0 - far) * self.recession.share(point);
+        let roomy = (receding * (crowd * SQUARE / f64::from(point.crowd.max(1))).sqrt().min(1.0)).max(far);
+        roomy * f64::from(point.weight) * (flat + (1.0 - flat) * point.relief().sqrt())
+    }
+
+    /// The run as the hand draws it.
+    fn strayed(&self, run: Run) -> Run {
+        let longest = self.hand.step();
+        if longest.is_infinite() {
+            return run;
+        }
+        let run = run.stepped(longest);
+        let stray = |point: &Inked| Inked { place: self.hand.stray(point.place), ..*point };
+        Run { points: run.points.iter().map(stray).collect(), ..run }
+    }
+}
+
+impl Run {
+    /// Length of line, mm.
+    pub fn length(&self) -> f64 {
+        self.steps().map(|[a, b]| a.place.distance(b.place)).sum()
+    }
+
+    /// Each point with the next, the last of a closed run with the first.
+    fn steps(&self) -> impl Iterator<Item = [&Inked; 2]> {
+        let closing = self.points.last().zip(self.points.first()).filter(|_| self.closed).map(|(a, b)| [a, b]);
+        self.points.windows(2).map(|pair| [&pair[0], &pair[1]]).chain(closing)
+    }
+
+    /// The same, begun with its first point again where it is closed: an open run all the same.
+    fn opened(mut self) -> Self {
+        if self.closed {
+            self.points.push(self.points[0]);
+        }
+        Self { closed: false, ..self }
+    }
+
+    /// Lets free ends run out over so many millimetres, less in short runs.
+    fn taper(&mut self, free: [bool; 2], taper: f64) {
+        if taper == 0.0 || free == [false; 2] || self.points.len() < 2 {
+            return;
+        }
+        let length = self.length();
+        let ends = if free == [true; 2] { 2.0 } else { 1.0 };
+        let taper = taper.min(length / ends);
+        *self = std::mem::replace(self, Self { points: Vec::new(), closed: false }).stepped(taper / 4.0);
+        let mut arc = 0.0;
+        for i in 0..self.points.len() {
+            if i > 0 {
+                arc += self.points[i - 1].place.distance(self.points[i].place);
+            }
+            let runs_out = |is_free: bool, way: f64| {
+                let t = if is_free { (way / taper).clamp(0.0, 1.0) } else { 1.0 };
+                t * (2.0 - t)
+            };
+            self.points[i].width *= runs_out(free[0], arc) * runs_out(free[1], length - arc);
+        }
+    }
+
+    /// The parts with width: they run out to points without, between two of which there is nothing.
+    fn without_blanks(mut self) -> Vec<Self> {
+        let Some(first) = self.points.iter().position(|point| point.width <= 0.0) else { return vec![self] };
+        if self.closed {
+            self.points.rotate_left(first);
+            self = self.opened();
+        }
+        let pieces = self.points.chunk_by(|a, b| a.width > 0.0 || b.width > 0.0);
+        let drawn = pieces.filter(|piece| piece.len() > 1);
+        drawn.map(|piece| Self { points: piece.to_vec(), closed: false }).collect()
+    }
+
+    /// The run with more points between those that lie more than `longest` mm apart.
+    fn stepped(self, longest: f64) -> Self {
+        let closed = self.closed;
+        let mut points = Vec::with_capacity(self.points.len());
+        for [a, b] in self.steps() {
+            let steps = (a.place.distance(b.place) / longest).ceil().max(1.0);
+            points.extend((0..steps as u32).map(|s| a.lerp(b, f64::from(s) / steps)));
+        }
+        points.extend(self.points.last().filter(|_| !closed));
+        Self { points, closed }
+    }
+
+    /// The parts inside a rectangle.
+    fn within(self, [low, high]: [DVec2; 2]) -> Vec<Self> {
+        let inside = |point: &Inked| point.place.cmpge(low).all() && point.place.cmple(high).all();
+        if self.points.iter().all(inside) {
+            return vec![self];
+        }
+        let spans = self.opened().cut_by(|a, b| share_within([low, high], a.place, b.place).into_iter().collect());
+        spans.into_iter().map(|points| Self { points, closed: false }).collect()
+    }
+
+    /// The parts in each band between two bounds of a value, which rise; bands are numbered from 0, up to the first bound.
+    pub fn banded(self, bounds: &[f64], value: impl Fn(&Inked) -> f64) -> Vec<(usize, Self)> {
+        let band = |v: f64| bounds.partition_point(|&bound| bound <= v);
+        let first = self.points.first().map_or(0, |point| band(value(point)));
+        if self.points.iter().all(|point| band(value(point)) == first) {
+            return vec![(first, self)];
+        }
+        let opened = self.opened();
+        let mut parts: Vec<(usize, Self)> = Vec::new();
+        let mut add = |of: usize, points: [Inked; 2]| match parts.last_mut() {
+            Some((last, run)) if *last == of => run.points.push(points[1]),
+            _ => parts.push((of, Self { points: points.to_vec(), closed: false })),
+        };
+        for pair in opened.points.windows(2) {
+            let [from, to] = [value(&pair[0]), value(&pair[1])];
+            let (low, high) = (from.min(to), from.max(to));
+            let mut cuts: Vec<f64> =
+                bounds.iter().filter(|&&b| low < b && b < high).map(|b| (b - from) / (to - from)).collect();
+            cuts.sort_by(f64::total_cmp);
+            let mut at = 0.0;
+            for next in cuts.into_iter().chain([1.0]) {
+                let ends = [at, next].map(|t| pair[0].lerp(&pair[1], t));
+                add(band(value(&pair[0].lerp(&pair[1], (at + next) / 2.0))), ends);
+                at = next;
+            }
+        }
+        parts
+    }
+
+    /// The dashes of a run, the first and the last half a dash long where it is open, all between drawn out or in to fit.
+    pub fn dashed(self, dashes: Dashes) -> Vec<Self> {
+        let length = self.length();
+        let count = (length / (dashes.dash + dashes.gap)).round();
+        if count < 1.0 {
+            return vec![self];
+        }
+        let period = length / count;
+        let dash = period * dashes.dash / (dashes.dash + dashes.gap);
+        let mut arc = 0.0;
+        let spans = self.opened().cut_by(|a, b| {
+            let (from, step) = (arc, a.place.distance(b.place));
+            arc += step;
+            let turns = (from / period).floor() as u64..=(arc / period).floor() as u64 + 1;
+            let ends = turns.map(|k| [k as f64 * period - dash / 2.0, k as f64 * period + dash / 2.0]);
+            let parts = ends.map(|ends| ends.map(|end| ((end - from) / step).clamp(0.0, 1.0)));
+            parts.filter(|[enter, leave]| step > 0.0 && enter < leave).collect()
+        });
+        spans.into_iter().map(|points| Self { points, closed: false }).collect()
+    }
+
+    /// The parts of an open run that lie in the spans of its steps, as shares of each, joined where one goes on in the next.
+    fn cut_by(&self, mut spans: impl FnMut(&Inked, &Inked) -> Vec<[f64; 2]>) -> Vec<Vec<Inked>> {
+        let mut parts: Vec<Vec<Inked>> = Vec::new();
+        let mut goes_on = false;
+        for pair in self.points.windows(2) {
+            let spans = spans(&pair[0], &pair[1]);
+            let leads_on = spans.last().is_some_and(|span| span[1] == 1.0);
+            for [enter, leave] in spans {
+                let ends = [enter, leave].map(|t| pair[0].lerp(&pair[1], t));
+                match parts.last_mut() {
+                    Some(part) if goes_on && enter == 0.0 => part.push(ends[1]),
+                    _ => parts.push(ends.to_vec()),
+                }
+            }
+            goes_on = leads_on;
+        }
+        parts
+    }
+}
