@@ -51,6 +51,8 @@ override two_depths: bool = false;
 override conservative: bool = false;
 // Whether what cannot change the picture is left out.
 override thrifty: bool = true;
+// Whether curves are listed that nearer land certainly hides.
+override all_curves: bool = false;
 
 @group(0) @binding(0) var<uniform> scene: Scene;
 @group(0) @binding(1) var<uniform> camera: Camera;

@@ -128,7 +128,7 @@ fn list_line(line: FacetLine) {
         let at = vec2<i32>(floor(middle)) - camera.origin;
         // Depth is linear on the page; shares of the line itself are not.
         let depths = mix(vec3<f32>(scene.near / near_p.z), vec3<f32>(scene.near / near_q.z), shares);
-        if !on_page(at) || is_buried(at, depths.y) {
+        if !on_page(at) || (!all_curves && is_buried(at, depths.y)) {
             continue;
         }
         let along = mix(vec3<f32>(from_near), vec3<f32>(to_near), shares * (scene.near / near_q.z) / depths);

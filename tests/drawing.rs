@@ -120,7 +120,7 @@ fn every_kind_of_line_stands_in_a_layer() {
 fn strokes_of(points: &[(f32, f32)], closed: bool) -> Vec<Vec<f64>> {
     let (seen, _) = ridge(80);
     let point = |(x, &(behind, weight)): (f64, &(f32, f32))| {
-        let place = DVec2::new(10.0 * x, 10.0);
+        let place = DVec2::new(10.0 * x + 5.0, 10.0);
         let world = seen.unproject(place, 0.01);
         ChainPoint { place, line: Line::Occluding, depth: 0.01, behind, world, crowd: 0, weight }
     };

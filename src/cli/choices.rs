@@ -2,6 +2,7 @@
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
+use super::style::Hidden;
 use crate::dem::North;
 use crate::plan::registry::Entry;
 use crate::plan::{Border, Method, Share};
@@ -16,6 +17,10 @@ const SHARES: [Word<Share>; 2] = [
 const NORTHS: [Word<North>; 2] = [
     ("grid", "Of the grid lines of the DEM's own CRS, before any warp", North::Grid),
     ("true", "Of the meridian", North::True),
+];
+const HIDDEN: [Word<Hidden>; 2] = [
+    ("dashed", "Draw them in dashes, in a layer of their own", Hidden::Dashed),
+    ("off", "Leave them out", Hidden::Off),
 ];
 const BORDERS: [Word<Border>; 2] = [("on", "Draw it", Border::On), ("off", "Leave it out", Border::Off)];
 
@@ -38,6 +43,16 @@ pub fn default_share() -> &'static str {
 /// What azimuths are counted from.
 pub fn north() -> impl TypedValueParser<Value = North> {
     one_of(NORTHS)
+}
+
+/// What becomes of lines that nearer land hides.
+pub fn hidden() -> impl TypedValueParser<Value = Hidden> {
+    one_of(HIDDEN)
+}
+
+/// The word for what becomes of them if nothing is said.
+pub fn default_hidden() -> &'static str {
+    word_for(&HIDDEN, Hidden::default())
 }
 
 /// Whether the border is drawn.

@@ -211,7 +211,7 @@ impl CompareArguments {
     }
 
     fn sizes(&self) -> Vec<Size> {
-        if self.sizes.is_empty() { vec![self.view.size] } else { self.sizes.clone() }
+        if self.sizes.is_empty() { vec![self.view.size()] } else { self.sizes.clone() }
     }
 
     fn comparison(&self) -> Comparison {
@@ -243,7 +243,7 @@ impl CompareArguments {
             ));
         }
         each_once(Setting::Dem, dems.iter().filter_map(|dem| Some(dem.file_name()?.to_string_lossy().into_owned())))?;
-        let mut views = views::read(path, self.view.fov(), self.view.size)?;
+        let mut views = views::read(path, self.view.fov(), self.view.size())?;
         let mut jobs = Vec::new();
         for dem in dems {
             let (of_dem, others) = views.into_iter().partition(|view| Some(view.dem.as_os_str()) == dem.file_name());

@@ -10,20 +10,22 @@ use super::device::DeviceArguments;
 use super::draw_report::{ChainsReport, DemReport, LeftOutReport, Report};
 use super::flat_earth::FlatEarth;
 use super::outputs::OutputArguments;
+use super::page::{Layout, PageArguments};
+use super::style::StyleArguments;
 use super::talk::Talk;
 use super::terrain::{TerrainArguments, warn_of_survey};
-use super::values::{self, LevelChoice};
+use super::values::{self, LevelChoice, Size};
 use super::view_report::ViewReport;
-use super::viewpoint::{View, ViewArguments};
+use super::viewpoint::{SIZE, View, ViewArguments};
 use super::words::told;
 use super::{blank, cells, choices};
 use crate::cache::Cache;
-use crate::error::{Error, Result, Setting, shown};
+use crate::error::{Error, Result, Setting};
 use crate::files::Taken;
 use crate::geo::Reading;
 use crate::gpu::Gpu;
-use crate::ink::{self, Drawing, Sheet, Style};
-use crate::line::{Economy, Lines};
+use crate::ink::{self, Drawing, Style};
+use crate::line::Lines;
 use crate::plan::detail::ERROR_PX;
 use crate::plan::left_out::LeftOut;
 use crate::plan::{Border, Curves, Detail, Frame, Method, Plan, Share};
@@ -89,24 +91,10 @@ pub struct DrawArguments {
     #[arg(long, value_parser = choices::border(), default_value = choices::default_border(), help_heading = "Method")]
     border: Border,
 
-    #[arg(
-        long, value_name = "X", value_parser = values::min_jump, allow_hyphen_values = true, help_heading = "Style",
-        help = format!(
-            "Leave lines out where what lies behind is less than this share farther than they are; from twice that on they are \
-             whole. 0 draws all [default: {}]",
-            Style::default().min_jump
-        )
-    )]
-    min_jump: Option<f64>,
-    #[arg(
-        long, value_name = "3px", value_parser = values::min_gap, allow_hyphen_values = true, help_heading = "Style",
-        help = format!(
-            "Of two lines nearer to each other than this the weaker fades, by kind, jump and length; the skyline never does. In \
-             pixels, 0 leaves all lines [default: {}mm]",
-            Style::default().min_gap
-        )
-    )]
-    min_gap: Option<f64>,
+    #[command(flatten)]
+    page: PageArguments,
+    #[command(flatten)]
+    style: StyleArguments,
 
     /// Say at which levels parts of the DEM are drawn, what the frame did without, why, and what that saved
     #[arg(long)]
@@ -130,13 +118,14 @@ struct Drawn<'a> {
 /// Whatever went wrong; nothing stands under a final name then.
 pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     let plan = arguments.check()?;
+    let (style, layout) = (arguments.style.style()?, arguments.layout()?);
     let started = Instant::now();
     let cache = arguments.cache.cache();
     let reading = arguments.terrain.open(&arguments.terrain.dems, arguments.exaggeration, cache.clone())?;
     let mut outputs = arguments.outputs.open(Taken::inputs(reading.files()))?;
     let surface = Arc::new(arguments.surface(reading, talk)?);
     let gpu = arguments.prepare(&surface, &cache, talk)?;
-    let view = arguments.look(&surface, talk)?;
+    let view = arguments.look(&surface, layout.frame, talk)?;
     let gpu = Arc::new(gpu?);
     DeviceArguments::tell(&gpu, talk)?;
     talk.progress("drawing", 0.3);
@@ -144,14 +133,13 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     let page = renderer.page(&plan, &view.camera, |share| talk.progress("drawing", 0.3 + 0.3 * share))?;
     cache.discard_damaged(surface.dem(), &|message| talk.warn(&told(message)));
     let mut drawn = Drawn { renderer: &mut renderer, view: &view, page };
-    let economy = arguments.economy(&plan, view.camera.width)?;
-    let (drawing, px_per_mm) = drawn.stroked(economy.as_ref())?;
+    let drawing = arguments.stroked(&drawn, &style, &layout)?;
     let report = outputs.want_report().then(|| arguments.report(&mut drawn, talk)).transpose()?;
     if arguments.explain || talk.is_verbose() {
         explain(talk, &drawn.page.frame, &surface, report.as_ref())?;
     }
     talk.progress("writing", 0.8);
-    outputs.write(&drawing, px_per_mm, &drawn.page, report.as_ref())?;
+    outputs.write(&drawing, layout.px_per_mm, &drawn.page, report.as_ref())?;
     surface.dem().check()?;
     talk.progress("writing", 1.0);
     outputs.publish()?;
@@ -173,9 +161,15 @@ impl DrawArguments {
         self.view.check()?;
         self.outputs.check()?;
         // Strokes of the walk's mask are contours.
-        let curves = if method == Method::Walk { Curves::On } else { Curves::Off };
+        let curves = match (self.style.draws_hidden(), method) {
+            (true, Method::Walk | Method::Contour) => Curves::All,
+            (_, Method::Walk) => Curves::On,
+            _ => Curves::Off,
+        };
         let plan = Plan { curves, ..Plan::new(detail, method, self.border) };
-        self.economy(&plan, 1)?;
+        if !plan.has_curves() {
+            self.style.refuse_for_traced()?;
+        }
         Ok(plan)
     }
 
@@ -213,15 +207,24 @@ impl DrawArguments {
     }
 
     /// The view, told as flags that repeat it, and what is to be said of it and of the DEM.
-    fn look(&self, surface: &Surface, talk: &Talk) -> Result<View> {
+    fn look(&self, surface: &Surface, frame: Size, talk: &Talk) -> Result<View> {
         cells::warn(surface.dem(), self.exaggeration, talk);
         warn_of_survey(surface.dem(), talk)?;
-        let view = self.view.view(surface, self.level.near())?;
+        let view = self.view.sized(frame).view(surface, self.level.near())?;
         view.warn_below_ground(surface, self.level.near(), talk);
         talk.say(&format!("view: {}", view.flags()))?;
         view.lonlat_flags().map_or(Ok(()), |flags| talk.say(&format!("or with: {flags}")))?;
         view.norths.words().map_or(Ok(()), |words| talk.say(&words))?;
         Ok(view)
+    }
+
+    /// How the page is laid out.
+    fn layout(&self) -> Result<Layout> {
+        let layout = self.page.layout(self.view.typed_size(), SIZE)?;
+        if self.outputs.want_picture() {
+            layout.check_picture()?;
+        }
+        Ok(layout)
     }
 
     fn detail(&self) -> Result<Detail> {
@@ -246,16 +249,17 @@ impl DrawArguments {
         })
     }
 
-    /// How sparing lines are on a page `width` pixels wide; `None` where strokes are traced from the mask.
-    fn economy(&self, plan: &Plan, width: u32) -> Result<Option<Economy>> {
-        if !plan.has_curves() {
-            let given = self.min_jump.map(|_| Setting::MinJump).or(self.min_gap.map(|_| Setting::MinGap));
-            let refuse = |setting| Error::setting(setting, "goes with contours only", "leave out --method");
-            return given.map_or(Ok(None), |setting| Err(refuse(setting)));
-        }
-        let px_per_mm = f64::from(width) / Sheet::WIDTH;
-        let Economy { min_jump, min_gap } = Style::default().economy(px_per_mm);
-        Ok(Some(Economy { min_jump: self.min_jump.unwrap_or(min_jump), min_gap: self.min_gap.unwrap_or(min_gap) }))
+    /// The drawing of the page: of contours as sparingly as is asked, or traced from the mask.
+    fn stroked(&self, drawn: &Drawn, style: &Style, layout: &Layout) -> Result<Drawing> {
+        let Page { marks, chains, hidden, .. } = &drawn.page;
+        let px_per_mm = layout.sheet.placement([marks.width, marks.height]).px_per_mm;
+        let perspective = Perspective::new(&drawn.view.camera, drawn.renderer.near());
+        let lines = match drawn.page.frame.plan.has_curves() {
+            true => Lines::sparing(chains, &perspective, &self.style.economy(style, px_per_mm)),
+            false => Lines::of(marks, &perspective, style.tolerance * px_per_mm),
+        };
+        let lines = Lines { hidden: hidden.clone(), ..lines };
+        ink::draw(&lines, &layout.sheet, style, self.style.split())
     }
 
     /// Times more frames and says what was done.
@@ -298,7 +302,7 @@ impl DrawArguments {
         drawn.flat_earth().map_or(Ok(()), |flat_earth| talk.say(&flat_earth.words()))?;
         talk.say(&format!(
             "{}: {} facets, {} of {} pixels inked, {:.2} s",
-            shown(self.outputs.drawing()),
+            self.outputs.drawing(),
             page.frame.facets(renderer.surface()),
             page.marks.inked(),
             u64::from(view.camera.width) * u64::from(view.camera.height),
@@ -308,20 +312,6 @@ impl DrawArguments {
 }
 
 impl Drawn<'_> {
-    /// The drawing of the page: of contours as sparingly as is asked, or traced from the mask.
-    fn stroked(&self, economy: Option<&Economy>) -> Result<(Drawing, f64)> {
-        let Page { marks, chains, .. } = &self.page;
-        let style = Style::default();
-        let sheet = Sheet::for_frame([marks.width, marks.height]);
-        let px_per_mm = sheet.placement([marks.width, marks.height]).px_per_mm;
-        let perspective = Perspective::new(&self.view.camera, self.renderer.near());
-        let lines = match economy {
-            Some(economy) => Lines::sparing(chains, &perspective, economy),
-            None => Lines::of(marks, &perspective, style.tolerance * px_per_mm),
-        };
-        Ok((ink::draw(&lines, &sheet, &style, &[])?, px_per_mm))
-    }
-
     /// Where the DEM lies on Earth.
     fn flat_earth(&self) -> Option<FlatEarth> {
         let Self { renderer, view, page, .. } = self;

@@ -14,6 +14,9 @@ pub mod info;
 pub mod memory;
 pub mod norths;
 pub mod outputs;
+pub mod page;
+pub mod style;
+pub mod styles;
 pub mod talk;
 pub mod terrain;
 pub mod threads;
@@ -55,6 +58,8 @@ enum Command {
     Compare(Box<compare::CompareArguments>),
     /// List, clear or make what is kept for later runs
     Cache(Box<cache::CacheCommand>),
+    /// List the looks of a drawing, print one, or the schema of their files
+    Styles(styles::StylesArguments),
     /// Say what a DEM holds
     Info(info::InfoArguments),
     /// Make completions, man pages, and terrain to test with
@@ -81,6 +86,7 @@ impl Arguments {
             Command::Draw(arguments) => draw::run(arguments, talk),
             Command::Compare(arguments) => compare::run(arguments, talk),
             Command::Cache(arguments) => cache::run(arguments, talk),
+            Command::Styles(arguments) => styles::run(arguments, talk),
             Command::Info(arguments) => info::run(arguments, talk),
             Command::Generate(arguments) => generate::run(arguments, talk),
         }

@@ -13,10 +13,10 @@ use crate::render::Page;
 /// Flags that name files; `-` is standard output, for one of them.
 #[derive(Debug, clap::Args)]
 pub struct OutputArguments {
-    /// The drawing, a .png, or - for standard output
-    #[arg(short, long, value_name = "OUT.png|-")]
-    output: PathBuf,
-    /// Also the mask: 1 bit a pixel, 0 ink, 255 paper, exactly --size
+    /// The drawing: a .png, .svg or .pdf, each as often as wanted; - is standard output, a PNG
+    #[arg(short, long, value_name = "OUT.png|.svg|.pdf|-", required = true)]
+    output: Vec<PathBuf>,
+    /// Also the mask: 1 bit a pixel, 0 ink, 255 paper, as large as the frame (--size)
     #[arg(long, value_name = "OUT.png|-")]
     mask: Option<PathBuf>,
     /// Also what was done, with times of ten further frames (two of a page in pieces)
@@ -24,22 +24,40 @@ pub struct OutputArguments {
     json: Option<PathBuf>,
 }
 
+/// How a drawing is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Format {
+    Png,
+    Svg,
+    Pdf,
+}
+
 /// The files to write.
 pub struct Outputs {
-    drawing: Output,
+    drawings: Vec<(Format, Output)>,
     mask: Option<Output>,
     json: Option<Output>,
 }
 
 impl OutputArguments {
-    /// The drawing as the user named it.
-    pub fn drawing(&self) -> &Path {
-        &self.output
+    /// The drawing as the user named it, each of its files.
+    pub fn drawing(&self) -> String {
+        self.output.iter().map(|path| shown(path)).collect::<Vec<_>>().join(", ")
+    }
+
+    /// Whether one of the drawings is a picture.
+    pub fn want_picture(&self) -> bool {
+        self.output.iter().any(|path| Format::of(path) == Some(Format::Png))
+    }
+
+    /// Whether the mask is asked for.
+    pub fn want_mask(&self) -> bool {
+        self.mask.is_some()
     }
 
     /// Whether one of the files is standard output.
     pub fn fill_stdout(&self) -> bool {
-        [Some(&self.output), self.mask.as_ref(), self.json.as_ref()].into_iter().flatten().any(|path| is_stdout(path))
+        self.output.iter().chain(&self.mask).chain(&self.json).any(|path| is_stdout(path))
     }
 
     /// Checks what can be known of the names alone.
@@ -47,8 +65,24 @@ impl OutputArguments {
     /// # Errors
     /// [`Error::Setting`] for a name that cannot be meant.
     pub fn check(&self) -> Result<()> {
-        wants_png(Setting::Output, &self.output)?;
-        self.mask.as_ref().map_or(Ok(()), |mask| wants_png(Setting::Mask, mask))
+        for path in &self.output {
+            if Format::of(path).is_none() {
+                let what = format!("{} does not end in .png, .svg or .pdf", shown(path));
+                return Err(Error::setting(Setting::Output, what, "name it so"));
+            }
+        }
+        if let Some(mask) = self.mask.as_ref().filter(|mask| Format::of(mask) != Some(Format::Png)) {
+            return Err(Error::setting(Setting::Mask, format!("{} does not end in .png", shown(mask)), "name it .png"));
+        }
+        let given = [(Setting::Output, &self.output[..]), (Setting::Mask, self.mask.as_slice())];
+        let on_stdout = given.into_iter().find(|(_, paths)| paths.iter().any(|path| is_stdout(path)));
+        match on_stdout.filter(|_| stdout().is_terminal()) {
+            Some((setting, _)) => {
+                let remedy = "send it on with `> picture.png` or `| program`, or name a .png";
+                Err(Error::setting(setting, "standard output is a terminal", remedy))
+            }
+            None => Ok(()),
+        }
     }
 
     /// Opens them all. None may be one of the files `taken`, or another output.
@@ -56,14 +90,12 @@ impl OutputArguments {
     /// # Errors
     /// [`Error::Setting`] for a name that is taken, [`Error::Output`] where a file cannot be written.
     pub fn open(&self, mut taken: Taken) -> Result<Outputs> {
-        let named = [
-            (Setting::Output, Some(&self.output)),
-            (Setting::Mask, self.mask.as_ref()),
-            (Setting::Json, self.json.as_ref()),
-        ];
+        let drawings = self.output.iter().map(|path| (Setting::Output, path));
+        let beside = [(Setting::Mask, self.mask.as_ref()), (Setting::Json, self.json.as_ref())];
+        let named = drawings.chain(beside.into_iter().filter_map(|(setting, path)| Some((setting, path?))));
         let mut has_stdout = false;
         // All names are compared before any file is opened.
-        for (setting, path) in named.into_iter().filter_map(|(setting, path)| Some((setting, path?))) {
+        for (setting, path) in named {
             match is_stdout(path) {
                 true if has_stdout => {
                     let what = "standard output is another output already";
@@ -78,7 +110,11 @@ impl OutputArguments {
         }
         let open = |path: &Path| if is_stdout(path) { Ok(Output::stdout()) } else { Output::create(path) };
         Ok(Outputs {
-            drawing: open(&self.output)?,
+            drawings: self
+                .output
+                .iter()
+                .map(|path| Ok((Format::of(path).unwrap_or(Format::Png), open(path)?)))
+                .collect::<Result<_>>()?,
             mask: self.mask.as_deref().map(open).transpose()?,
             json: self.json.as_deref().map(open).transpose()?,
         })
@@ -102,7 +138,13 @@ impl Outputs {
         page: &Page,
         report: Option<&impl Serialize>,
     ) -> Result<()> {
-        self.drawing.write(|out| ink::write_png(drawing, px_per_mm, out))?;
+        for (format, file) in &mut self.drawings {
+            file.write(|out| match format {
+                Format::Png => ink::write_png(drawing, px_per_mm, out),
+                Format::Svg => ink::write_svg(drawing, out),
+                Format::Pdf => ink::write_pdf(drawing, out),
+            })?;
+        }
         if let Some(mask) = &mut self.mask {
             let marks = &page.marks;
             mask.write(|out| ink::write_mask([marks.width, marks.height], marks.places(), out))?;
@@ -121,7 +163,8 @@ impl Outputs {
     /// # Errors
     /// [`Error::Output`] where one cannot be named.
     pub fn publish(self) -> Result<()> {
-        let mut outputs: Vec<_> = [Some(self.drawing), self.mask, self.json].into_iter().flatten().collect();
+        let mut outputs: Vec<_> =
+            self.drawings.into_iter().map(|(_, file)| file).chain(self.mask).chain(self.json).collect();
         outputs.sort_by_key(|output| output.target().is_some());
         outputs.into_iter().try_for_each(Output::publish)
     }
@@ -132,17 +175,12 @@ fn is_stdout(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-fn wants_png(setting: Setting, path: &Path) -> Result<()> {
-    if is_stdout(path) {
-        let remedy = "send it on with `> picture.png` or `| program`, or name a .png";
-        return if stdout().is_terminal() {
-            Err(Error::setting(setting, "standard output is a terminal", remedy))
-        } else {
-            Ok(())
-        };
+impl Format {
+    /// The format that a name asks for.
+    fn of(path: &Path) -> Option<Self> {
+        let ends_in = |extension: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(extension));
+        let known = [("png", Self::Png), ("svg", Self::Svg), ("pdf", Self::Pdf)];
+        let named = known.into_iter().find(|(extension, _)| ends_in(extension)).map(|(_, format)| format);
+        named.or(is_stdout(path).then_some(Self::Png))
     }
-    if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("png")) {
-        return Ok(());
-    }
-    Err(Error::setting(setting, format!("{} does not end in .png", shown(path)), "name it .png"))
 }

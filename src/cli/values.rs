@@ -6,9 +6,11 @@ use std::ops::RangeInclusive;
 
 use glam::DVec2;
 
+use super::style::Split;
 use crate::dem::LARGEST_SIDE as MOST_SAMPLES;
 use crate::geo::{ElevationUnit, Encoding, Nodata, Order};
 use crate::gpu::AdapterChoice;
+use crate::ink::sheet::PAPERS;
 use crate::measure::compare::LEAST_TRUTH_LEVEL;
 use crate::plan::pieces::LARGEST_PAGE;
 use crate::plan::{Detail, Method};
@@ -58,6 +60,16 @@ const ERRORS_PX: RangeInclusive<f64> = 0.01..=100.0;
 
 /// A gap this wide leaves little but the skyline.
 const MOST_GAP_PX: f64 = 1000.0;
+const MOST_GAP_MM: f64 = 100.0;
+
+/// Most distances that part layers.
+const MOST_DISTANCES: usize = 64;
+
+/// Sides of pages that somebody prints or plots, mm.
+const PAGES_MM: [f64; 2] = [10.0, 5000.0];
+
+/// Pixels an inch that somebody prints.
+const DPI: [f64; 2] = [10.0, 4800.0];
 
 /// Bytes in units of 1024, as `1GiB`.
 pub fn bytes(text: &str) -> Result<u64, String> {
@@ -241,13 +253,77 @@ pub fn min_jump(text: &str) -> Result<f64, String> {
     jump.ok_or_else(|| "want a share of the distance, 0 or more, as 0.02 for 2 %".into())
 }
 
-/// Pixels between lines, as `3px` or `3`.
-pub fn min_gap(text: &str) -> Result<f64, String> {
-    if text.ends_with("mm") {
-        return Err("pages have no millimetres yet; want pixels, as 3px".into());
+/// Room between lines.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Gap {
+    /// Pixels of the mask.
+    Px(f64),
+    /// Millimetres of the page.
+    Mm(f64),
+}
+
+/// Room between lines, as `.4mm`, `3px` or `3`, which are pixels.
+pub fn min_gap(text: &str) -> Result<Gap, String> {
+    let within = |text: &str, most: f64| number(text).ok().filter(|gap| (0.0..=most).contains(gap));
+    let gap = match text.strip_suffix("mm") {
+        Some(text) => within(text, MOST_GAP_MM).map(Gap::Mm),
+        None => within(text.strip_suffix("px").unwrap_or(text), MOST_GAP_PX).map(Gap::Px),
+    };
+    gap.ok_or_else(|| {
+        format!("want millimetres, from 0 to {MOST_GAP_MM}, as .4mm, or pixels, from 0 to {MOST_GAP_PX}, as 3px")
+    })
+}
+
+/// `distance:D,D…`, each a number with `m` or `km`, rising.
+pub fn split(text: &str) -> Result<Split, String> {
+    let form = "want distance: and distances that rise, as distance:5km,10km";
+    let metres = |text: &str| {
+        let (text, unit) = match text.strip_suffix("km") {
+            Some(text) => (text, 1000.0),
+            None => (text.strip_suffix('m')?, 1.0),
+        };
+        number(text).ok().map(|number| number * unit).filter(|metres| *metres > 0.0)
+    };
+    let listed = text.strip_prefix("distance:").ok_or(form)?;
+    let distances: Vec<f64> = listed.split(',').map(metres).collect::<Option<_>>().ok_or(form)?;
+    if !distances.is_sorted_by(|a, b| a < b) {
+        return Err(form.into());
     }
-    let gap = number(text.strip_suffix("px").unwrap_or(text)).ok().filter(|gap| (0.0..=MOST_GAP_PX).contains(gap));
-    gap.ok_or_else(|| format!("want pixels, from 0 to {MOST_GAP_PX}, as 3px"))
+    if distances.len() > MOST_DISTANCES {
+        return Err(format!("want at most {MOST_DISTANCES} distances"));
+    }
+    Ok(Split(distances))
+}
+
+/// Names of papers, with commas between.
+pub fn paper_names() -> String {
+    PAPERS.map(|(name, _)| name).join(", ")
+}
+
+/// The name of a paper, or `WxH` in millimetres.
+pub fn page(text: &str) -> Result<DVec2, String> {
+    if let Some((_, size)) = PAPERS.into_iter().find(|(name, _)| name.eq_ignore_ascii_case(text)) {
+        return Ok(DVec2::from(size));
+    }
+    let [least, most] = PAGES_MM;
+    let form = || format!("want one of {}, or WxH in millimetres, each from {least} to {most}", paper_names());
+    let bare = text.strip_suffix("mm").unwrap_or(text);
+    let (width, height) = bare.split_once(['x', 'X']).ok_or_else(form)?;
+    let side = |text: &str| number(text).ok().filter(|mm| (least..=most).contains(mm)).ok_or_else(form);
+    Ok(DVec2::new(side(width)?, side(height)?))
+}
+
+/// Millimetres of a margin.
+pub fn margin(text: &str) -> Result<f64, String> {
+    let margin = number(text.strip_suffix("mm").unwrap_or(text)).ok().filter(|mm| (0.0..=PAGES_MM[1]).contains(mm));
+    margin.ok_or_else(|| "want millimetres, 0 or more".into())
+}
+
+/// Pixels an inch.
+pub fn dpi(text: &str) -> Result<f64, String> {
+    let [least, most] = DPI;
+    let dpi = number(text).ok().filter(|dpi| (least..=most).contains(dpi));
+    dpi.ok_or_else(|| format!("want pixels an inch, from {least} to {most}"))
 }
 
 /// A level of truth.

@@ -10,6 +10,7 @@ use super::talk::Talk;
 use super::values::{self, Height, LookAt, Size, Standpoint};
 use crate::dem::{Crs, Dem, Georeference, North};
 use crate::error::{Error, Result, Setting};
+use crate::plan::pieces::LARGEST_PAGE;
 use crate::surface::{Level, Surface};
 use crate::view::{Camera, Fixed, choose, direction};
 
@@ -26,6 +27,9 @@ const METRE_DECIMALS: i32 = 3;
 const WGS84: u32 = 4326;
 /// By how much an eye that is printed with them may be off, and a little more for what f32 rounds: metres.
 const ROUNDED: f64 = 0.001;
+
+/// Pixels of a page unless told otherwise.
+pub const SIZE: Size = Size { width: 1920, height: 1080 };
 
 /// The flags, as typed.
 #[derive(Debug, Clone, clap::Args)]
@@ -58,9 +62,11 @@ pub struct ViewArguments {
     /// Horizontal field of view, degrees
     #[arg(long, value_name = "DEG", value_parser = values::fov, allow_hyphen_values = true, default_value_t = FOV)]
     fov: f64,
-    /// Pixels across and down, each from 1 to 65536
-    #[arg(long, value_name = "WxH", value_parser = values::size, default_value = "1920x1080")]
-    pub size: Size,
+    #[arg(
+        long, value_name = "WxH", value_parser = values::size,
+        help = format!("Pixels across and down, each from 1 to {LARGEST_PAGE} [default: {}x{}]", SIZE.width, SIZE.height)
+    )]
+    size: Option<Size>,
 }
 
 /// A view found, with its eye in the coordinates of the DEM's file and on the globe.
@@ -91,7 +97,22 @@ impl ViewArguments {
         fov: f64,
         size: Size,
     ) -> Self {
-        Self { eye, lonlat, look_at: None, crs: None, north: Some(north), azimuth, altitude, fov, size }
+        Self { eye, lonlat, look_at: None, crs: None, north: Some(north), azimuth, altitude, fov, size: Some(size) }
+    }
+
+    /// Pixels across and down, as typed.
+    pub fn typed_size(&self) -> Option<Size> {
+        self.size
+    }
+
+    /// The same flags with a page of this size.
+    pub fn sized(&self, size: Size) -> Self {
+        Self { size: Some(size), ..self.clone() }
+    }
+
+    /// Pixels across and down.
+    pub fn size(&self) -> Size {
+        self.size.unwrap_or(SIZE)
     }
 
     /// What says where the eye is or looks, if anything is given.
@@ -141,7 +162,7 @@ impl ViewArguments {
             _ => None,
         };
         let fixed = self.fixed(surface, level, eye)?;
-        let mut camera = choose(surface.dem(), fixed, self.fov, self.size.width, self.size.height)?;
+        let mut camera = choose(surface.dem(), fixed, self.fov, self.size().width, self.size().height)?;
         let file = match place {
             Some((_, file)) => file,
             None => {

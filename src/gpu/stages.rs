@@ -15,7 +15,7 @@ use super::{walk, walk_rest, wanted};
 use crate::error::{Error, Result};
 use crate::plan::batches::PART_CHUNKS;
 use crate::plan::passes::{Often, PlannedPass, passes};
-use crate::plan::{Batch, Frame, Method, PassName, Plan, Thrift, Visibility};
+use crate::plan::{Batch, Curves, Frame, Method, PassName, Plan, Thrift, Visibility};
 
 /// Bytes between entries of a uniform buffer that are bound one at a time.
 const UNIFORM_STRIDE: u64 = 256;
@@ -44,6 +44,7 @@ struct MadeFor {
     passes: Vec<PlannedPass>,
     method: Method,
     thrift: Thrift,
+    curves: Curves,
     batches: usize,
     /// Of scene, page and curves.
     generations: [u64; 3],
@@ -62,11 +63,12 @@ impl Stages {
         page: &PageBuffers,
         curves: &CurveBuffers,
     ) -> Result<()> {
-        let Plan { method, thrift, .. } = frame.plan;
+        let Plan { method, thrift, curves: asked, .. } = frame.plan;
         let made_for = MadeFor {
             passes: passes(&frame.plan),
             method,
             thrift,
+            curves: asked,
             batches: frame.batches.len().max(1),
             generations: [scene.generation(), page.generation(), curves.generation()],
         };
@@ -168,15 +170,16 @@ fn compile(gpu: &Gpu, frame: &Frame, passes: &[PlannedPass]) -> Result<Vec<Arc<P
 }
 
 /// What all shaders may depend on.
-fn constants(frame: &Frame) -> [(&'static str, f64); 5] {
+fn constants(frame: &Frame) -> [(&'static str, f64); 6] {
     let flag = |on: bool| f64::from(u8::from(on));
-    let Plan { method, thrift, .. } = frame.plan;
+    let Plan { method, thrift, curves, .. } = frame.plan;
     [
         ("has_voids", flag(frame.tests_voids)),
         // In how many parts facing bits lie.
         ("facing_parts", f64::from(frame.batches.last().map_or(0, Batch::part) + 1)),
         ("two_depths", flag(frame.visibility == Visibility::TwoDepths)),
         ("thrifty", flag(thrift == Thrift::LeaveOut)),
+        ("all_curves", flag(curves == Curves::All)),
         ("conservative", flag(method.entry().conservative)),
     ]
 }

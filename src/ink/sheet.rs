@@ -8,6 +8,20 @@ use glam::{DVec2, UVec2};
 use crate::error::{Error, Result, Setting};
 use crate::message;
 
+/// Papers by name, upright, mm.
+pub const PAPERS: [(&str, [f64; 2]); 10] = [
+    ("A0", [841.0, 1189.0]),
+    ("A1", [594.0, 841.0]),
+    ("A2", [420.0, 594.0]),
+    ("A3", [297.0, 420.0]),
+    ("A4", [210.0, 297.0]),
+    ("A5", [148.0, 210.0]),
+    ("A6", [105.0, 148.0]),
+    ("letter", [215.9, 279.4]),
+    ("legal", [215.9, 355.6]),
+    ("tabloid", [279.4, 431.8]),
+];
+
 /// A sheet, in millimetres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sheet {

@@ -8,6 +8,7 @@ use std::fmt::Display;
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize, de};
 
+use super::styles::BuiltIn;
 use super::{Colour, Pen};
 use crate::line::Economy;
 
@@ -25,6 +26,8 @@ const SECONDS: [f64; 2] = [0.0, 60.0];
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Style {
+    /// The style that has what this one does not say.
+    pub base: BuiltIn,
     /// Colour of the sheet in pictures; vectors have none.
     pub paper: Colour,
     /// How far smoothing may move a line that is traced from a mask, and a hand may swerve.
@@ -149,6 +152,7 @@ pub struct Plot {
 impl Default for Style {
     fn default() -> Self {
         Self {
+            base: BuiltIn::FieldSketch,
             paper: Colour([251, 248, 240]),
             tolerance: 0.075,
             min_jump: 0.01,
@@ -215,10 +219,13 @@ impl Style {
     }
 
     /// What two settings say together that each may say alone.
-    pub(super) fn check(&self) -> Result<(), String> {
-        if self.wobble.reach > self.tolerance {
-            let (reach, tolerance) = (self.wobble.reach, self.tolerance);
-            return Err(format!("wobble.reach {reach} is more than tolerance {tolerance}: lines would stray too far"));
+    ///
+    /// Else what is wrong, and what to do.
+    pub(super) fn check(&self) -> Result<(), (String, String)> {
+        let (reach, tolerance) = (self.wobble.reach, self.tolerance);
+        if reach > tolerance {
+            let what = format!("`wobble.reach` of {reach} mm is more than the `tolerance` of {tolerance} mm");
+            return Err((what, format!("lower `reach` in [wobble] to {tolerance}, or raise `tolerance`")));
         }
         Ok(())
     }

@@ -21,7 +21,7 @@ use super::folds::convex;
 use super::identity::{Held, key, names};
 use super::labels::{Labelled, cheapest};
 use super::simplify::needed;
-use super::{Bound, Chain, ChainPoint, Curve, CurvePoint, Line, Sight, Stretch};
+use super::{Bound, Chain, ChainPoint, Curve, CurvePoint, Id, Line, Sight, Stretch};
 use crate::view::cut::share_within;
 
 /// Least length of what is drawn and of a gap, px.
@@ -35,11 +35,23 @@ const SHOWN: f64 = 0.03;
 /// Longest piece of a chain without a point, px: what varies along it is still told.
 const APART: f64 = 4.0;
 
+/// What the names of hidden chains have before those of seen ones.
+const HIDDEN: u64 = 1 << 63;
+
 /// What is drawn, in the order of labels.
 const LINES: [Line; 3] = [Line::Occluding, Line::Skyline, Line::Border];
 
 /// What the eye sees of curves on a page of so many pixels across and down.
-pub fn chains(mut curves: Vec<Curve>, [width, height]: [u32; 2]) -> Vec<Chain> {
+pub fn chains(curves: Vec<Curve>, size: [u32; 2]) -> Vec<Chain> {
+    sighted(curves, size, false).0
+}
+
+/// The same, and what it would see besides were there no nearer land: stretches that hide themselves are in neither.
+pub fn seen_and_hidden(curves: Vec<Curve>, size: [u32; 2]) -> (Vec<Chain>, Vec<Chain>) {
+    sighted(curves, size, true)
+}
+
+fn sighted(mut curves: Vec<Curve>, [width, height]: [u32; 2], wants_hidden: bool) -> (Vec<Chain>, Vec<Chain>) {
     let page = DVec2::new(width.into(), height.into());
     let prepare = |curve: &mut Curve| {
         begin_where_sure(curve);
@@ -52,15 +64,49 @@ pub fn chains(mut curves: Vec<Curve>, [width, height]: [u32; 2]) -> Vec<Chain> {
     let of_curve = |c: usize| {
         let spans = seen(&curves, c, &folds[c], &doubts[c], &near);
         let spans = joined(&curves[c], &folds[c], clipped(&curves[c], &spans, page));
-        spans.into_iter().map(|span| chain(&curves[c], span)).collect::<Vec<_>>()
+        let hidden = if wants_hidden { hidden(&curves[c], &folds[c], &spans, page) } else { Vec::new() };
+        let chains = |spans: Vec<Span>| spans.into_iter().map(|span| chain(&curves[c], span)).collect::<Vec<_>>();
+        (chains(spans), chains(hidden))
     };
-    let mut chains: Vec<(Chain, Vec<Held>)> = (0..curves.len()).into_par_iter().flat_map_iter(of_curve).collect();
+    let (seen, hidden): (Vec<_>, Vec<_>) = (0..curves.len()).into_par_iter().map(of_curve).unzip();
+    let (chains, mut hidden) = (named(seen.concat()), named(hidden.concat()));
+    for Id(id) in hidden.iter_mut().filter_map(|chain| chain.id.as_mut()) {
+        *id |= HIDDEN;
+    }
+    (chains, hidden)
+}
+
+/// Chains with their names, in order.
+fn named(mut chains: Vec<(Chain, Vec<Held>)>) -> Vec<Chain> {
     chains.par_sort_by(|(a, _), (b, _)| in_order(a, b));
     let (mut chains, held): (Vec<Chain>, Vec<Vec<Held>>) = chains.into_iter().unzip();
     for (chain, id) in chains.iter_mut().zip(names(&held)) {
         chain.id = id;
     }
     chains
+}
+
+/// What of the convex stretches of a curve on the page is not in the spans that are seen.
+fn hidden(curve: &Curve, convex: &[bool], seen: &[Span], page: DVec2) -> Vec<Span> {
+    let n = convex.len() as f64;
+    let mut all = Vec::new();
+    (0..convex.len()).filter(|i| convex[*i]).for_each(|i| join(&mut all, [i as f64, i as f64 + 1.0]));
+    // A span that leads on beyond the last stretch goes on at the first.
+    let led_on = seen.iter().map(|[from, to]| [from - n, to - n]).filter(|[_, to]| *to > 0.0);
+    let seen: Vec<Span> = led_on.chain(seen.iter().copied()).collect();
+    let mut left = Vec::new();
+    for [mut from, to] in clipped(curve, &all, page) {
+        for [enter, leave] in &seen {
+            if *enter < to && *leave > from {
+                left.push([from, *enter]);
+                from = *leave;
+            }
+        }
+        left.push([from, to]);
+    }
+    let along = Along::new(curve);
+    left.retain(|&[from, to]| from < to && along.length([from, to]) >= LEAST);
+    left
 }
 
 /// Turns a closed curve so that it begins in the middle of its longest free run, or at its lowest place on the lattice.

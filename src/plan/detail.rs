@@ -9,9 +9,9 @@ use std::collections::HashSet;
 
 use glam::{DVec2, DVec3};
 
-use super::Thrift;
 use super::horizon::Horizon;
 use super::left_out::Omission;
+use super::{Curves, Thrift};
 use crate::error::Result;
 use crate::surface::lattice::{CELL_STEPS, CHUNK_QUADS, Role};
 use crate::surface::quadtree::Growth;
@@ -55,14 +55,24 @@ impl From<Level> for Detail {
     }
 }
 
-/// The lattice of a frame: chunks as coarse as `error_px` allows where they can be seen, else as their neighbours allow.
+/// The lattice of a frame: chunks as coarse as `error_px` allows where they can be seen, or could but for nearer land if
+/// all curves are asked for; else as their neighbours allow.
 /// Those that neither appear nor can be crossed by a walk are left out. And what it does without for that.
 ///
 /// # Errors
 /// See [`Lattice::adaptive`].
-pub fn adaptive(surface: &Surface, camera: &Camera, error_px: f64, thrift: Thrift) -> Result<(Lattice, Vec<Omission>)> {
+pub fn adaptive(
+    surface: &Surface,
+    camera: &Camera,
+    error_px: f64,
+    thrift: Thrift,
+    curves: Curves,
+) -> Result<(Lattice, Vec<Omission>)> {
     let (dem, pyramid) = (surface.dem(), surface.pyramid()?);
     let mut demand = Demand::new(surface, pyramid, camera, error_px);
+    if curves == Curves::All {
+        demand.horizon = None;
+    }
     let wedge = View::wedge(surface, camera);
     let from = dem.grid_place(camera.eye.truncate()) * f64::from(CELL_STEPS);
     let tree = Lattice::grow(dem, pyramid.coarsest_step(), from.to_array(), &mut demand)?;

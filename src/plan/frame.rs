@@ -66,7 +66,7 @@ impl Frame {
         let (lattice, omissions) = match plan.detail {
             Detail::Uniform(level) => (kept.uniform(surface, level)?, Vec::new()),
             Detail::Adaptive { error_px } => {
-                let (lattice, omissions) = detail::adaptive(surface, camera, error_px, plan.thrift)?;
+                let (lattice, omissions) = detail::adaptive(surface, camera, error_px, plan.thrift, plan.curves)?;
                 (Arc::new(lattice), omissions)
             }
         };

@@ -46,7 +46,9 @@ pub enum Border {
 /// Whether the curves of a frame are found, of which strokes are made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Curves {
-    /// They are.
+    /// All of them, as true behind nearer land as before it.
+    All,
+    /// Those that the eye may see.
     On,
     /// The mask is all that is asked for.
     #[default]

@@ -41,7 +41,7 @@ impl Plan {
 
     /// Whether its frames hold curves.
     pub fn has_curves(&self) -> bool {
-        self.curves == Curves::On || self.method.entry().yields == Yields::Curves
+        self.curves != Curves::Off || self.method.entry().yields == Yields::Curves
     }
 }
 

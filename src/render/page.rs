@@ -3,7 +3,7 @@
 use super::{Drawn, Renderer};
 use crate::error::Result;
 use crate::line::{Chain, Marks, marks, one_pixel_wide, visible};
-use crate::plan::{Frame, Piece, Plan, Yields};
+use crate::plan::{Curves, Frame, Piece, Plan, Yields};
 use crate::view::Camera;
 
 /// The ink of a frame on a page of any size, and its curves.
@@ -13,6 +13,8 @@ pub struct Page {
     pub marks: Marks,
     /// What the eye sees of curves; none where the plan has none.
     pub chains: Vec<Chain>,
+    /// What nearer land hides of curves; none where the plan does not have [all](crate::plan::Curves::All).
+    pub hidden: Vec<Chain>,
     /// How many pixels show land, inked or not.
     pub covered: u64,
     /// Nodes the longest walk visited, or facets of the longest cut; 0 for other methods.
@@ -53,12 +55,16 @@ impl Renderer {
             progress(f64::from(done) / count);
         }
         let size = frame.pieces.page();
-        let chains = visible::chains(self.linked(&frame, segments), size);
+        let curves = self.linked(&frame, segments);
+        let (chains, hidden) = match frame.plan.curves {
+            Curves::All => visible::seen_and_hidden(curves, size),
+            Curves::On | Curves::Off => (visible::chains(curves, size), Vec::new()),
+        };
         let marks = match yields {
             Yields::Ink => Marks::new(size, list),
             Yields::Curves => one_pixel_wide(&chains, size),
         };
-        Ok(Page { marks, chains, covered, longest_walk, frame })
+        Ok(Page { marks, chains, hidden, covered, longest_walk, frame })
     }
 
     /// Draws a piece of a frame and brings it back, halo and all: `piece.drawn` of the page.
