@@ -21,7 +21,7 @@
 //! let (style, sheet) = (Style::default(), Sheet::for_frame([1200, 600]));
 //! let px_per_mm = sheet.placement([1200, 600]).px_per_mm;
 //! let perspective = renderer.perspective(&page.frame);
-//! let lines = Lines::sparing(&page.chains, &perspective, &style.economy(px_per_mm));
+//! let lines = Lines::sparing(&page.chains, &page.hidden, &perspective, &style.economy(px_per_mm));
 //! let drawing = ink::draw(&lines, &sheet, &style, &[])?;
 //! ink::write_png(&drawing, px_per_mm, std::fs::File::create("picture.png")?)?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())

@@ -51,7 +51,7 @@ impl Seen {
     }
 
     fn drawn(&self, economy: &Economy) -> Figures {
-        let lines = Lines::sparing(&self.chains, &self.perspective, economy);
+        let lines = Lines::sparing(&self.chains, &[], &self.perspective, economy);
         Figures { darkest: self.darkest(&lines), kept: kept(&lines, economy), missing: self.missing(&lines) }
     }
 
@@ -162,13 +162,13 @@ fn the_sample_stays_open_and_keeps_its_lines() {
     let all = check("the sample", &seen);
     assert_eq!(all.missing, 0, "columns of the skyline have no line");
     // Negative controls: half of the skyline gone, a gap that leaves little.
-    let mut broken = Lines::sparing(&seen.chains, &seen.perspective, &economy());
+    let mut broken = Lines::sparing(&seen.chains, &[], &seen.perspective, &economy());
     let left = |point: &&mut ChainPoint| point.place.x < 800.0;
     broken.chains.iter_mut().flat_map(|c| &mut c.points).filter(left).for_each(|point| point.weight = 0.0);
     assert!(seen.missing(&broken) > 400, "a broken skyline is not noticed");
     let wide = Economy { min_gap: 60.0, ..economy() };
     assert!(
-        kept(&Lines::sparing(&seen.chains, &seen.perspective, &wide), &wide) < LINES_KEPT,
+        kept(&Lines::sparing(&seen.chains, &[], &seen.perspective, &wide), &wide) < LINES_KEPT,
         "lost lines are not noticed"
     );
 }

@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use super::cache::CacheArguments;
 use super::device::DeviceArguments;
-use super::draw_report::{ChainsReport, DemReport, LeftOutReport, Report};
+use super::draw_report::{ChainsReport, DemReport, LayerReport, LeftOutReport, PageReport, Report};
 use super::flat_earth::FlatEarth;
 use super::outputs::OutputArguments;
 use super::page::{Layout, PageArguments};
@@ -18,7 +18,7 @@ use super::values::{self, LevelChoice, Size};
 use super::view_report::ViewReport;
 use super::viewpoint::{SIZE, View, ViewArguments};
 use super::words::told;
-use super::{blank, cells, choices};
+use super::{blank, cells, choices, plan};
 use crate::cache::Cache;
 use crate::error::{Error, Result, Setting};
 use crate::files::Taken;
@@ -57,12 +57,24 @@ Examples:
 #[command(after_help = EXAMPLES)]
 pub struct DrawArguments {
     #[command(flatten)]
-    terrain: TerrainArguments,
+    pub(super) terrain: TerrainArguments,
     #[command(flatten)]
-    outputs: OutputArguments,
+    pub(super) outputs: OutputArguments,
 
     #[command(flatten)]
     view: ViewArguments,
+    /// Draw the land from straight above instead, true to scale: the page is the DEM, or its part, at that scale
+    #[arg(
+        long, requires = "scale", help_heading = "View",
+        conflicts_with_all = [
+            "standpoint", "look_at", "crs", "north", "azimuth", "altitude", "fov", "size", "exaggeration", "level", "error_px",
+            "method", "wide", "share", "border", "page", "landscape", "hidden", "split", "min_jump", "min_gap", "explain", "adapter",
+        ]
+    )]
+    plan: bool,
+    /// With --plan: so many millimetres of land for one of the page
+    #[arg(long, value_name = "1:N", value_parser = values::scale, requires = "plan", help_heading = "View")]
+    scale: Option<f64>,
 
     /// Factor on every elevation
     #[arg(long, value_name = "X", value_parser = values::exaggeration, allow_hyphen_values = true, default_value = "1", help_heading = "Surface")]
@@ -92,9 +104,9 @@ pub struct DrawArguments {
     border: Border,
 
     #[command(flatten)]
-    page: PageArguments,
+    pub(super) page: PageArguments,
     #[command(flatten)]
-    style: StyleArguments,
+    pub(super) style: StyleArguments,
 
     /// Say at which levels parts of the DEM are drawn, what the frame did without, why, and what that saved
     #[arg(long)]
@@ -102,7 +114,7 @@ pub struct DrawArguments {
     #[command(flatten)]
     device: DeviceArguments,
     #[command(flatten)]
-    cache: CacheArguments,
+    pub(super) cache: CacheArguments,
 }
 
 /// A DEM on a device, and its page as seen from somewhere.
@@ -112,11 +124,21 @@ struct Drawn<'a> {
     page: Page,
 }
 
+/// Its lines, and their drawing on a sheet.
+struct Stroked {
+    lines: Lines,
+    drawing: Drawing,
+    layout: Layout,
+}
+
 /// Draws.
 ///
 /// # Errors
 /// Whatever went wrong; nothing stands under a final name then.
 pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
+    if let Some(scale) = arguments.scale {
+        return plan::run(arguments, scale, talk);
+    }
     let plan = arguments.check()?;
     let (style, layout) = (arguments.style.style()?, arguments.layout()?);
     let started = Instant::now();
@@ -133,13 +155,13 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     let page = renderer.page(&plan, &view.camera, |share| talk.progress("drawing", 0.3 + 0.3 * share))?;
     cache.discard_damaged(surface.dem(), &|message| talk.warn(&told(message)));
     let mut drawn = Drawn { renderer: &mut renderer, view: &view, page };
-    let drawing = arguments.stroked(&drawn, &style, &layout)?;
-    let report = outputs.want_report().then(|| arguments.report(&mut drawn, talk)).transpose()?;
+    let stroked = arguments.stroked(&drawn, &style, layout)?;
+    let report = outputs.want_report().then(|| arguments.report(&mut drawn, &stroked, talk)).transpose()?;
     if arguments.explain || talk.is_verbose() {
         explain(talk, &drawn.page.frame, &surface, report.as_ref())?;
     }
     talk.progress("writing", 0.8);
-    outputs.write(&drawing, layout.px_per_mm, &drawn.page, report.as_ref())?;
+    outputs.write(&stroked.drawing, layout.px_per_mm, Some(&drawn.page), report.as_ref())?;
     surface.dem().check()?;
     talk.progress("writing", 1.0);
     outputs.publish()?;
@@ -250,20 +272,20 @@ impl DrawArguments {
     }
 
     /// The drawing of the page: of contours as sparingly as is asked, or traced from the mask.
-    fn stroked(&self, drawn: &Drawn, style: &Style, layout: &Layout) -> Result<Drawing> {
+    fn stroked(&self, drawn: &Drawn, style: &Style, layout: Layout) -> Result<Stroked> {
         let Page { marks, chains, hidden, .. } = &drawn.page;
         let px_per_mm = layout.sheet.placement([marks.width, marks.height]).px_per_mm;
         let perspective = Perspective::new(&drawn.view.camera, drawn.renderer.near());
         let lines = match drawn.page.frame.plan.has_curves() {
-            true => Lines::sparing(chains, &perspective, &self.style.economy(style, px_per_mm)),
+            true => Lines::sparing(chains, hidden, &perspective, &self.style.economy(style, px_per_mm)),
             false => Lines::of(marks, &perspective, style.tolerance * px_per_mm),
         };
-        let lines = Lines { hidden: hidden.clone(), ..lines };
-        ink::draw(&lines, &layout.sheet, style, self.style.split())
+        let drawing = ink::draw(&lines, &layout.sheet, style, self.style.split())?;
+        Ok(Stroked { lines, drawing, layout })
     }
 
     /// Times more frames and says what was done.
-    fn report(&self, drawn: &mut Drawn, talk: &Talk) -> Result<Report> {
+    fn report(&self, drawn: &mut Drawn, stroked: &Stroked, talk: &Talk) -> Result<Report> {
         talk.progress("timing more frames", 0.6);
         let flat_earth = drawn.flat_earth();
         let Drawn { renderer, view, page } = drawn;
@@ -281,6 +303,9 @@ impl DrawArguments {
             facets: page.frame.facets(&surface),
             inked: page.marks.inked(),
             chains: plan.has_curves().then(|| ChainsReport::of(page)),
+            without_stroke: ink::unstroked(&page.marks, &stroked.lines, &stroked.drawing),
+            page: PageReport::of(&stroked.layout),
+            layers: LayerReport::all(&stroked.drawing),
             covered: page.covered,
             longest_walk: page.longest_walk,
             pieces,

@@ -5,9 +5,12 @@ use std::path::PathBuf;
 use serde::Serialize;
 
 use super::flat_earth::FlatEarth;
+use super::page::Layout;
 use super::view_report::ViewReport;
 use super::words::told;
 use crate::dem::Dem;
+use crate::ink::unstroked::Unstroked;
+use crate::ink::{Drawing, Layer};
 use crate::line::{Chain, Strays};
 use crate::measure::figures::DrawnLevel;
 use crate::plan::left_out::LeftOut;
@@ -23,6 +26,10 @@ pub(super) struct Report {
     pub facets: u64,
     pub inked: usize,
     pub chains: Option<ChainsReport>,
+    /// Parts of the mask that no stroke draws.
+    pub without_stroke: Vec<Unstroked>,
+    pub page: PageReport,
+    pub layers: Vec<LayerReport>,
     pub covered: u64,
     pub longest_walk: u32,
     pub pieces: usize,
@@ -66,6 +73,44 @@ pub(super) struct LeftOutReport {
     pub what: &'static str,
     pub why: String,
     pub saved: Option<String>,
+}
+
+/// The sheet, and how the pixels of the frame lie on it.
+#[derive(Serialize)]
+pub(super) struct PageReport {
+    size_mm: [f64; 2],
+    margin_mm: f64,
+    frame_px_per_mm: f64,
+}
+
+/// What a pen draws.
+#[derive(Serialize)]
+pub(super) struct LayerReport {
+    name: String,
+    pen_mm: f64,
+    strokes: usize,
+}
+
+impl PageReport {
+    pub fn of(layout: &Layout) -> Self {
+        let Layout { sheet, frame, .. } = layout;
+        Self {
+            size_mm: sheet.size.to_array(),
+            margin_mm: sheet.margin,
+            frame_px_per_mm: sheet.placement([frame.width, frame.height]).px_per_mm,
+        }
+    }
+}
+
+impl LayerReport {
+    pub fn all(drawing: &Drawing) -> Vec<Self> {
+        let of = |layer: &Layer| Self {
+            name: layer.name.clone(),
+            pen_mm: layer.pen.width,
+            strokes: layer.strokes.len(),
+        };
+        drawing.layers.iter().map(of).collect()
+    }
 }
 
 impl LeftOutReport {

@@ -15,6 +15,7 @@ pub mod memory;
 pub mod norths;
 pub mod outputs;
 pub mod page;
+mod plan;
 pub mod style;
 pub mod styles;
 pub mod talk;

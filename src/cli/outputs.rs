@@ -127,7 +127,8 @@ impl Outputs {
         self.json.is_some()
     }
 
-    /// Writes the drawing and, where asked, the mask and the report. None has its name yet.
+    /// Writes the drawing, pictures with so many pixels for each millimetre, and, where asked, the mask of a page and the
+    /// report. None has its name yet.
     ///
     /// # Errors
     /// [`Error::Output`] where one cannot be written.
@@ -135,7 +136,7 @@ impl Outputs {
         &mut self,
         drawing: &ink::Drawing,
         px_per_mm: f64,
-        page: &Page,
+        page: Option<&Page>,
         report: Option<&impl Serialize>,
     ) -> Result<()> {
         for (format, file) in &mut self.drawings {
@@ -145,7 +146,7 @@ impl Outputs {
                 Format::Pdf => ink::write_pdf(drawing, out),
             })?;
         }
-        if let Some(mask) = &mut self.mask {
+        if let (Some(mask), Some(page)) = (&mut self.mask, page) {
             let marks = &page.marks;
             mask.write(|out| ink::write_mask([marks.width, marks.height], marks.places(), out))?;
         }

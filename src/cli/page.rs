@@ -9,7 +9,7 @@ use crate::message;
 use crate::plan::pieces::LARGEST_PAGE;
 
 /// Blank on all sides of a page unless told otherwise, mm.
-const MARGIN: f64 = 10.0;
+pub(super) const MARGIN: f64 = 10.0;
 /// Pixels of a picture for each inch of a page unless told otherwise.
 const DPI: f64 = 300.0;
 const MM_PER_INCH: f64 = 25.4;
@@ -32,7 +32,7 @@ pub struct PageArguments {
     #[arg(long, requires = "page")]
     landscape: bool,
     #[arg(
-        long, value_name = "MM", value_parser = values::margin, allow_hyphen_values = true, requires = "page",
+        long, value_name = "MM", value_parser = values::margin, allow_hyphen_values = true,
         help = format!("Blank on all sides of the page, in millimetres [default: {MARGIN}]")
     )]
     margin: Option<f64>,
@@ -55,11 +55,6 @@ pub struct Layout {
 }
 
 impl PageArguments {
-    /// What is given of the page, if anything.
-    pub fn given(&self) -> Option<Setting> {
-        self.page.map(|_| Setting::Page).or(self.dpi.map(|_| Setting::Dpi))
-    }
-
     /// Blank on all sides, mm.
     pub fn margin(&self) -> Option<f64> {
         self.margin
@@ -76,6 +71,10 @@ impl PageArguments {
     /// [`Error::Setting`] where they do not go together, or are too large or too small.
     pub fn layout(&self, size: Option<Size>, otherwise: Size) -> Result<Layout> {
         let Some(page) = self.page else {
+            if self.margin.is_some() {
+                let remedy = message!["add ", Setting::Page.with_value(), " or leave it out"];
+                return Err(Error::setting(Setting::Margin, "goes with a page of millimetres only", remedy));
+            }
             let frame = size.unwrap_or(otherwise);
             let sheet = Sheet::for_frame([frame.width, frame.height]);
             let own = f64::from(frame.width) / Sheet::WIDTH;

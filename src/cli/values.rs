@@ -66,7 +66,10 @@ const MOST_GAP_MM: f64 = 100.0;
 const MOST_DISTANCES: usize = 64;
 
 /// Sides of pages that somebody prints or plots, mm.
-const PAGES_MM: [f64; 2] = [10.0, 5000.0];
+pub const PAGES_MM: [f64; 2] = [10.0, 5000.0];
+
+/// Metres of land for a metre of a plan.
+const SCALES: [f64; 2] = [1.0, 1e9];
 
 /// Pixels an inch that somebody prints.
 const DPI: [f64; 2] = [10.0, 4800.0];
@@ -317,6 +320,13 @@ pub fn page(text: &str) -> Result<DVec2, String> {
 pub fn margin(text: &str) -> Result<f64, String> {
     let margin = number(text.strip_suffix("mm").unwrap_or(text)).ok().filter(|mm| (0.0..=PAGES_MM[1]).contains(mm));
     margin.ok_or_else(|| "want millimetres, 0 or more".into())
+}
+
+/// `1:N`.
+pub fn scale(text: &str) -> Result<f64, String> {
+    let [least, most] = SCALES;
+    let scale = text.strip_prefix("1:").and_then(|n| number(n).ok()).filter(|n| (least..=most).contains(n));
+    scale.ok_or_else(|| format!("want 1:N, N from {least} to {most}, as 1:25000"))
 }
 
 /// Pixels an inch.

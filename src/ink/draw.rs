@@ -18,8 +18,10 @@ use crate::message;
 
 /// Most strokes of a drawing.
 const MOST_STROKES: f64 = 4e6;
-/// A run that is shorter is drawn with the pen of what lies beside it, mm.
-const SHORT: f64 = 1.5;
+/// A part of a line that is shorter is drawn with the pen of what lies beside it, mm.
+const SHORT: f64 = 10.0;
+/// A part too fine for every pen that is shorter is drawn, mm.
+const GAP: f64 = 1.5;
 /// Length of an arm of a registration mark, mm.
 const MARK: f64 = 4.0;
 
@@ -85,7 +87,7 @@ pub fn draw(lines: &Lines, sheet: &Sheet, style: &Style, split: &[f64]) -> Resul
     let mut layers: Vec<Layer> = Vec::new();
     for kind in Kind::ALL {
         let runs = match kind {
-            Kind::Hidden => of_each(lines.hidden.iter(), |chain| inking.even(chain).dashed(style.dashes)),
+            Kind::Hidden => of_each(lines.hidden.iter(), |chain| inking.dashed(chain, &style.dashes)),
             _ => {
                 let shown = lines.chains.iter().zip(&free).filter(|(chain, _)| Kind::of(chain.line()) == kind);
                 let drawn = shown.filter(|(chain, _)| style.dots || chain.points.len() > 1);
@@ -160,35 +162,37 @@ fn by_width(runs: Vec<Named>, pen: Pen, style: &Style) -> Vec<(Option<f64>, Vec<
     let bounds: Vec<f64> = bounds.map(|bound| bound / pen.width).collect();
     let mut layers: Vec<Vec<Named>> = vec![Vec::new(); widths.len()];
     for (id, run) in runs {
-        for (band, mut run) in settled(run.banded(&bounds, |point| point.width)) {
+        for (band, run) in settled(run.banded(&bounds, |point| point.width)) {
             if let Some(pen) = band.checked_sub(1) {
-                run.points.iter_mut().for_each(|point| point.width = 1.0);
-                layers[pen].push((id, run));
+                layers[pen].push((id, run.evened()));
             }
         }
     }
     widths.into_iter().map(Some).zip(layers).collect()
 }
 
-/// Parts of one run without short ones in bands of their own: these go to the longer of their neighbours.
+/// Parts of one run by pens, 0 for none, without short ones between longer ones: these are drawn as the longest beside them.
 fn settled(mut parts: Vec<(usize, Run)>) -> Vec<(usize, Run)> {
-    let is_short = |parts: &[(usize, Run)], i: usize| parts[i].1.length() < SHORT;
-    while let Some(short) = (0..parts.len()).filter(|_| parts.len() > 1).find(|&i| is_short(&parts, i)) {
-        let length = |i: Option<usize>| i.and_then(|i| parts.get(i)).map_or(-1.0, |part| part.1.length());
-        let joins_last = length(short.checked_sub(1)) >= length(Some(short + 1));
-        let first = if joins_last { short - 1 } else { short };
-        let band = parts[if joins_last { short - 1 } else { short + 1 }].0;
-        let (_, next) = parts.remove(first + 1);
-        let points: Vec<Inked> = next.points.into_iter().skip(1).collect();
-        parts[first].0 = band;
-        parts[first].1.points.extend(points);
-        // Neighbours of one band are one part.
-        while let Some(i) = (1..parts.len()).find(|&i| parts[i - 1].0 == parts[i].0) {
-            let (_, next) = parts.remove(i);
-            parts[i - 1].1.points.extend(next.points.into_iter().skip(1));
+    loop {
+        let drawn = |i: usize| parts.get(i).filter(|part| part.0 > 0).map(|part| (part.1.length(), i));
+        let beside = |i: usize| [i.checked_sub(1), Some(i + 1)].into_iter().flatten().filter_map(drawn);
+        let joins = |i: usize| {
+            let (gap, length) = (parts[i].0 == 0, parts[i].1.length());
+            let longest = beside(i).max_by(|a, b| a.0.total_cmp(&b.0))?;
+            let is_short = if gap { length < GAP && beside(i).count() == 2 } else { length < SHORT.min(longest.0) };
+            is_short.then_some((i, parts[longest.1].0))
+        };
+        let Some((short, pen)) = (0..parts.len()).find_map(joins) else { return parts };
+        parts[short].0 = pen;
+        let mut merged: Vec<(usize, Run)> = Vec::with_capacity(parts.len());
+        for (pen, run) in parts {
+            match merged.last_mut().filter(|last| last.0 == pen) {
+                Some((_, last)) => last.points.extend(run.points.into_iter().skip(1)),
+                None => merged.push((pen, run)),
+            }
         }
+        parts = merged;
     }
-    parts
 }
 
 fn stroke(chain: Option<Id>, run: &Run) -> Stroke {

@@ -16,6 +16,7 @@ mod strokes;
 pub mod style;
 pub mod styles;
 pub mod svg;
+pub mod unstroked;
 mod wobble;
 
 pub use colour::Colour;
@@ -26,4 +27,5 @@ pub use pdf::write_pdf;
 pub use png::write_png;
 pub use sheet::{Placement, Sheet};
 pub use style::Style;
+pub use unstroked::unstroked;
 pub use svg::write_svg;

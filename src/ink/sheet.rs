@@ -102,4 +102,9 @@ impl Placement {
     pub fn on_sheet(&self, place: DVec2) -> DVec2 {
         self.centre + (place - self.frame_centre) / self.px_per_mm
     }
+
+    /// The place in the frame of one on the sheet.
+    pub fn in_frame(&self, place: DVec2) -> DVec2 {
+        self.frame_centre + (place - self.centre) * self.px_per_mm
+    }
 }

@@ -12,6 +12,8 @@ use super::wobble::Hand;
 use crate::line::{Chain, ChainPoint, Recession};
 use crate::view::cut::share_within;
 
+/// Least weight of a hidden line that is drawn.
+const SHOWN: f64 = 0.5;
 /// Pixels of the square in which ink crowds.
 const SQUARE: f64 = 81.0;
 
@@ -71,9 +73,17 @@ impl Inking<'_> {
         run.without_blanks()
     }
 
-    /// The run of a chain that is as wide as the pen everywhere.
+    /// The run of a chain, as wide as the pen.
     pub fn even(&self, chain: &Chain) -> Run {
         Run { points: chain.points.iter().map(|point| self.inked(point, 1.0)).collect(), closed: chain.closed }
+    }
+
+    /// The dashes of a hidden chain where economy leaves it, as wide as the pen: what is shorter than a dash says nothing.
+    pub fn dashed(&self, chain: &Chain, dashes: &Dashes) -> Vec<Run> {
+        let points = chain.points.iter().map(|point| self.inked(point, point.weight.into())).collect();
+        let parts = Run { points, closed: chain.closed }.banded(&[SHOWN], |point| point.width);
+        let shown = parts.into_iter().filter(|(band, run)| *band == 1 && run.length() >= dashes.dash);
+        shown.flat_map(|(_, run)| run.evened().dashed(dashes)).collect()
     }
 
     /// What lies inside the margins of a run that a pen so wide draws, as the hand draws it.
@@ -111,6 +121,12 @@ impl Run {
     /// Length of line, mm.
     pub fn length(&self) -> f64 {
         self.steps().map(|[a, b]| a.place.distance(b.place)).sum()
+    }
+
+    /// The same, as wide as the pen everywhere.
+    pub fn evened(mut self) -> Self {
+        self.points.iter_mut().for_each(|point| point.width = 1.0);
+        self
     }
 
     /// Each point with the next, the last of a closed run with the first.
@@ -213,7 +229,7 @@ impl Run {
     }
 
     /// The dashes of a run, the first and the last half a dash long where it is open, all between drawn out or in to fit.
-    pub fn dashed(self, dashes: Dashes) -> Vec<Self> {
+    fn dashed(self, dashes: &Dashes) -> Vec<Self> {
         let length = self.length();
         let count = (length / (dashes.dash + dashes.gap)).round();
         if count < 1.0 {

@@ -24,6 +24,7 @@ mod labels;
 pub mod link;
 pub mod marks;
 pub mod one_pixel;
+mod overhead;
 pub mod overlay;
 pub mod raster;
 pub mod recession;
@@ -41,6 +42,7 @@ pub use economy::{Economy, economised};
 pub use link::link;
 pub use marks::{Mark, Marks};
 pub use one_pixel::one_pixel_wide;
+pub use overhead::overhead;
 pub use overlay::{Cover, project_polyline};
 pub use raster::{InkRaster, Kind, Pixel};
 pub use recession::Recession;
@@ -83,12 +85,14 @@ impl Lines {
         }
     }
 
-    /// The lines of a page from chains of curves that are seen so, drawn as sparingly as `economy` says.
-    pub fn sparing(chains: &[Chain], perspective: &Perspective, economy: &Economy) -> Self {
+    /// The lines of a page from chains of curves that are seen so, drawn as sparingly as `economy` says; hidden ones, behind
+    /// which nothing is known, by their gaps alone.
+    pub fn sparing(chains: &[Chain], hidden: &[Chain], perspective: &Perspective, economy: &Economy) -> Self {
         let chains = economised(chains, economy);
+        let hidden = economised(hidden, &Economy { min_jump: 0.0, ..*economy });
         let depths = chains.iter().flat_map(|chain| &chain.points).map(|point| point.depth);
         let [width, height] = perspective.size().to_array().map(|px| px as u32);
         let recession = Recession::of(depths);
-        Self { width, height, eye: perspective.eye(), chains, hidden: Vec::new(), recession }
+        Self { width, height, eye: perspective.eye(), chains, hidden, recession }
     }
 }

@@ -37,12 +37,12 @@ fn is_ink(marks: &Marks, column: i64, row: i64) -> bool {
 }
 
 /// A pixel and its 8 neighbours.
-fn around([x, y]: [i64; 2]) -> impl Iterator<Item = [i64; 2]> {
+pub fn around([x, y]: [i64; 2]) -> impl Iterator<Item = [i64; 2]> {
     (y - 1..=y + 1).flat_map(move |row| (x - 1..=x + 1).map(move |column| [column, row]))
 }
 
 /// 8-connected sets of pixels.
-fn connected(pixels: &[[i64; 2]]) -> Vec<Vec<[i64; 2]>> {
+pub fn connected(pixels: &[[i64; 2]]) -> Vec<Vec<[i64; 2]>> {
     let mut left: FxHashSet<[i64; 2]> = pixels.iter().copied().collect();
     let mut sets = Vec::new();
     for first in pixels {

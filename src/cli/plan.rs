@@ -1,0 +1,101 @@
+//! `hachure draw --plan`: the land from straight above, true to scale.
+
+use std::time::Instant;
+
+use glam::DVec2;
+use serde::Serialize;
+
+use super::draw::DrawArguments;
+use super::draw_report::DemReport;
+use super::page::{Layout, MARGIN};
+use super::talk::Talk;
+use super::terrain::warn_of_survey;
+use super::values::{PAGES_MM, Size};
+use crate::dem::Dem;
+use crate::error::{Error, Result, Setting};
+use crate::files::Taken;
+use crate::ink::{self, Sheet};
+use crate::line::overhead;
+use crate::message;
+
+/// Millimetres of a metre.
+const MM: f64 = 1000.0;
+
+/// `--json` of a plan.
+#[derive(Serialize)]
+struct PlanReport {
+    version: &'static str,
+    dem: DemReport,
+    scale: f64,
+    page_mm: [f64; 2],
+    /// West, south, east and north of the page less its margins, metres of the DEM's CRS.
+    area_m: [f64; 4],
+    lines: usize,
+}
+
+/// Draws the plan: no GPU, no view.
+///
+/// # Errors
+/// Whatever went wrong; nothing stands under a final name then.
+pub fn run(arguments: &DrawArguments, scale: f64, talk: &Talk) -> Result<()> {
+    arguments.outputs.check()?;
+    if arguments.outputs.want_mask() {
+        let what = "a mask is of what an eye sees, and a plan has none";
+        return Err(Error::setting(Setting::Mask, what, message!["leave out ", Setting::Mask, " or ", Setting::Plan]));
+    }
+    let style = arguments.style.style()?;
+    let started = Instant::now();
+    let cache = arguments.cache.cache();
+    let reading = arguments.terrain.open(&arguments.terrain.dems, 1.0, cache)?;
+    let mut outputs = arguments.outputs.open(Taken::inputs(reading.files()))?;
+    let dem = arguments.terrain.read(reading, talk)?;
+    warn_of_survey(&dem, talk)?;
+    let layout = layout(&dem, scale, arguments)?;
+    let lines = overhead(&dem, Sheet::FRAME_PX_PER_MM * MM / scale)?;
+    let drawing = ink::draw(&lines, &layout.sheet, &style, &[])?;
+    let report = PlanReport {
+        version: env!("CARGO_PKG_VERSION"),
+        dem: DemReport::of(&arguments.terrain.dems, &dem),
+        scale,
+        page_mm: layout.sheet.size.to_array(),
+        area_m: dem.extent(),
+        lines: lines.chains.len(),
+    };
+    outputs.write(&drawing, layout.px_per_mm, None, Some(&report))?;
+    dem.check()?;
+    outputs.publish()?;
+    talk.say(&format!(
+        "{}: {} lines at 1:{scale}, {:.0} x {:.0} mm, {:.2} s",
+        arguments.outputs.drawing(),
+        lines.chains.len(),
+        layout.sheet.size.x,
+        layout.sheet.size.y,
+        started.elapsed().as_secs_f64()
+    ))
+}
+
+/// The page that is the DEM at that scale, with margins.
+fn layout(dem: &Dem, scale: f64, arguments: &DrawArguments) -> Result<Layout> {
+    let ([west, south, east, north], margin) = (dem.extent(), arguments.page.margin().unwrap_or(MARGIN));
+    let area = DVec2::new(east - west, north - south) * (MM / scale);
+    let sheet = Sheet { size: area + 2.0 * margin, margin };
+    let [least, most] = PAGES_MM;
+    let fits = |side: f64| side / (most - 2.0 * margin) * scale;
+    if sheet.size.max_element() > most {
+        let what = format!("the DEM is {:.0} x {:.0} mm at 1:{scale}, over {most}", area.x, area.y);
+        let least = format!("1:{:.0}", fits(area.max_element()).ceil());
+        return Err(Error::setting(Setting::Scale, what, message!["use ", Setting::Scale.at(least), " or a ", Setting::Crop]));
+    }
+    if area.min_element() < least {
+        let what = format!("the DEM is {:.2} x {:.2} mm at 1:{scale}, under {least}", area.x, area.y);
+        let most = format!("1:{:.0}", (area.min_element() / least * scale).floor().max(1.0));
+        return Err(Error::setting(Setting::Scale, what, message!["use ", Setting::Scale.at(most)]));
+    }
+    let frame = sheet.frame(Sheet::FRAME_PX_PER_MM);
+    let layout =
+        Layout { sheet, frame: Size { width: frame[0], height: frame[1] }, px_per_mm: arguments.page.px_per_mm() };
+    if arguments.outputs.want_picture() {
+        layout.check_picture()?;
+    }
+    Ok(layout)
+}

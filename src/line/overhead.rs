@@ -1,0 +1,108 @@
+//! The lines of a DEM as seen from straight above: a plan, orthographic, true to scale.
+//!
+//! So far these are its rims: the border of the DEM and of its voids. Method: rim edges are laid so that the land lies on
+//! their left, and followed from end to end; where four of them meet at a sample, the sharpest turn to the left keeps land
+//! that touches by a corner apart. Heights play no part, nor does exaggeration. Cost: some look-ups for each rim edge.
+
+use glam::{DVec2, DVec3};
+use rustc_hash::FxHashMap;
+
+use super::simplify::needed;
+use super::{Chain, ChainPoint, Line, Lines, Recession};
+use crate::dem::Dem;
+use crate::error::Result;
+use crate::surface::rim::{RimEdge, rim};
+
+/// Points that lie within this of the rest are left out, px: those between two corners.
+const STRAIGHT: f64 = 1e-6;
+
+/// A sample, by column and row.
+type Sample = [u32; 2];
+
+/// The plan of a DEM with so many pixels for each metre.
+///
+/// # Errors
+/// As [`Dem::survey`].
+pub fn overhead(dem: &Dem, px_per_metre: f64) -> Result<Lines> {
+    let ([west, south, east, north], cell) = (dem.extent(), dem.cell());
+    let size = (DVec2::new(east - west, north - south) * px_per_metre).ceil();
+    let point = |[column, row]: Sample| {
+        let from_corner = DVec2::new(column.into(), row.into()) * cell;
+        let world = DVec3::new(west + from_corner.x, north - from_corner.y, 0.0);
+        let (place, line) = (from_corner * px_per_metre, Line::Border);
+        ChainPoint { place, line, depth: 1.0, behind: 0.0, world, crowd: 0, weight: 1.0 }
+    };
+    let chain = |ring: Vec<Sample>| {
+        let mut points: Vec<ChainPoint> = ring.iter().map(|sample| point(*sample)).collect();
+        points.push(points[0]);
+        let places: Vec<DVec3> = points.iter().map(|point| point.place.extend(0.0)).collect();
+        let kept = needed(&places, STRAIGHT);
+        Chain { id: None, points: kept[..kept.len() - 1].iter().map(|i| points[*i]).collect(), closed: true }
+    };
+    let middle = DVec2::new(west + east, south + north) / 2.0;
+    Ok(Lines {
+        width: size.x as u32,
+        height: size.y as u32,
+        eye: middle.extend(f64::INFINITY),
+        chains: rings(&rim(dem)?).into_iter().map(chain).collect(),
+        hidden: Vec::new(),
+        recession: Recession::of(std::iter::once(1.0)),
+    })
+}
+
+/// Rim edges as rings of samples, land on the left as seen from above, in the order of their first samples.
+fn rings(rim: &[RimEdge]) -> Vec<Vec<Sample>> {
+    let mut edges: Vec<[Sample; 2]> = rim.iter().map(directed).collect();
+    edges.sort_unstable_by_key(|[[column, row], to]| (*row, *column, *to));
+    let mut leaving: FxHashMap<Sample, Vec<usize>> = FxHashMap::default();
+    for (i, [from, _]) in edges.iter().enumerate() {
+        leaving.entry(*from).or_default().push(i);
+    }
+    // Counted clockwise from the way back: the land to the left lies between.
+    let turn = |way: [Sample; 2], next: &usize| {
+        let [back, on] = [clockwise(way[1], way[0]), clockwise(edges[*next][0], edges[*next][1])];
+        (on + 7 - back) % 8
+    };
+    let next = |i: usize| leaving.get(&edges[i][1])?.iter().copied().min_by_key(|next| turn(edges[i], next));
+    let mut is_done = vec![false; edges.len()];
+    let mut rings = Vec::new();
+    for first in 0..edges.len() {
+        let mut at = Some(first);
+        let mut ring = Vec::new();
+        while let Some(i) = at.filter(|i| !is_done[*i]) {
+            is_done[i] = true;
+            ring.push(edges[i][0]);
+            at = next(i);
+        }
+        if !ring.is_empty() {
+            rings.push(ring);
+        }
+    }
+    rings
+}
+
+/// An edge from its start to its end, the patch that has it on its left.
+fn directed(edge: &RimEdge) -> [Sample; 2] {
+    let [column, row] = edge.sample;
+    // A patch goes round NW, SW, SE or NW, SE, NE.
+    let (end, leads_back) = match (edge.direction, edge.half) {
+        (0, half) => ([column + 1, row], half == 1),
+        (1, half) => ([column, row + 1], half == 1),
+        (_, half) => ([column + 1, row + 1], half == 0),
+    };
+    if leads_back { [end, edge.sample] } else { [edge.sample, end] }
+}
+
+/// The direction from a sample to one beside it: 0 north, 1 north-east, 2 east … 7 north-west.
+fn clockwise(from: Sample, to: Sample) -> usize {
+    match [0, 1].map(|axis| i64::from(to[axis]) - i64::from(from[axis])) {
+        [0, -1] => 0,
+        [1, -1] => 1,
+        [1, 0] => 2,
+        [1, 1] => 3,
+        [0, 1] => 4,
+        [-1, 1] => 5,
+        [-1, 0] => 6,
+        _ => 7,
+    }
+}
