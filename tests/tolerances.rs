@@ -430,6 +430,11 @@ pub const TURNING_SHARE: f64 = 0.002;
 /// Example: f32 shares of a facet of 10 px are off by 1e-6 px; vertices of two chunks are the same.
 pub const JOINT_PX: f64 = 1e-3;
 
+/// Largest distance of a hidden line from where the same line is seen without the land before it, px.
+///
+/// Example: both are found on lattices that deviate by 0.15 px where chunks differ; hidden 0.3 px off would be another line.
+pub const HIDDEN_PX: f64 = 0.1;
+
 /// How far a chain may end from the nearer line it ends on, px: rounding of places on the page in f64.
 ///
 /// Example: at x = 2000 a place is rounded to 2.3e-13; an intersection loses some digits more.

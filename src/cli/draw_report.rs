@@ -104,11 +104,8 @@ impl PageReport {
 
 impl LayerReport {
     pub fn all(drawing: &Drawing) -> Vec<Self> {
-        let of = |layer: &Layer| Self {
-            name: layer.name.clone(),
-            pen_mm: layer.pen.width,
-            strokes: layer.strokes.len(),
-        };
+        let of =
+            |layer: &Layer| Self { name: layer.name.clone(), pen_mm: layer.pen.width, strokes: layer.strokes.len() };
         drawing.layers.iter().map(of).collect()
     }
 }

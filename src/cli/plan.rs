@@ -84,7 +84,11 @@ fn layout(dem: &Dem, scale: f64, arguments: &DrawArguments) -> Result<Layout> {
     if sheet.size.max_element() > most {
         let what = format!("the DEM is {:.0} x {:.0} mm at 1:{scale}, over {most}", area.x, area.y);
         let least = format!("1:{:.0}", fits(area.max_element()).ceil());
-        return Err(Error::setting(Setting::Scale, what, message!["use ", Setting::Scale.at(least), " or a ", Setting::Crop]));
+        return Err(Error::setting(
+            Setting::Scale,
+            what,
+            message!["use ", Setting::Scale.at(least), " or a ", Setting::Crop],
+        ));
     }
     if area.min_element() < least {
         let what = format!("the DEM is {:.2} x {:.2} mm at 1:{scale}, under {least}", area.x, area.y);

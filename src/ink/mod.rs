@@ -27,5 +27,5 @@ pub use pdf::write_pdf;
 pub use png::write_png;
 pub use sheet::{Placement, Sheet};
 pub use style::Style;
-pub use unstroked::unstroked;
 pub use svg::write_svg;
+pub use unstroked::unstroked;

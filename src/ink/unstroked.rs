@@ -52,7 +52,8 @@ pub fn unstroked(mask: &Marks, lines: &Lines, drawing: &Drawing) -> Vec<Unstroke
     let ink: Vec<[i64; 2]> = mask.places().map(|at| at.map(i64::from)).collect();
     let edge = |[x, y]: &[i64; 2]| *x <= 1 || *y <= 1 || *x >= i64::from(size[0]) - 2 || *y >= i64::from(size[1]) - 2;
     let of_set = |set: Vec<[i64; 2]>| {
-        let meets = |lines: &FxHashSet<[i64; 2]>| set.iter().any(|at| around(*at).any(|beside| lines.contains(&beside)));
+        let meets =
+            |lines: &FxHashSet<[i64; 2]>| set.iter().any(|at| around(*at).any(|beside| lines.contains(&beside)));
         if meets(&stroked) {
             return None;
         }
