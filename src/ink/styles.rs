@@ -142,6 +142,11 @@ fn mistake(text: &str, path: &Path, message: &str, span: Option<Range<usize>>) -
     });
     let message = message.trim().replace('\n', " ");
     let (what, expected) = message.split_once(", expected ").unwrap_or((&message, ""));
+    let expected = match expected {
+        "f64" => "a number",
+        "u32" => "a whole number, 0 to 4294967295",
+        other => other,
+    };
     let unknown = what.starts_with("unknown ").then(|| what.split('`').nth(1)).flatten();
     let known: Vec<&str> = expected.split('`').skip(1).step_by(2).collect();
     let remedy = match (unknown, &known[..]) {
