@@ -78,6 +78,7 @@ mod tolerances;
 mod trial;
 mod truth;
 mod validity;
+mod vectors;
 mod vertices;
 mod viewpoints;
 mod visible;

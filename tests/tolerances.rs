@@ -464,3 +464,44 @@ pub const FAR_STRAYS: f64 = 0.04;
 ///
 /// Example: of 560 px of skyline at most 5 have no ink within a pixel; it was .63 and less.
 pub const SPIRE: f64 = 0.99;
+
+/// How far from the border of what a stroke covers its outline may be wrong, mm.
+///
+/// Example: the middle of a chord of an arc lies .004 mm inside it.
+pub const OUTLINE_MM: f64 = 0.005;
+
+/// How far a length of 100 mm may be off in a picture, mm.
+///
+/// Example: at 4 px/mm each end of a bar is a pixel of 64 shades or more: .004 mm.
+pub const LENGTH_MM: f64 = 0.1;
+
+/// Side of the blocks in which pictures of two rasterisers are compared, px.
+pub const STRANGER_BLOCK_PX: usize = 16;
+
+/// How far the mean of a block may be off in a channel, of 255, where resvg draws.
+///
+/// Example: a line of 2 px through a block of 16 is 32 of 255 on average; drawn a fourteenth wider it is 2.3 off.
+pub const RESVG_DARKNESS: f64 = 3.0;
+
+/// The same where poppler draws, which makes pixels that are covered in part lighter than their share.
+///
+/// Example: of such a line three pixels in four are black in part; where each is a tenth lighter, the block is 2.4 off.
+pub const POPPLER_DARKNESS: f64 = 7.0;
+
+/// Darkness of a pixel that must be answered by another picture within a pixel, of 255.
+pub const DARK: u8 = 96;
+
+/// Darkness that answers.
+///
+/// Example: a line of one pixel of black that lies half and half in two columns is 128 there, or 255 in one of them.
+pub const NEARLY_DARK: u8 = 32;
+
+/// Longest time to write a million short strokes as SVG, s: three times what two idle cores should take at most.
+///
+/// Example: 1.2 s on two cores.
+pub const SVG_SECONDS: f64 = 9.0;
+
+/// Most memory that takes beyond the drawing, bytes.
+///
+/// Example: two pieces of 1 MB a core, and what the allocator keeps: some 10 MB on two cores.
+pub const SVG_BYTES: u64 = 64 << 20;

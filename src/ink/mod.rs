@@ -8,6 +8,8 @@ mod colour;
 mod draw;
 pub mod drawing;
 pub mod mask;
+pub mod outline;
+mod paths;
 pub mod pdf;
 pub mod plot;
 pub mod png;

@@ -149,7 +149,7 @@ fn stroke_segments(stroke: &Stroke, half: f64, px_per_mm: f64) -> Vec<Segment> {
     let in_px = |point: &StrokePoint| StrokePoint { place: point.place * px_per_mm, ..*point };
     let mut points: Vec<StrokePoint> = stroke.points.iter().map(in_px).collect();
     if stroke.closed {
-        points.extend(stroke.points.first().copied());
+        points.extend(stroke.points.first().map(in_px));
     }
     points.dedup_by(|a, b| a.place == b.place);
     if let [dot] = points[..] {

@@ -1,0 +1,8 @@
+//! Drawings as SVG and PDF, judged by strangers: resvg, poppler, GDAL and an XML parser.
+
+mod files;
+mod many;
+mod outlines;
+mod pictures;
+mod samples;
+mod strangers;
