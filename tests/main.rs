@@ -50,6 +50,7 @@ mod open_hills;
 mod overwritten;
 mod page_curves;
 mod pieces;
+mod plots;
 mod pool;
 mod prepared;
 mod pyramids;

@@ -134,7 +134,7 @@ impl Tour {
 
     /// The changes that bring one end beside another that is nearer than what it is joined to now.
     fn gains(&self, end: End, beside: End) -> Vec<Gain> {
-        if self.way(end, beside) >= self.way(end, self.joined(end)) {
+        if beside == end || self.way(end, beside) >= self.way(end, self.joined(end)) {
             return Vec::new();
         }
         let counts = 1..=SHIFTED;

@@ -3,8 +3,7 @@
 //! Plotters stutter over segments of some micrometres, and their pens leave nothing where they only touch the paper. Points
 //! go that are nearer than .02 mm to the last one kept; where that would crowd the end of a stroke, what lies before it is
 //! thinned by the rule of Douglas and Peucker (1973), each of whose points is as far as its tolerance from both neighbours.
-//! So a line moves by .02 mm at most, and ends stay. A stroke shorter than .05 mm becomes a straight one of that length about
-//! its middle.
+//! So a line moves by .02 mm at most, and ends stay. A stroke shorter than .05 mm is drawn out to that at both ends.
 //!
 //! Cost: linear, but for what lies within .02 mm of an end.
 
@@ -70,14 +69,29 @@ fn distance(place: DVec2, [a, b]: [DVec2; 2]) -> f64 {
     place.distance(a.lerp(b, if t.is_nan() { 0.0 } else { t.clamp(0.0, 1.0) }))
 }
 
-/// The stroke, long enough to leave ink. It may stand over a margin by half that length.
-pub fn lengthened(stroke: Stroke) -> Stroke {
-    if segments(&stroke).map(|[a, b]| a.distance(b)).sum::<f64>() >= STROKE {
-        return stroke;
+/// Way along a stroke, mm.
+fn length(stroke: &Stroke) -> f64 {
+    segments(stroke).map(|[a, b]| a.distance(b)).sum()
+}
+
+/// Whether a stroke is long enough as it is.
+pub fn leaves_ink(stroke: &Stroke) -> bool {
+    length(stroke) >= STROKE
+}
+
+/// A thinned stroke that was shorter, drawn out at both ends to the least length; a dot, to the left and to the right. It may
+/// stand over a margin by half of that.
+pub fn lengthened(mut stroke: Stroke) -> Stroke {
+    let more = (STROKE - length(&stroke)) / 2.0;
+    if let [dot] = stroke.points[..] {
+        stroke.points.push(dot);
     }
-    let [first, last] = [stroke.points[0], stroke.points[stroke.points.len() - 1]];
-    let half = (last.place - first.place).try_normalize().unwrap_or(DVec2::X) * STROKE / 2.0;
-    let middle = first.place.midpoint(last.place);
-    let points = [middle - half, middle + half].map(|place| StrokePoint { place, ..first }).to_vec();
-    Stroke { points, closed: false, ..stroke }
+    let outward = |end: &StrokePoint, inner: &StrokePoint| (end.place - inner.place).try_normalize();
+    if let [first, second, ..] = &mut stroke.points[..] {
+        first.place += more * outward(first, second).unwrap_or(DVec2::NEG_X);
+    }
+    if let [.., inner, last] = &mut stroke.points[..] {
+        last.place += more * outward(last, inner).unwrap_or(DVec2::X);
+    }
+    stroke
 }

@@ -31,8 +31,9 @@ const HOME: DVec2 = DVec2::ZERO;
 pub fn planned(strokes: Vec<Stroke>) -> Vec<Stroke> {
     let merged = merged::merged(once::once(strokes));
     let thinned = merged.into_iter().map(long_enough::thinned).collect();
-    // What differed by less than a short segment may be the same now.
-    let whole = once::once(thinned).into_iter().map(long_enough::lengthened).collect();
+    // What differed by less than a short segment may be the same now, and what grows may grow onto something.
+    let (long, short): (Vec<_>, Vec<_>) = once::once(thinned).into_iter().partition(long_enough::leaves_ink);
+    let whole = once::once(long.into_iter().chain(short.into_iter().map(long_enough::lengthened)).collect());
     order::ordered(whole, HOME)
 }
 
