@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use glam::{DVec2, DVec3};
 use hachure::error::Error;
 use hachure::files::Output;
+use hachure::ink::plot::Journey;
 use hachure::ink::style::Weight;
 use hachure::ink::{Colour, Drawing, Form, Layer, Pen, Sheet, Stroke, StrokePoint, Style, draw, write_png};
 use hachure::line::{
@@ -154,7 +155,7 @@ fn jumps_thicken_lines() {
 /// The page of one layer in black on white, gray values by row and column.
 fn page(width: u32, height: u32, pen: f64, strokes: Vec<Stroke>) -> image::GrayImage {
     let pen = Pen { width: pen, colour: Colour([0; 3]), opacity: 1.0 };
-    let layers = vec![Layer { name: "1 ink".into(), pen, form: Form::Outlines, strokes }];
+    let layers = vec![Layer { name: "1 ink".into(), pen, form: Form::Outlines, found: Journey::default(), strokes }];
     let sheet = Sheet { size: DVec2::new(width.into(), height.into()), margin: 0.0 };
     let mut file = Vec::new();
     write_png(&Drawing { sheet, paper: Colour([255; 3]), layers }, 1.0, &mut file).unwrap();

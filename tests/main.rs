@@ -52,6 +52,7 @@ mod overhead;
 mod overwritten;
 mod page_curves;
 mod pieces;
+mod plots;
 mod pool;
 mod prepared;
 mod pyramids;

@@ -206,9 +206,10 @@ fn layer(name: String, pen: Pen, mut strokes: Vec<Stroke>, sheet: &Sheet, style:
         strokes.extend(marks(sheet, pen.width));
     }
     let is_even = strokes.iter().flat_map(|stroke| &stroke.points).all(|point| point.width == 1.0);
+    let found = plot::Journey::through(&strokes);
     match is_even {
-        true => Layer { name, pen, form: Form::CentreLines, strokes: plot::planned(strokes) },
-        false => Layer { name, pen, form: Form::Outlines, strokes },
+        true => Layer { name, pen, form: Form::CentreLines, found, strokes: plot::planned(strokes) },
+        false => Layer { name, pen, form: Form::Outlines, found, strokes },
     }
 }
 

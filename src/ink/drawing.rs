@@ -4,6 +4,7 @@ use glam::DVec2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::plot::Journey;
 use super::style::{SHARE, WIDTH, share, width};
 use super::{Colour, Sheet};
 use crate::line::Id;
@@ -44,6 +45,8 @@ pub struct Layer {
     pub pen: Pen,
     /// How strokes are written.
     pub form: Form,
+    /// What a pen would have done with its lines in the order in which they were found.
+    pub found: Journey,
     /// In the order of plotting, the same in every run.
     pub strokes: Vec<Stroke>,
 }
