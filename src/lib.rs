@@ -42,7 +42,7 @@
 //! | page | plan and camera | [`Page`](render::Page): ink and visible chains, frame and read-back for each piece of a page of any size | [`Renderer::page`](render::Renderer::page) |
 //! | line | the page | [`Lines`](line::Lines): chains on the page and in the world, with weights; or traced from the ink | [`Lines::sparing`](line::Lines::sparing), [`Lines::of`](line::Lines::of), CPU |
 //! | ink | the lines | [`Drawing`](ink::Drawing): layers of strokes | [`ink::draw`], CPU |
-//! | write | the drawing | a PNG | [`ink::write_png`] |
+//! | write | the drawing | PNG, SVG, PDF | [`ink::write_png`], [`ink::write_svg`], [`ink::write_pdf`] |
 //! | truth | surface and camera | [`Truth`](truth::Truth): where the lines really are | [`Terrain::truth`](truth::Terrain::truth), CPU |
 //! | judge | ink and truth | [`Scores`](truth::metrics::Scores): how far apart they are | [`Judge`](truth::metrics::Judge) |
 //! | compare | methods and levels | [`Results`](report::Results): errors and times | [`Comparison`](measure::Comparison) |

@@ -18,7 +18,7 @@ use super::values::{self, LevelChoice, Size};
 use super::view_report::ViewReport;
 use super::viewpoint::{SIZE, View, ViewArguments};
 use super::words::told;
-use super::{blank, cells, choices, plan};
+use super::{blank, cells, choices, journey, plan};
 use crate::cache::Cache;
 use crate::error::{Error, Result, Setting};
 use crate::files::Taken;
@@ -126,6 +126,7 @@ struct Drawn<'a> {
 
 /// Its lines, and their drawing on a sheet.
 struct Stroked {
+    style: Style,
     lines: Lines,
     drawing: Drawing,
     layout: Layout,
@@ -155,7 +156,7 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     let page = renderer.page(&plan, &view.camera, |share| talk.progress("drawing", 0.3 + 0.3 * share))?;
     cache.discard_damaged(surface.dem(), &|message| talk.warn(&told(message)));
     let mut drawn = Drawn { renderer: &mut renderer, view: &view, page };
-    let stroked = arguments.stroked(&drawn, &style, layout)?;
+    let stroked = arguments.stroked(&drawn, style, layout)?;
     let report = outputs.want_report().then(|| arguments.report(&mut drawn, &stroked, talk)).transpose()?;
     if arguments.explain || talk.is_verbose() {
         explain(talk, &drawn.page.frame, &surface, report.as_ref())?;
@@ -165,6 +166,7 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     surface.dem().check()?;
     talk.progress("writing", 1.0);
     outputs.publish()?;
+    journey::tell(&stroked.drawing, &stroked.style.plot, talk)?;
     arguments.tell(&drawn, started, talk)?;
     let Drawn { page, .. } = drawn;
     blank::warn(&mut renderer, &view, arguments.level, &page, talk);
@@ -272,16 +274,16 @@ impl DrawArguments {
     }
 
     /// The drawing of the page: of contours as sparingly as is asked, or traced from the mask.
-    fn stroked(&self, drawn: &Drawn, style: &Style, layout: Layout) -> Result<Stroked> {
+    fn stroked(&self, drawn: &Drawn, style: Style, layout: Layout) -> Result<Stroked> {
         let Page { marks, chains, hidden, .. } = &drawn.page;
         let px_per_mm = layout.sheet.placement([marks.width, marks.height]).px_per_mm;
         let perspective = Perspective::new(&drawn.view.camera, drawn.renderer.near());
         let lines = match drawn.page.frame.plan.has_curves() {
-            true => Lines::sparing(chains, hidden, &perspective, &self.style.economy(style, px_per_mm)),
+            true => Lines::sparing(chains, hidden, &perspective, &self.style.economy(&style, px_per_mm)),
             false => Lines::of(marks, &perspective, style.tolerance * px_per_mm),
         };
-        let drawing = ink::draw(&lines, &layout.sheet, style, self.style.split())?;
-        Ok(Stroked { lines, drawing, layout })
+        let drawing = ink::draw(&lines, &layout.sheet, &style, self.style.split())?;
+        Ok(Stroked { style, lines, drawing, layout })
     }
 
     /// Times more frames and says what was done.
@@ -305,7 +307,7 @@ impl DrawArguments {
             chains: plan.has_curves().then(|| ChainsReport::of(page)),
             without_stroke: ink::unstroked(&page.marks, &stroked.lines, &stroked.drawing),
             page: PageReport::of(&stroked.layout),
-            layers: LayerReport::all(&stroked.drawing),
+            layers: LayerReport::all(&stroked.drawing, &stroked.style.plot),
             covered: page.covered,
             longest_walk: page.longest_walk,
             pieces,

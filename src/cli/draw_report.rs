@@ -9,8 +9,10 @@ use super::page::Layout;
 use super::view_report::ViewReport;
 use super::words::told;
 use crate::dem::Dem;
+use crate::ink::plot::Journey;
+use crate::ink::style::Plot;
 use crate::ink::unstroked::Unstroked;
-use crate::ink::{Drawing, Layer};
+use crate::ink::{Drawing, Form, Layer};
 use crate::line::{Chain, Strays};
 use crate::measure::figures::DrawnLevel;
 use crate::plan::left_out::LeftOut;
@@ -89,6 +91,18 @@ pub(super) struct LayerReport {
     name: String,
     pen_mm: f64,
     strokes: usize,
+    /// Of a plotter's pen, which follows the lines of layers of one width; else nothing.
+    plot: Option<PlotReport>,
+}
+
+/// What a plotter's pen does for a layer.
+#[derive(Serialize)]
+struct PlotReport {
+    drawn_mm: f64,
+    travel_mm: f64,
+    /// In the order in which lines were found.
+    travel_found_mm: f64,
+    seconds: f64,
 }
 
 impl PageReport {
@@ -103,9 +117,23 @@ impl PageReport {
 }
 
 impl LayerReport {
-    pub fn all(drawing: &Drawing) -> Vec<Self> {
-        let of =
-            |layer: &Layer| Self { name: layer.name.clone(), pen_mm: layer.pen.width, strokes: layer.strokes.len() };
+    /// Of each layer, drawn by such a plotter.
+    pub fn all(drawing: &Drawing, plotter: &Plot) -> Vec<Self> {
+        let plot = |layer: &Layer| {
+            let journey = Journey::through(&layer.strokes);
+            PlotReport {
+                drawn_mm: journey.drawn,
+                travel_mm: journey.travel,
+                travel_found_mm: layer.found.travel,
+                seconds: journey.seconds(plotter),
+            }
+        };
+        let of = |layer: &Layer| Self {
+            name: layer.name.clone(),
+            pen_mm: layer.pen.width,
+            strokes: layer.strokes.len(),
+            plot: (layer.form == Form::CentreLines).then(|| plot(layer)),
+        };
         drawing.layers.iter().map(of).collect()
     }
 }

@@ -11,6 +11,7 @@ mod draw_report;
 pub mod flat_earth;
 pub mod generate;
 pub mod info;
+pub mod journey;
 pub mod memory;
 pub mod norths;
 pub mod outputs;

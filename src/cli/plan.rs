@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use super::draw::DrawArguments;
 use super::draw_report::DemReport;
+use super::journey;
 use super::page::{Layout, MARGIN};
 use super::talk::Talk;
 use super::terrain::warn_of_survey;
@@ -64,6 +65,7 @@ pub fn run(arguments: &DrawArguments, scale: f64, talk: &Talk) -> Result<()> {
     outputs.write(&drawing, layout.px_per_mm, None, Some(&report))?;
     dem.check()?;
     outputs.publish()?;
+    journey::tell(&drawing, &style.plot, talk)?;
     talk.say(&format!(
         "{}: {} lines at 1:{scale}, {:.0} x {:.0} mm, {:.2} s",
         arguments.outputs.drawing(),

@@ -1,7 +1,7 @@
 //! Strokes as the paths of a file: their corners in whole micrometres, the digits of those, and pieces of layers that are
 //! written one after the other.
 //!
-//! Cost: some 10 ns a number; memory for a piece a core.
+//! Cost: some 10 ns a number; memory for a piece of 1 MB a core and what is made of it.
 
 use glam::DVec2;
 use rayon::prelude::*;

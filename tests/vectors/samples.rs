@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use glam::{DVec2, dvec2};
+use hachure::ink::plot::Journey;
 use hachure::ink::{Colour, Drawing, Form, Layer, Pen, Sheet, Stroke, StrokePoint};
 use hachure::line::Id;
 
@@ -56,7 +57,7 @@ pub fn dot(place: DVec2) -> Stroke {
 
 pub fn layer(name: &str, width: f64, colour: [u8; 3], opacity: f64, strokes: Vec<Stroke>) -> Layer {
     let pen = Pen { width, colour: Colour(colour), opacity };
-    Layer { name: name.into(), pen, form: Form::Outlines, strokes }
+    Layer { name: name.into(), pen, form: Form::Outlines, found: Journey::default(), strokes }
 }
 
 pub fn centre_lines(layer: Layer) -> Layer {

@@ -1,0 +1,44 @@
+//! What is said of a plot: how far its pens go, and how long that takes.
+
+use super::talk::Talk;
+use crate::error::Result;
+use crate::ink::plot::Journey;
+use crate::ink::style::Plot;
+use crate::ink::{Drawing, Form};
+
+/// Says what the pens of a plotter will do, where all layers are lines for pens.
+///
+/// # Errors
+/// As [`Talk::say`].
+pub fn tell(drawing: &Drawing, plotter: &Plot, talk: &Talk) -> Result<()> {
+    let layers = &drawing.layers;
+    if layers.is_empty() || layers.iter().any(|layer| layer.form == Form::Outlines) {
+        return Ok(());
+    }
+    let journey: Journey = layers.iter().map(|layer| Journey::through(&layer.strokes)).sum();
+    let found: Journey = layers.iter().map(|layer| layer.found).sum();
+    talk.say(&format!(
+        "plot: {} with the pen down, {} up ({} as found), {} strokes in {} layers, {} at {} mm/s",
+        metres(journey.drawn),
+        metres(journey.travel),
+        metres(found.travel),
+        journey.strokes,
+        layers.len(),
+        duration(journey.seconds(plotter)),
+        plotter.speed
+    ))
+}
+
+fn metres(mm: f64) -> String {
+    format!("{:.2} m", mm / 1000.0)
+}
+
+fn duration(seconds: f64) -> String {
+    let whole = seconds.round() as u64;
+    let (hours, minutes, seconds) = (whole / 3600, whole / 60 % 60, whole % 60);
+    match (hours, minutes) {
+        (0, 0) => format!("{seconds} s"),
+        (0, _) => format!("{minutes} min {seconds} s"),
+        _ => format!("{hours} h {minutes} min"),
+    }
+}
