@@ -1,5 +1,5 @@
-# Sourced by tests/run.sh behind examples/setup.sh: a browser, in which the tests look at a report, and GDAL's tools, which
-# errors name as remedies and the tests run.
+# Sourced by tests/run.sh behind examples/setup.sh: a browser, in which the tests look at a report, GDAL's tools, which
+# errors name as remedies and the tests run, and vpype, which judges the order of a plot.
 browse() {
     for browser in chromium chromium-browser google-chrome; do
         command -v "$browser" >/dev/null 2>&1 && return 0
@@ -14,5 +14,16 @@ remedies() {
         echo "no gdalwarp or gdal_fillnodata.py: tests of remedies are skipped; install GDAL's tools to run them"
     fi
 }
+judge() {
+    command -v vpype >/dev/null 2>&1 || [ -x target/vpype/bin/vpype ] && return 0
+    if ! python3 -c "import ensurepip" >/dev/null 2>&1 && command -v apt-get >/dev/null 2>&1; then
+        install_packages python3 python3-venv || true
+    fi
+    echo "installing vpype in target/vpype"
+    if ! python3 -m venv target/vpype || ! target/vpype/bin/pip install --quiet --disable-pip-version-check "vpype<2"; then
+        echo "no vpype: tests of the order of plotting by a stranger are skipped; install it (pip, or pipx) to run them"
+    fi
+}
 browse
 remedies
+judge
