@@ -7,14 +7,15 @@ mod stranger;
 use std::time::Instant;
 
 use checks::{faults, length, open, ring, short, travel, twice, uncovered};
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use hachure::ink::plot::{Journey, planned};
 use hachure::ink::style::Plot;
-use hachure::ink::{Stroke, StrokePoint};
-use hachure::line::Id;
+use hachure::ink::{Drawing, Form, Sheet, Stroke, StrokePoint, Style, draw};
+use hachure::line::{Id, Kind, Lines, Marks};
+use hachure::view::{Camera, Perspective};
 use made::{curves, scattered, tangle};
 
-use crate::scenes::Random;
+use crate::ink::raster;
 
 /// Places of the strokes, each begun at its lesser end, rings at their least place and towards the lesser neighbour: in an
 /// order that has nothing to do with that of plotting. In micrometres.
@@ -68,7 +69,7 @@ fn what_is_wrong_with_a_plan_is_noticed() {
     };
     assert_eq!(with(|_| ()), "");
     assert!(with(|strokes| drop(strokes.remove(7))).starts_with("lost"));
-    assert!(with(|strokes| drop(strokes[7].points.pop())).starts_with("lost"));
+    assert!(with(|strokes| strokes[7].points.truncate(2)).starts_with("lost"));
     assert!(with(|strokes| strokes.push(open(&[(500.0, 1.0), (501.0, 1.0)]))).starts_with("added"));
     assert!(with(|strokes| strokes[3].points[2].place.x += 0.1).contains("added"));
     assert!(with(|strokes| strokes.push(strokes[4].clone())).starts_with("drawn twice"));
@@ -108,6 +109,8 @@ fn what_is_too_short_goes_or_grows() {
             assert!((0.05..0.053).contains(&length(&planned[0])) && middle.distance(DVec2::new(3.0, 4.0)) < 1e-9);
         }
     }
+    // In files, these two are one.
+    assert_eq!(planned(vec![open(&[(3.0, 4.0)]), open(&[(3.0004, 4.0)])]).len(), 1);
     // Along a line, at its end, around a ring; of a hook at an end, the point that stands out.
     becomes(
         &[open(&[(0.0, 0.0), (1.0, 0.0), (1.015, 0.0), (2.0, 0.0)])],
@@ -150,8 +153,8 @@ fn strokes_whose_ends_meet_become_one() {
     let whole = open(&[(0.0, 0.0), (2.0, 0.0), (4.0, 1.0), (6.0, 1.0)]);
     becomes(&[a.clone(), b.clone(), c.clone()], std::slice::from_ref(&whole));
     becomes(&[c.clone(), a.clone(), b.clone()], &[whole]);
-    let planned_ = planned(vec![named(a.clone(), 9), b.clone(), named(c.clone(), 4)]);
-    assert_eq!((planned_.len(), planned_[0].chain), (1, Some(Id(4))));
+    let one = planned(vec![named(a.clone(), 9), b.clone(), named(c.clone(), 4)]);
+    assert_eq!((one.len(), one[0].chain), (1, Some(Id(4))));
     assert_eq!(planned(vec![a.clone(), b])[0].chain, None);
     // A gap of .05 mm and of more.
     becomes(
@@ -161,12 +164,18 @@ fn strokes_whose_ends_meet_become_one() {
     let apart = [a.clone(), open(&[(2.06, 0.0), (4.0, 1.0)])];
     becomes(&apart, &apart);
     // Three meet: those two that go on the straightest, whichever comes first.
-    let branch = open(&[(2.0, 0.0), (2.5, 3.0)]);
+    let branch = open(&[(2.0, 0.0), (2.5, -3.0)]);
     let on = open(&[(2.0, 0.0), (5.0, 0.3)]);
     let joined = [open(&[(0.0, 0.0), (2.0, 0.0), (5.0, 0.3)]), branch.clone()];
     for found in [[&a, &branch, &on], [&branch, &a, &on], [&on, &branch, &a]] {
         becomes(&found.map(Clone::clone), &joined);
     }
+    // Where a stroke heads does not hang on its last .03 mm.
+    let hooked = open(&[(0.0, 0.0), (2.0, 0.03), (2.0, 0.0)]);
+    becomes(
+        &[hooked.clone(), branch.clone(), on.clone()],
+        &[open(&[(0.0, 0.0), (2.0, 0.03), (2.0, 0.0), (5.0, 0.3)]), branch],
+    );
     // Four: both pairs. Five alike: two pairs, always the same ones.
     let cross = [(0.0, 0.0), (4.0, 0.0), (2.0, -2.0), (2.0, 2.0)].map(|end| open(&[end, (2.0, 0.0)]));
     becomes(&cross, &[open(&[(0.0, 0.0), (2.0, 0.0), (4.0, 0.0)]), open(&[(2.0, -2.0), (2.0, 0.0), (2.0, 2.0)])]);
@@ -233,13 +242,17 @@ fn rings_begin_where_the_pen_comes_from() {
         let corners = (0..90).map(|i| DVec2::from_angle(f64::from(4 * i).to_radians()) * 20.0 + DVec2::new(x, y));
         ring(&corners.map(Into::into).collect::<Vec<_>>())
     };
-    let planned = planned(vec![circle(100.0, 100.0), circle(160.0, 160.0)]);
-    // From the corner to the first, and between them from one to the other: not past them.
-    let [first, second] = [&planned[0], &planned[1]].map(|stroke| stroke.points[0].place);
-    assert!(first.distance(DVec2::new(100.0, 100.0)) < 20.1 && second.distance(DVec2::new(160.0, 160.0)) < 20.1);
-    let least = DVec2::splat(100.0).length() - 20.0 + DVec2::splat(60.0).length() - 40.0;
-    assert!((travel(&planned) - least) < 40.1 && travel(&planned) >= least, "{} of {least}", travel(&planned));
-    assert!(canonical(&planned) == canonical(&[circle(100.0, 100.0), circle(160.0, 160.0)]));
+    let rings = [circle(60.0, 60.0), circle(160.0, 100.0)];
+    let planned = planned(rings.to_vec());
+    assert_eq!(canonical(&planned), canonical(&rings));
+    // One after the other, each from its best point.
+    let places = |i: usize| rings[i].points.iter().map(|point| point.place);
+    let ways = places(0).flat_map(|a| places(1).map(move |b| a.length() + a.distance(b)));
+    let shortest = ways.fold(f64::INFINITY, f64::min);
+    assert!(travel(&planned) < 1.01 * shortest, "{} instead of {shortest} mm", travel(&planned));
+    // The point nearest to the corner is not the best.
+    let nearest = places(0).map(DVec2::length).fold(f64::INFINITY, f64::min);
+    assert!(planned[0].points[0].place.length() > nearest + 1.0);
 }
 
 #[test]
@@ -257,13 +270,17 @@ fn a_plan_is_the_same_every_time_and_needs_no_plan() {
     // Equally good ones by their order.
     let alike: Vec<Stroke> = (0..4).map(|i| open(&[(3.0, f64::from(i)), (3.0, f64::from(i) + 0.5)])).collect();
     assert_eq!(planned(alike.clone()), alike);
+    let mirrored = [open(&[(3.0, 4.0), (50.0, 50.2)]), open(&[(4.0, 3.0), (50.2, 50.0)])];
+    for alike in [[0, 1], [1, 0]].map(|order| order.map(|i| mirrored[i].clone())) {
+        assert_eq!(canonical(&planned(alike.to_vec())[..1]), canonical(&alike[..1]));
+    }
 }
 
 #[test]
 fn many_strokes_are_planned_in_little_time() {
     let mut seconds = Vec::new();
-    // As many as nearest ones are looked for among, and more.
-    for (columns, rows, share) in [(500, 400, 0.003), (500, 420, 0.01)] {
+    // As many as nearest ones are looked for among; more, along a curve, which is longer.
+    for (columns, rows, shares) in [(500, 400, 0.002..0.0025), (500, 420, 0.003..0.0037)] {
         let found = scattered(9, columns, rows);
         let start = Instant::now();
         let planned = planned(found.clone());
@@ -275,24 +292,26 @@ fn many_strokes_are_planned_in_little_time() {
             found.len(),
             seconds[seconds.len() - 1]
         );
-        assert!(after < share * before, "{after} of {before} mm");
+        assert!(shares.contains(&(after / before)), "{after} of {before} mm");
     }
     assert!(seconds.iter().all(|seconds| *seconds < 30.0), "{seconds:?}");
 }
 
 #[test]
 fn an_order_is_shorter_than_none() {
-    for (what, found) in [("contours", curves(7, 3000, [5.0, 60.0])), ("hachures", curves(8, 20_000, [2.0, 2.0]))] {
+    let layers =
+        [("contours", curves(7, 3000, [5.0, 60.0]), 0.0195), ("hachures", curves(8, 20_000, [2.0, 2.0]), 0.0073)];
+    for (what, found, share) in layers {
         let planned = planned(found.clone());
-        assert_eq!(faults(&found, &planned), Vec::<String>::new());
         let [before, after] = [&found, &planned].map(|strokes| Journey::through(strokes));
+        assert!((after.drawn - before.drawn).abs() < 1e-3 * before.drawn, "{what}: {after:?} of {before:?}");
         let plot = Plot::default();
         println!(
             "{what}: {before:?}, {:.0} s; planned {after:?}, {:.0} s",
             before.seconds(&plot),
             after.seconds(&plot)
         );
-        assert!(after.travel < 0.025 * before.travel, "{what}: {after:?} of {before:?}");
+        assert!(after.travel < share * before.travel, "{what}: {after:?} of {before:?}");
     }
 }
 
@@ -311,4 +330,31 @@ fn a_journey_is_what_a_pen_does() {
     let random: Vec<Stroke> = (1..20).flat_map(tangle).collect();
     let (through, drawn) = (Journey::through(&random), random.iter().map(length).sum::<f64>());
     assert!((through.travel - travel(&random)).abs() < 1e-6 && (through.drawn - drawn).abs() < 1e-6);
+}
+
+/// A drawing of short lines in rows, in two kinds of ink, found row by row.
+fn rows(style: &Style) -> Drawing {
+    let kind = |row: i64| if row % 8 < 4 { Kind::Silhouette } else { Kind::Border };
+    let raster = raster(120, 80, |x, y| (y % 4 == 2 && x % 30 > 4).then_some((kind(y), 1.0)));
+    let camera = Camera { eye: DVec3::ZERO, azimuth: 0.0, altitude: 0.0, fov: 60.0, width: 120, height: 80 };
+    let lines = Lines::of(&Marks::from(&raster), &Perspective::new(&camera, 1.0), 0.5);
+    draw(&lines, &Sheet::for_frame([120, 80]), style, &[]).expect("a drawing")
+}
+
+#[test]
+fn layers_know_the_way_of_the_pen_before_and_after() {
+    let plot = Plot { centre_lines: true, ..Plot::default() };
+    let drawing = rows(&Style { plot, ..Style::default() });
+    assert_eq!(drawing.layers.len(), 2);
+    for layer in &drawing.layers {
+        let planned = Journey::through(&layer.strokes);
+        assert_eq!(layer.form, Form::CentreLines);
+        assert_eq!((layer.found.strokes, planned.strokes), (40, 40));
+        assert!((layer.found.drawn - planned.drawn).abs() < 0.05 * planned.drawn, "{:?}, {planned:?}", layer.found);
+        assert!(planned.travel < 0.8 * layer.found.travel, "{:?}, {planned:?}", layer.found);
+    }
+    // What no pen follows stays as it is found.
+    for layer in &rows(&Style::default()).layers {
+        assert_eq!((layer.form, Journey::through(&layer.strokes)), (Form::Outlines, layer.found));
+    }
 }

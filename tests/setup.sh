@@ -1,5 +1,6 @@
 # Sourced by tests/run.sh behind examples/setup.sh: a browser, in which the tests look at a report, GDAL's tools, which
-# errors name as remedies and the tests run, and poppler, a stranger to whom our PDFs are shown.
+# errors name as remedies and the tests run, poppler, a stranger to whom our PDFs are shown, and vpype, which judges the order
+# of a plot.
 browse() {
     for browser in chromium chromium-browser google-chrome; do
         command -v "$browser" >/dev/null 2>&1 && return 0
@@ -20,6 +21,17 @@ poppler() {
         echo "no pdftoppm: tests of what others see in our PDFs are skipped; install poppler-utils to run them"
     fi
 }
+judge() {
+    command -v vpype >/dev/null 2>&1 || [ -x target/vpype/bin/vpype ] && return 0
+    if ! python3 -c "import ensurepip" >/dev/null 2>&1 && command -v apt-get >/dev/null 2>&1; then
+        install_packages python3 python3-venv || true
+    fi
+    echo "installing vpype in target/vpype"
+    if ! python3 -m venv target/vpype || ! target/vpype/bin/pip install --quiet --disable-pip-version-check "vpype<2"; then
+        echo "no vpype: tests of the order of plotting by a stranger are skipped; install it (pip, or pipx) to run them"
+    fi
+}
 browse
 remedies
 poppler
+judge

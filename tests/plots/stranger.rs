@@ -1,6 +1,5 @@
 //! A stranger judges the order of plotting: `vpype`, which plotters' owners use for that.
 
-use std::fmt::Write as _;
 use std::fs;
 use std::io::{Write, stderr};
 use std::path::{Path, PathBuf};
@@ -8,7 +7,7 @@ use std::process::Command;
 use std::thread;
 
 use hachure::ink::plot::planned;
-use hachure::ink::{Colour, Drawing, Form, Layer, Pen, Sheet, Stroke};
+use hachure::ink::{self, Colour, Drawing, Form, Layer, Pen, Sheet, Stroke};
 
 use crate::plots::checks;
 use crate::plots::made::curves;
@@ -30,30 +29,6 @@ fn vpype() -> Option<PathBuf> {
     found
 }
 
-/// The drawing as a plain SVG: a group a layer, a path a stroke.
-fn write_svg(drawing: &Drawing, out: &mut impl Write) -> std::io::Result<()> {
-    let [width, height] = drawing.sheet.size.to_array();
-    write!(
-        out,
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\""
-    )?;
-    writeln!(out, " width=\"{width}mm\" height=\"{height}mm\" viewBox=\"0 0 {width} {height}\">")?;
-    for layer in &drawing.layers {
-        let named = format!("inkscape:groupmode=\"layer\" inkscape:label=\"{}\"", layer.name);
-        writeln!(out, "<g {named} fill=\"none\" stroke=\"black\" stroke-width=\"{}\">", layer.pen.width)?;
-        for stroke in &layer.strokes {
-            let mut path = String::new();
-            for (i, point) in stroke.points.iter().enumerate() {
-                let letter = if i == 0 { 'M' } else { 'L' };
-                let _ = write!(path, "{letter}{:.3},{:.3}", point.place.x, point.place.y);
-            }
-            writeln!(out, "<path d=\"{path}{}\"/>", if stroke.closed { "Z" } else { "" })?;
-        }
-        writeln!(out, "</g>")?;
-    }
-    writeln!(out, "</svg>")
-}
-
 /// What vpype says of a layer.
 #[derive(Debug, PartialEq)]
 struct Said {
@@ -68,7 +43,7 @@ fn judged(vpype: &Path, drawing: &Drawing) -> [Vec<Said>; 2] {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("plot.svg");
     let mut svg = Vec::new();
-    write_svg(drawing, &mut svg).expect("an SVG");
+    ink::write_svg(drawing, &mut svg).expect("an SVG");
     fs::write(&file, svg).expect("plot.svg");
     let output = Command::new(vpype).args(["read", "--no-crop"]).arg(&file).args(["stat", "linesort", "stat"]).output();
     let output = output.expect("vpype starts");

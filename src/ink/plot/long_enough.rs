@@ -17,7 +17,7 @@ const SEGMENT: f64 = 0.0215;
 /// Length of the shortest stroke, mm: .05 in files.
 const STROKE: f64 = 0.0515;
 
-/// The stroke without segments that are too short.
+/// The stroke without segments that are too short. A ring of two points is left to go there and back.
 pub fn thinned(mut stroke: Stroke) -> Stroke {
     if segments(&stroke).all(|[a, b]| a.distance(b) >= SEGMENT) {
         return stroke;
@@ -27,8 +27,6 @@ pub fn thinned(mut stroke: Stroke) -> Stroke {
     stroke.points = kept(&path).into_iter().map(|i| stroke.points[i]).collect();
     if stroke.closed {
         stroke.points.pop();
-        // There and back on the same way.
-        stroke.closed = stroke.points.len() > 2;
     }
     stroke
 }

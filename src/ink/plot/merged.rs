@@ -29,7 +29,8 @@ fn other(end: End) -> End {
     end ^ 1
 }
 
-/// The strokes with those joined whose ends meet, in the order of the first of each; closed where they come round.
+/// The strokes with those joined whose ends meet, in the order of the first of each; closed where they come round. A place
+/// where ends meet is a point of either.
 pub fn merged(strokes: Vec<Stroke>) -> Vec<Stroke> {
     let partners = partners(&strokes);
     let mut left: Vec<Option<Stroke>> = strokes.into_iter().map(Some).collect();
@@ -105,11 +106,6 @@ fn walked(begin: End, partners: &[Option<End>], left: &mut [Option<Stroke>]) -> 
         whole.chain = whole.chain.into_iter().chain(next.chain).min();
         whole.points.extend(next.points);
         leave = other(enter);
-    }
-    // Ends that met in one place are one point, as are those of a ring.
-    whole.points.dedup_by_key(|point| point.place);
-    if whole.closed && whole.points.first().map(|point| point.place) == whole.points.last().map(|point| point.place) {
-        whole.points.pop();
     }
     Some(whole)
 }

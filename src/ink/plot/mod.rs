@@ -30,7 +30,7 @@ const HOME: DVec2 = DVec2::ZERO;
 /// The strokes of a layer of one width, all that it draws drawn once, in the order of plotting.
 pub fn planned(strokes: Vec<Stroke>) -> Vec<Stroke> {
     let merged = merged::merged(once::once(strokes));
-    let thinned = merged.into_iter().map(long_enough::thinned).collect();
+    let thinned: Vec<_> = merged.into_iter().map(long_enough::thinned).collect();
     // What differed by less than a short segment may be the same now, and what grows may grow onto something.
     let (long, short): (Vec<_>, Vec<_>) = once::once(thinned).into_iter().partition(long_enough::leaves_ink);
     let whole = once::once(long.into_iter().chain(short.into_iter().map(long_enough::lengthened)).collect());

@@ -6,7 +6,8 @@
 //! of Hilbert (1891) through the strokes' middles, each in the better direction (Platzman and Bartholdi 1989). Of equally
 //! good ones the first wins.
 //!
-//! Cost: n log n, where each point of a closed stroke counts; along the curve a tenth of that, for about three times the way.
+//! Cost: n log n, where each point of a closed stroke counts; along the curve a tenth of that,
+//! for two or three times the way.
 
 use fast_hilbert::xy2h;
 use glam::DVec2;
