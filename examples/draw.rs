@@ -5,7 +5,6 @@ use std::{env, error::Error, fs::File, io::BufWriter, sync::Arc};
 use hachure::geo::{ReadOptions, read};
 use hachure::gpu::{AdapterChoice, Gpu, Int64};
 use hachure::ink::{self, Sheet, Style};
-use hachure::line::Lines;
 use hachure::plan::{Curves, Plan};
 use hachure::view::{Fixed, choose};
 use hachure::{render::Renderer, surface::Surface};
@@ -21,8 +20,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let page = renderer.page(&plan, &camera, |_| ())?;
     let (style, sheet) = (Style::default(), Sheet::for_frame([1200, 600]));
     let px_per_mm = sheet.placement([1200, 600]).px_per_mm;
-    let perspective = renderer.perspective(&page.frame);
-    let lines = Lines::sparing(&page.chains, &page.hidden, &perspective, &style.economy(px_per_mm));
+    let lines = renderer.lines(&page, &style.economy(px_per_mm));
     let drawing = ink::draw(&lines, &sheet, &style, &[])?;
     Ok(ink::write_png(&drawing, px_per_mm, BufWriter::new(File::create(picture)?))?)
 }

@@ -193,7 +193,7 @@ fn an_eye_below_ground_draws_with_a_warning() {
 fn wrong_usage_exits_with_2() {
     let place = Place::new();
     let cases: [(&[&str], &str); 29] = [
-        (&["--page", "A4"], "--page"),
+        (&["--paper", "A4"], "--paper"),
         (&["--style", "x"], "--style"),
         (&["--level", "3"], "want 1, 2, 4"),
         (&["--level", "automatic"], "want 1, 2, 4, 8, 16, 32 or 64, or auto"),
@@ -215,8 +215,8 @@ fn wrong_usage_exits_with_2() {
         (&["--share", "edge"], "--method adjacency"),
         (&["--min-jump", "-0.1"], "want a share of the distance, 0 or more"),
         (&["--min-jump", "2%"], "want a share of the distance, 0 or more"),
-        (&["--min-gap", "-3px"], "want pixels, from 0 to 1000, as 3px"),
-        (&["--min-gap", "nan"], "want pixels, from 0 to 1000, as 3px"),
+        (&["--min-gap", "-3px"], "or pixels, from 0 to 1000, as 3px"),
+        (&["--min-gap", "nan"], "or pixels, from 0 to 1000, as 3px"),
         (&["--min-gap", ".4mm"], "no millimetres yet; want pixels, as 3px"),
         (&["--min-gap", "3px", "--method", "toward-away"], "--min-gap: goes with contours only"),
         (&["--min-jump", "0", "--method", "adjacency"], "--min-jump: goes with contours only"),

@@ -78,6 +78,7 @@ mod times;
 mod tolerances;
 mod trial;
 mod truth;
+mod unstroked;
 mod validity;
 mod vectors;
 mod vertices;

@@ -7,7 +7,9 @@ use std::path::Path;
 use clap::CommandFactory;
 use hachure::cli::Arguments;
 use hachure::cli::choices::default_share;
-use hachure::ink::Style;
+use hachure::cli::page;
+use hachure::cli::viewpoint::SIZE;
+use hachure::ink::{Sheet, Style};
 use hachure::plan::detail::ERROR_PX;
 
 use crate::cli::{DRAW, Place, refuses, stderr};
@@ -136,13 +138,19 @@ fn defaults(command: &clap::Command) -> Vec<(String, String)> {
 fn help_says_the_defaults_that_the_code_has() {
     let share = default_share().to_owned();
     let style = Style::default();
+    let size = format!("{}x{}", SIZE.width, SIZE.height);
     let expected = [
-        ("error_px".to_owned(), ERROR_PX.to_string()),
-        ("share".to_owned(), share),
-        ("min_jump".to_owned(), style.min_jump.to_string()),
-        ("min_gap".to_owned(), format!("{}mm", style.min_gap)),
+        ("size", size.clone()),
+        ("error_px", ERROR_PX.to_string()),
+        ("share", share),
+        ("page", format!("{} mm across, as --size is shaped", Sheet::WIDTH)),
+        ("margin", page::MARGIN.to_string()),
+        ("dpi", format!("{} with --page, else as --size has it", page::DPI)),
+        ("min_jump", format!("as the style has it, {}", style.min_jump)),
+        ("min_gap", format!("as the style has it, {}mm", style.min_gap)),
+        ("size", size),
     ];
-    assert_eq!(defaults(&Arguments::command()), expected);
+    assert_eq!(defaults(&Arguments::command()), expected.map(|(flag, value)| (flag.to_owned(), value)));
     let arg = clap::Arg::new("x").long("x").help("Metres [default: 7]");
     assert_eq!(defaults(&clap::Command::new("c").arg(arg)), [("x".to_owned(), "7".to_owned())], "one is found");
     let mut open = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join("src/cli")];

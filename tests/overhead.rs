@@ -25,7 +25,8 @@ fn plan(rows: &[&str]) -> Lines {
         text += "\n";
     }
     fs::write(&path, text).expect("a file");
-    overhead(&read(&path, &ReadOptions::default()).expect("a DEM"), 1.0).expect("a plan")
+    let size = [rows[0].len(), rows.len()].map(|samples| 10 * (samples as u32 - 1));
+    overhead(&read(&path, &ReadOptions::default()).expect("a DEM"), size, 1.0).expect("a plan")
 }
 
 /// Twice the area to the left of a ring as seen from above; rows run down.

@@ -75,7 +75,7 @@ fn mistakes_are_told_with_their_place_and_what_was_meant() {
         ("[wobble]\nreach = 1", "`wobble.reach` of 1 mm is more than the `tolerance` of 0.075 mm; lower `reach`"),
         ("[wobble]\nseed = -1", "line 2, column 8: invalid value: integer `-1`; want a whole number"),
         ("dots = true\ndots = false", "line 2, column 1: duplicate key"),
-        ("dots = ", "line 1, column 7: "),
+        ("dots = ", "line 1, column 8: "),
         ("# näh é\n  dots = 1", "line 2, column 10: invalid type"),
     ] {
         let said = mistake(text);

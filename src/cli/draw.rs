@@ -31,7 +31,6 @@ use crate::plan::left_out::LeftOut;
 use crate::plan::{Border, Curves, Detail, Frame, Method, Plan, Share};
 use crate::render::{Page, PassTime, Renderer};
 use crate::surface::Surface;
-use crate::view::Perspective;
 
 /// Warm frames behind the median of `--json`; a page in pieces, which may take minutes, has one.
 const WARM_FRAMES: usize = 9;
@@ -275,12 +274,11 @@ impl DrawArguments {
 
     /// The drawing of the page: of contours as sparingly as is asked, or traced from the mask.
     fn stroked(&self, drawn: &Drawn, style: Style, layout: Layout) -> Result<Stroked> {
-        let Page { marks, chains, hidden, .. } = &drawn.page;
+        let marks = &drawn.page.marks;
         let px_per_mm = layout.sheet.placement([marks.width, marks.height]).px_per_mm;
-        let perspective = Perspective::new(&drawn.view.camera, drawn.renderer.near());
         let lines = match drawn.page.frame.plan.has_curves() {
-            true => Lines::sparing(chains, hidden, &perspective, &self.style.economy(&style, px_per_mm)),
-            false => Lines::of(marks, &perspective, style.tolerance * px_per_mm),
+            true => drawn.renderer.lines(&drawn.page, &self.style.economy(&style, px_per_mm)),
+            false => Lines::of(marks, &drawn.renderer.perspective(&drawn.page.frame), style.tolerance * px_per_mm),
         };
         let drawing = ink::draw(&lines, &layout.sheet, &style, self.style.split())?;
         Ok(Stroked { style, lines, drawing, layout })

@@ -9,9 +9,9 @@ use crate::message;
 use crate::plan::pieces::LARGEST_PAGE;
 
 /// Blank on all sides of a page unless told otherwise, mm.
-pub(super) const MARGIN: f64 = 10.0;
+pub const MARGIN: f64 = 10.0;
 /// Pixels of a picture for each inch of a page unless told otherwise.
-const DPI: f64 = 300.0;
+pub const DPI: f64 = 300.0;
 const MM_PER_INCH: f64 = 25.4;
 /// Least side of what margins leave, mm.
 const LEAST_AREA: f64 = 1.0;

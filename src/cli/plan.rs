@@ -51,8 +51,10 @@ pub fn run(arguments: &DrawArguments, scale: f64, talk: &Talk) -> Result<()> {
     let mut outputs = arguments.outputs.open(Taken::inputs(reading.files()))?;
     let dem = arguments.terrain.read(reading, talk)?;
     warn_of_survey(&dem, talk)?;
-    let layout = layout(&dem, scale, arguments)?;
-    let lines = overhead(&dem, Sheet::FRAME_PX_PER_MM * MM / scale)?;
+    dem.check_patches()?;
+    let layout = layout(&dem, scale, style.pens.border.width, arguments)?;
+    let frame = [layout.frame.width, layout.frame.height];
+    let lines = overhead(&dem, frame, layout.sheet.placement(frame).px_per_mm * MM / scale)?;
     let drawing = ink::draw(&lines, &layout.sheet, &style, &[])?;
     let report = PlanReport {
         version: env!("CARGO_PKG_VERSION"),
@@ -76,11 +78,12 @@ pub fn run(arguments: &DrawArguments, scale: f64, talk: &Talk) -> Result<()> {
     ))
 }
 
-/// The page that is the DEM at that scale, with margins.
-fn layout(dem: &Dem, scale: f64, arguments: &DrawArguments) -> Result<Layout> {
+/// The page that is the DEM at that scale, with margins; half of a pen that draws its border lies in these.
+fn layout(dem: &Dem, scale: f64, pen: f64, arguments: &DrawArguments) -> Result<Layout> {
     let ([west, south, east, north], margin) = (dem.extent(), arguments.page.margin().unwrap_or(MARGIN));
     let area = DVec2::new(east - west, north - south) * (MM / scale);
-    let sheet = Sheet { size: area + 2.0 * margin, margin };
+    let margin = margin.max(pen / 2.0);
+    let sheet = Sheet { size: area + 2.0 * margin, margin: margin - pen / 2.0 };
     let [least, most] = PAGES_MM;
     let fits = |side: f64| side / (most - 2.0 * margin) * scale;
     if sheet.size.max_element() > most {

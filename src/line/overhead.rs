@@ -4,7 +4,7 @@
 //! their left, and followed from end to end; where four of them meet at a sample, the sharpest turn to the left keeps land
 //! that touches by a corner apart. Heights play no part, nor does exaggeration. Cost: some look-ups for each rim edge.
 
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, UVec2};
 use rustc_hash::FxHashMap;
 
 use super::simplify::needed;
@@ -19,17 +19,18 @@ const STRAIGHT: f64 = 1e-6;
 /// A sample, by column and row.
 type Sample = [u32; 2];
 
-/// The plan of a DEM with so many pixels for each metre.
+/// The plan of a DEM in a frame of so many pixels across and down, its middle in the middle, with so many pixels for each
+/// metre.
 ///
 /// # Errors
 /// As [`Dem::survey`].
-pub fn overhead(dem: &Dem, px_per_metre: f64) -> Result<Lines> {
+pub fn overhead(dem: &Dem, [width, height]: [u32; 2], px_per_metre: f64) -> Result<Lines> {
     let ([west, south, east, north], cell) = (dem.extent(), dem.cell());
-    let size = (DVec2::new(east - west, north - south) * px_per_metre).ceil();
+    let (middle, frame) = (DVec2::new(west + east, south + north) / 2.0, UVec2::new(width, height).as_dvec2() / 2.0);
     let point = |[column, row]: Sample| {
-        let from_corner = DVec2::new(column.into(), row.into()) * cell;
-        let world = DVec3::new(west + from_corner.x, north - from_corner.y, 0.0);
-        let (place, line) = (from_corner * px_per_metre, Line::Border);
+        let world = DVec2::new(west + f64::from(column) * cell.x, north - f64::from(row) * cell.y);
+        let place = frame + (world - middle) * DVec2::new(1.0, -1.0) * px_per_metre;
+        let (line, world) = (Line::Border, world.extend(0.0));
         ChainPoint { place, line, depth: 1.0, behind: 0.0, world, crowd: 0, weight: 1.0 }
     };
     let chain = |ring: Vec<Sample>| {
@@ -39,10 +40,9 @@ pub fn overhead(dem: &Dem, px_per_metre: f64) -> Result<Lines> {
         let kept = needed(&places, STRAIGHT);
         Chain { id: None, points: kept[..kept.len() - 1].iter().map(|i| points[*i]).collect(), closed: true }
     };
-    let middle = DVec2::new(west + east, south + north) / 2.0;
     Ok(Lines {
-        width: size.x as u32,
-        height: size.y as u32,
+        width,
+        height,
         eye: middle.extend(f64::INFINITY),
         chains: rings(&rim(dem)?).into_iter().map(chain).collect(),
         hidden: Vec::new(),

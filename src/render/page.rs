@@ -2,7 +2,7 @@
 
 use super::{Drawn, Renderer};
 use crate::error::Result;
-use crate::line::{Chain, Marks, marks, one_pixel_wide, visible};
+use crate::line::{Chain, Economy, Lines, Marks, marks, one_pixel_wide, visible};
 use crate::plan::{Curves, Frame, Piece, Plan, Yields};
 use crate::view::Camera;
 
@@ -65,6 +65,11 @@ impl Renderer {
             Yields::Curves => one_pixel_wide(&chains, size),
         };
         Ok(Page { marks, chains, hidden, covered, longest_walk, frame })
+    }
+
+    /// The lines of a page with curves, drawn as sparingly as `economy` says.
+    pub fn lines(&self, page: &Page, economy: &Economy) -> Lines {
+        Lines::sparing(&page.chains, &page.hidden, &self.perspective(&page.frame), economy)
     }
 
     /// Draws a piece of a frame and brings it back, halo and all: `piece.drawn` of the page.
