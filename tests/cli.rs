@@ -217,7 +217,7 @@ fn wrong_usage_exits_with_2() {
         (&["--min-jump", "2%"], "want a share of the distance, 0 or more"),
         (&["--min-gap", "-3px"], "or pixels, from 0 to 1000, as 3px"),
         (&["--min-gap", "nan"], "or pixels, from 0 to 1000, as 3px"),
-        (&["--min-gap", ".4mm"], "no millimetres yet; want pixels, as 3px"),
+        (&["--min-gap", "101mm"], "want millimetres, from 0 to 100, as .4mm"),
         (&["--min-gap", "3px", "--method", "toward-away"], "--min-gap: goes with contours only"),
         (&["--min-jump", "0", "--method", "adjacency"], "--min-jump: goes with contours only"),
         (&["--eye", "0,0,+10"], "no ground"),

@@ -94,7 +94,7 @@ fn bounds(schema: &Value, of: &Value, path: &[String], found: &mut Vec<(Vec<Stri
         found.push((path.to_vec(), least, most));
     }
     for (key, inner) in of["properties"].as_object().into_iter().flatten() {
-        bounds(schema, inner, &[path, &[key.clone()]].concat(), found);
+        bounds(schema, inner, &[path, std::slice::from_ref(key)].concat(), found);
     }
 }
 
