@@ -10,7 +10,7 @@ use crate::scenes::Random;
 pub fn curve(random: &mut Random, length: f64) -> Stroke {
     let steps = (length / 0.5).ceil();
     let mut place = DVec2::new(random.between(10.0, 410.0), random.between(10.0, 287.0));
-    let (mut angle, mut bend) = (random.between(0.0, 6.28), random.between(-0.05, 0.05));
+    let (mut angle, mut bend) = (random.between(0.0, std::f64::consts::TAU), random.between(-0.05, 0.05));
     let mut points = vec![StrokePoint { place, width: 1.0 }];
     for _ in 0..steps as usize {
         bend += random.between(-0.01, 0.01);
@@ -37,13 +37,12 @@ pub fn tangle(seed: u64) -> Vec<Stroke> {
     let mut random = Random::new(seed);
     let mut strokes: Vec<Stroke> = Vec::new();
     for i in 0..20 + random.below(60) {
-        if let Some(copied) = (random.below(6) == 0).then(|| random.below(i.max(1)) as usize) {
-            if let Some(mut copy) = strokes.get(copied).cloned() {
-                copy.points.reverse();
-                copy.points.truncate(2 + random.below(8) as usize);
-                strokes.push(Stroke { closed: false, ..copy });
-                continue;
-            }
+        let copied = (random.below(6) == 0).then(|| random.below(i.max(1)) as usize);
+        if let Some(mut copy) = copied.and_then(|copied| strokes.get(copied)).cloned() {
+            copy.points.reverse();
+            copy.points.truncate(2 + random.below(8) as usize);
+            strokes.push(Stroke { closed: false, ..copy });
+            continue;
         }
         let pitch = [1.0, 0.3, 0.04, 0.013][random.below(4) as usize];
         let noise = [0.0, 0.0, 0.004, 0.02][random.below(4) as usize];
