@@ -226,7 +226,7 @@ fn wrong_usage_exits_with_2() {
     for (flags, words) in cases {
         refuses(&place, &[&DRAW[..4], flags].concat(), 2, words);
     }
-    refuses(&place, &["draw", "hill.asc", "-o", "out.svg"], 2, ".png");
+    refuses(&place, &["draw", "hill.asc", "-o", "out.bmp"], 2, ".png");
     refuses(&place, &[&DRAW[..], &["--mask", "out.png"]].concat(), 2, "name of its own");
     refuses(&place, &[&DRAW[..], &["--json", "hill.asc"]].concat(), 2, "name of its own");
     refuses(&place, &["draw", "hill.asc"], 2, "--output");

@@ -133,10 +133,10 @@ fn completions_and_man_pages_hold_every_flag() {
     let generate = |arguments: &[&str]| stdout(&succeeds(place.run(&[&["generate"], arguments].concat())));
     let completions = ["bash", "zsh", "fish", "elvish", "powershell"].map(|shell| generate(&["completions", shell]));
     let pages = generate(&["man"]).replace("\\-", "-");
-    assert_eq!(pages.matches("\n.TH hachure").count(), 5, "one page a subcommand: {pages}");
+    assert_eq!(pages.matches("\n.TH hachure").count(), 6, "one page a subcommand: {pages}");
     let command = Arguments::command();
     let of = |name| command.find_subcommand(name).expect("a subcommand").get_arguments();
-    let shown = of("draw").chain(of("compare")).filter(|a| !a.is_hide_set());
+    let shown = of("draw").chain(of("compare")).chain(of("styles")).filter(|a| !a.is_hide_set());
     let shown = shown.filter_map(|a| a.get_long()).collect::<Vec<_>>();
     assert!(["azimuth", "output", "truth-level"].iter().all(|flag| shown.contains(flag)));
     for flag in shown {

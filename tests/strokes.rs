@@ -113,21 +113,21 @@ fn pens(widths: &[f64]) -> Style {
 
 #[test]
 fn varying_widths_become_a_layer_a_pen() {
-    // 1 mm wide up to 60 mm, thinning to nothing from there to 160 mm.
-    let thinning = || level(1, [10, 190], 50.0, |x| (1000.0, (1.6 - x / 100.0).clamp(0.0, 1.0) as f32));
-    let drawing = drawn(vec![thinning()], &pens(&[0.2, 0.5, 1.0]), &[]);
-    assert_eq!(names(&drawing), ["1 silhouette 0.2 mm", "2 silhouette 0.5 mm", "3 silhouette 1 mm"]);
+    // Thinning from 1 mm at 32 mm to a twentieth of that at 184 mm.
+    let thinning = || level(1, [10, 190], 50.0, |x| (1000.0, (1.2 - x / 160.0).clamp(0.05, 1.0) as f32));
+    let drawing = drawn(vec![thinning()], &pens(&[0.3, 1.0]), &[]);
+    assert_eq!(names(&drawing), ["1 silhouette 0.3 mm", "2 silhouette 1 mm"]);
     assert!(drawing.layers.iter().all(|layer| layer.form == Form::CentreLines && layer.strokes.len() == 1));
-    assert_eq!(drawing.layers.iter().map(|layer| layer.pen.width).collect::<Vec<_>>(), [0.2, 0.5, 1.0]);
+    assert_eq!(drawing.layers.iter().map(|layer| layer.pen.width).collect::<Vec<_>>(), [0.3, 1.0]);
     let found: Vec<[f64; 2]> = drawing.layers.iter().map(|layer| extent(&layer.strokes[0])).collect();
     // Half-way between two pens, and at half the finest.
-    for (found, wanted) in found.iter().zip([[125.0, 150.0], [85.0, 125.0], [10.0, 85.0]]) {
+    for (found, wanted) in found.iter().zip([[88.0, 168.0], [10.0, 88.0]]) {
         assert!(near(found[0], wanted[0]) && near(found[1], wanted[1]), "{found:?}, {wanted:?}");
     }
     // Without pens at hand the line's own.
     let own = drawn(vec![thinning()], &pens(&[]), &[]);
     assert_eq!(names(&own), ["1 silhouette 1 mm"]);
-    assert!(near(extent(&own.layers[0].strokes[0])[1], 110.0));
+    assert!(near(extent(&own.layers[0].strokes[0])[1], 112.0));
 }
 
 #[test]
@@ -139,8 +139,8 @@ fn short_changes_of_width_change_no_pen() {
         let drawing = drawn(vec![chain], &pens(&[0.4, 1.0]), &[]);
         drawing.layers.iter().map(|layer| layer.strokes.len()).collect::<Vec<_>>()
     };
-    assert_eq!(layers(dips(100.0, 106.0, 0.4)), [1], "6 mm of a finer pen");
-    assert_eq!(layers(dips(100.0, 130.0, 0.4)), [1, 2], "30 mm");
+    assert_eq!(layers(dips(100.0, 130.0, 0.4)), [1], "30 mm of a finer pen");
+    assert_eq!(layers(dips(80.0, 130.0, 0.4)), [1, 2], "50 mm");
     assert_eq!(layers(dips(100.0, 101.0, 0.1)), [1], "a gap of a millimetre");
     assert_eq!(layers(dips(100.0, 110.0, 0.1)), [2], "one of ten");
 }

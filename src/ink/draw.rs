@@ -19,7 +19,7 @@ use crate::message;
 /// Most strokes of a drawing.
 const MOST_STROKES: f64 = 4e6;
 /// A part of a line that is shorter is drawn with the pen of what lies beside it, mm.
-const SHORT: f64 = 10.0;
+const SHORT: f64 = 40.0;
 /// A part too fine for every pen that is shorter is drawn, mm.
 const GAP: f64 = 1.5;
 /// Length of an arm of a registration mark, mm.
