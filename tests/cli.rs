@@ -137,25 +137,31 @@ fn printed_flags_repeat_the_chosen_view() {
 #[test]
 fn a_page_wider_than_any_piece_is_drawn() {
     let place = Place::new();
-    // The two flanks of the hill cross the eight rows, one of them far right.
-    let view = ["--eye", "499900,3999900,25", "--azimuth", "35", "--fov", "50", "--size", "40000x8", "--level", "2"];
-    let files = ["draw", "hill.asc", "-o", "out.png", "--mask", "mask.png", "--json", "out.json"];
+    // The two flanks of the hill cross the rows, one of them far right.
+    let view = ["--eye", "499900,3999900,25", "--azimuth", "35", "--fov", "50", "--size", "40000x64", "--level", "2"];
+    // A pen 8 px wide: the usual one is wider than half of the page is high.
+    fs::write(place.path("fine.toml"), "weight.far = 1\nweight.flat = 1\npens.silhouette.width = 0.05")
+        .expect("a style");
+    let files =
+        ["draw", "hill.asc", "-o", "out.png", "--mask", "mask.png", "--json", "out.json", "--style", "fine.toml"];
     let output = place.run(&[&files[..], &view].concat());
     assert!(output.status.success(), "{}", stderr(&output));
     let report: Value = serde_json::from_slice(&fs::read(place.path("out.json")).expect("out.json")).expect("JSON");
     assert_eq!((&report["pieces"], &report["warm_frames"]), (&Value::from(20), &Value::from(1)));
     assert!(report["frame_ms"].as_f64() > Some(0.0));
     let [mask, page] = ["mask.png", "out.png"].map(|name| image::open(place.path(name)).expect(name).to_luma8());
-    assert_eq!((mask.dimensions(), page.dimensions()), ((40_000, 8), (40_000, 8)));
-    let inked: Vec<u32> = mask.enumerate_pixels().filter(|(_, _, p)| p.0[0] == 0).map(|(x, _, _)| x).collect();
+    assert_eq!((mask.dimensions(), page.dimensions()), ((40_000, 64), (40_000, 64)));
+    let inked: Vec<[u32; 2]> = mask.enumerate_pixels().filter(|(.., p)| p.0[0] == 0).map(|(x, y, _)| [x, y]).collect();
     assert_eq!(report["inked"], inked.len());
-    let beyond = inked.iter().filter(|x| **x > 32_767).count();
+    let beyond = inked.iter().filter(|at| at[0] > 32_767).count();
     assert!(beyond >= 8 && beyond < inked.len());
-    // The pen is 50 px wide: all is dark near ink, and paper far from it.
-    for (x, _, pixel) in page.enumerate_pixels() {
-        let nearest = inked.iter().map(|at| at.abs_diff(x)).min().expect("ink");
-        assert!(nearest > 5 || pixel.0[0] < 100, "paper in column {x}, {nearest} px from ink");
-        assert!(nearest < 60 || pixel.0[0] > 200, "ink in column {x}, {nearest} px from the mask's");
+    // Where the pen reaches ink is dark, and paper is far from it.
+    for at in inked.iter().filter(|at| (12..52).contains(&at[1])) {
+        assert!(page.get_pixel(at[0], at[1]).0[0] < 100, "paper at {at:?}");
+    }
+    for (x, y, _) in page.enumerate_pixels().filter(|(.., pixel)| pixel.0[0] < 200) {
+        let nearest = inked.iter().map(|at| at[0].abs_diff(x).max(at[1].abs_diff(y))).min().expect("ink");
+        assert!(nearest < 8, "ink at {x}, {y}, {nearest} px from the mask's");
     }
     refuses(&Place::new(), &[&DRAW[..4], &["--size", "65537x8"]].concat(), 2, "each from 1 to 65536");
 }

@@ -118,8 +118,9 @@ fn hidden_lines_lie_where_they_are_seen_without_what_hides_them() {
 
 #[test]
 fn asking_for_hidden_lines_changes_nothing_that_is_seen() {
-    let detail = Detail::Uniform(Level::EIGHT);
-    let (all, seen) = (page(&land(true), detail, Curves::All), page(&land(true), detail, Curves::On));
-    assert_eq!((&all.chains, &all.marks), (&seen.chains, &seen.marks));
-    assert!(seen.hidden.is_empty() && !all.hidden.is_empty());
+    for detail in [Detail::Uniform(Level::EIGHT), Detail::default()] {
+        let (all, seen) = (page(&land(true), detail, Curves::All), page(&land(true), detail, Curves::On));
+        assert_eq!((&all.chains, &all.marks), (&seen.chains, &seen.marks));
+        assert!(seen.hidden.is_empty() && !all.hidden.is_empty());
+    }
 }

@@ -4,6 +4,7 @@ use std::fs;
 
 use glam::DVec2;
 use hachure::geo::{ReadOptions, read};
+use hachure::ink::styles::BuiltIn;
 use hachure::line::{Chain, Lines, overhead};
 use serde_json::Value;
 
@@ -122,6 +123,23 @@ fn a_plan_is_true_to_scale_and_knows_no_heights() {
 }
 
 #[test]
+fn every_style_draws_whole_rims() {
+    let place = Place::new();
+    fs::write(place.path("pens.toml"), "base = \"plotter\"\nplot.widths = [2.0]").expect("a style");
+    let built_in = BuiltIn::ALL.map(|style| style.to_string());
+    for style in built_in.iter().map(String::as_str).chain(["pens.toml"]) {
+        let output = place.run(&[
+            "draw", "hill.asc", "-o", "a.svg", "--plan", "--scale", "1:2000", "--margin", "0", "--style", style,
+        ]);
+        assert!(output.status.success(), "{}", stderr(&output));
+        let svg = fs::read_to_string(place.path("a.svg")).expect("a file");
+        assert_eq!(svg.matches("<path").count(), 2, "{style}: the border and a hole");
+        assert_eq!(svg.matches("id=\"c").count(), 2, "{style}");
+        assert_eq!(svg.matches("Z").count(), if svg.contains("fill=\"none\"") { 2 } else { 4 }, "{style}");
+    }
+}
+
+#[test]
 fn what_a_plan_cannot_have_is_refused_with_a_reason() {
     let place = Place::new();
     let with = |more: &[&'static str]| [&["draw", "hill.asc", "-o", "out.png"], more].concat();
@@ -139,7 +157,7 @@ fn what_a_plan_cannot_have_is_refused_with_a_reason() {
         (&["--plan", "--scale", "1:2000", "--page", "A4"], "--page"),
         (
             &["--plan", "--scale", "1:10"],
-            "--scale: the DEM is 39000 x 39000 mm at 1:10, over 5000; use --scale 1:79 or a --crop",
+            "--scale: the DEM is 39000 x 39000 mm at 1:10, over 4980; use --scale 1:79 or a --crop",
         ),
         (
             &["--plan", "--scale", "1:900000"],
@@ -148,4 +166,6 @@ fn what_a_plan_cannot_have_is_refused_with_a_reason() {
     ] {
         refuses(&place, &with(more), 2, words);
     }
+    let margins = ["--plan", "--scale", "1:2000", "--margin", "2497"];
+    refuses(&place, &with(&margins), 2, "--margin: margins of 2497 mm leave nothing of a page of 5000 mm");
 }

@@ -94,7 +94,7 @@ fn pages_that_cannot_be_are_refused_before_the_work() {
         (&["--page", "A7"], "or WxH in millimetres, each from 10 to 5000"),
         (&["--page", "nanxnan"], "or WxH in millimetres"),
         (&["--page", "A4", "--margin", "105"], "--margin: margins of 105 mm leave nothing of a page of 210 x 297 mm"),
-        (&["--page", "A4", "--margin", "-1"], "want millimetres, 0 or more"),
+        (&["--page", "A4", "--margin", "-1"], "want millimetres, from 0 to 5000"),
         (&["--margin", "5"], "--margin: goes with a page of millimetres only; add --page NAME|WxH or leave it out"),
         (&["--landscape"], "--page"),
         (

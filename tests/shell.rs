@@ -147,10 +147,11 @@ fn completions_and_man_pages_hold_every_flag() {
     generate(&["man", "-o", "."]);
     assert_eq!(
         place.written(),
-        ["hachure-cache.1", "hachure-compare.1", "hachure-draw.1", "hachure-info.1", "hachure.1"]
+        ["hachure-cache.1", "hachure-compare.1", "hachure-draw.1", "hachure-info.1", "hachure-styles.1", "hachure.1"]
     );
-    let files = ["hachure.1", "hachure-draw.1", "hachure-compare.1", "hachure-cache.1", "hachure-info.1"];
-    let files = files.map(|name| fs::read_to_string(place.path(name)).expect(name)).concat();
+    let names = ["hachure", "hachure-draw", "hachure-compare", "hachure-cache", "hachure-styles", "hachure-info"];
+    let files = names.map(|name| format!("{name}.1"));
+    let files = files.map(|name| fs::read_to_string(place.path(&name)).expect("a page")).concat();
     assert_eq!(files.replace("\\-", "-"), pages);
     assert!(!stdout(&place.run(&["--help"])).contains("generate"), "it is for packagers, so hidden");
 }

@@ -79,6 +79,14 @@ fn free_ends_taper_and_others_do_not() {
     assert!(inner.clone().count() > 90 && inner.clone().all(|point| point.width > 0.999));
     assert!(widths(1)[..20].is_sorted(), "{:?}", &widths(1)[..20]);
     assert_eq!(drawing.layers[0].form, Form::Outlines);
+    // However short the taper, there are few points more; and a line without length is no number.
+    let style = Style { weight: Weight { taper: 1e-9, ..even().weight }, ..even() };
+    let drawing = drawn(vec![plain(1, [40, 160], 50.0)], &style, &[]);
+    assert!(drawing.layers[0].strokes[0].points.len() < 200);
+    let spot = Chain { id: None, points: vec![point([50.0, 50.0], 1000.0, 1.0); 2], closed: false };
+    let drawing = drawn(vec![spot], &style, &[]);
+    let points = drawing.layers.iter().flat_map(|layer| &layer.strokes).flat_map(|stroke| &stroke.points);
+    assert!(points.clone().all(|point| point.place.is_finite() && point.width.is_finite()));
     // A ring has no end.
     let ring = (0..60).map(|i| DVec2::from_angle(f64::from(i) / 60.0 * std::f64::consts::TAU) * 20.0 + 50.0);
     let ring = Chain { id: None, points: ring.map(|at| point(at.to_array(), 1000.0, 1.0)).collect(), closed: true };
@@ -151,6 +159,12 @@ fn every_layer_of_a_plot_has_its_marks() {
     let chains = vec![plain(1, [20, 180], 50.0), level(2, [20, 180], 70.0, |_| (1000.0, 0.4))];
     let drawing = drawn(chains, &style, &[]);
     assert_eq!(drawing.layers.len(), 2);
+    let places = |layer: &hachure::ink::Layer| {
+        let marks = layer.strokes.iter().filter(|stroke| stroke.chain.is_none());
+        let points = marks.flat_map(|mark| &mark.points).map(|point| point.place.to_array().map(f64::to_bits));
+        points.collect::<std::collections::BTreeSet<_>>()
+    };
+    assert_eq!(places(&drawing.layers[0]), places(&drawing.layers[1]), "one lies on the other");
     for layer in &drawing.layers {
         let marks: Vec<_> = layer.strokes.iter().filter(|stroke| stroke.chain.is_none()).collect();
         assert_eq!(marks.len(), 4, "{}", layer.name);
@@ -175,6 +189,24 @@ fn hidden_lines_are_dashed_in_a_layer_below() {
     let faded = vec![level(7, [20, 120], 30.0, |x| (1000.0, if x < 70.0 { 1.0 } else { 0.0 }))];
     let drawing = draw(&lines(vec![], faded), &SHEET, &style, &[]).expect("a drawing");
     assert!(drawing.layers[0].strokes.iter().all(|dash| extent(dash)[1] < 71.0));
+}
+
+#[test]
+fn lines_of_one_width_are_drawn_by_the_nearest_pen_however_fine_they_are() {
+    let mut style = pens(&[0.5, 1.0]);
+    style.pens.hidden.width = 0.1;
+    let drawing = draw(&lines(vec![], vec![plain(7, [20, 120], 30.0)]), &SHEET, &style, &[]).expect("a drawing");
+    assert_eq!(names(&drawing), ["1 hidden 0.5 mm"]);
+}
+
+#[test]
+fn a_pen_broader_than_the_sheet_draws_nothing() {
+    let mut style = pens(&[0.5, 10.0]);
+    style.pens.silhouette.width = 10.0;
+    style.plot.registration = true;
+    let sheet = Sheet { size: DVec2::new(20.0, 10.0), margin: 1.0 };
+    let drawing = draw(&lines(vec![plain(1, [10, 190], 50.0)], vec![]), &sheet, &style, &[]).expect("a drawing");
+    assert!(drawing.layers.is_empty(), "{:?}", names(&drawing));
 }
 
 #[test]

@@ -1,15 +1,37 @@
 //! Parts of the mask that no stroke draws, and why, on lines and masks made here.
 
+use std::fs;
+
 use glam::{DVec2, DVec3};
 use hachure::ink::style::{Plot, Weight};
 use hachure::ink::unstroked::{Unstroked, Why};
 use hachure::ink::{Sheet, Style, draw, unstroked};
 use hachure::line::{Chain, ChainPoint, Kind, Line, Lines, Marks, Recession};
 
+use serde_json::Value;
+
+use crate::cli::{Place, stderr};
 use crate::ink::raster;
 
 const FRAME: [u32; 2] = [120, 60];
 const SHEET: Sheet = Sheet { size: DVec2::new(120.0, 60.0), margin: 0.0 };
+
+#[test]
+fn on_real_land_every_line_of_the_mask_has_its_stroke_or_is_left_out_by_economy() {
+    let place = Place::new();
+    let dem = concat!(env!("CARGO_MANIFEST_DIR"), "/dem/golden-gate.tif");
+    let lines = |more: &[&str]| {
+        let always = ["draw", dem, "-o", "a.svg", "--json", "a.json", "--size", "1600x700", "--azimuth", "318"];
+        let output = place.run(&[&always[..], &["--eye", "547500,4183300,+300", "--altitude", "-6"], more].concat());
+        assert!(output.status.success(), "{}", stderr(&output));
+        let report: Value = serde_json::from_slice(&fs::read(place.path("a.json")).expect("a file")).expect("JSON");
+        let without = report["without_stroke"].as_array().expect("a list").clone();
+        without.into_iter().filter(|part| part["why"] != "speck").collect::<Vec<_>>()
+    };
+    let sparing = lines(&["--min-gap", "2mm"]);
+    assert!(!sparing.is_empty() && sparing.iter().all(|part| part["why"] == "economy"), "{sparing:?}");
+    assert_eq!(lines(&["--min-gap", "0", "--min-jump", "0"]), [] as [Value; 0]);
+}
 
 /// A line of ink from column 10 to 109 in these rows.
 fn mask(rows: &[i64]) -> Marks {

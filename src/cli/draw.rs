@@ -168,6 +168,9 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     journey::tell(&stroked.drawing, &stroked.style.plot, talk)?;
     arguments.tell(&drawn, started, talk)?;
     let Drawn { page, .. } = drawn;
+    if stroked.drawing.layers.is_empty() && page.marks.inked() > 0 {
+        talk.warn("nothing is drawn: the style leaves no stroke of the lines; give it finer pens, or --min-gap 0 --min-jump 0");
+    }
     blank::warn(&mut renderer, &view, arguments.level, &page, talk);
     Ok(())
 }
@@ -235,8 +238,9 @@ impl DrawArguments {
         warn_of_survey(surface.dem(), talk)?;
         let view = self.view.sized(frame).view(surface, self.level.near())?;
         view.warn_below_ground(surface, self.level.near(), talk);
-        talk.say(&format!("view: {}", view.flags()))?;
-        view.lonlat_flags().map_or(Ok(()), |flags| talk.say(&format!("or with: {flags}")))?;
+        let page = self.page.flags();
+        talk.say(&format!("view: {}{page}", view.flags()))?;
+        view.lonlat_flags().map_or(Ok(()), |flags| talk.say(&format!("or with: {flags}{page}")))?;
         view.norths.words().map_or(Ok(()), |words| talk.say(&words))?;
         Ok(view)
     }
@@ -276,9 +280,10 @@ impl DrawArguments {
     fn stroked(&self, drawn: &Drawn, style: Style, layout: Layout) -> Result<Stroked> {
         let marks = &drawn.page.marks;
         let px_per_mm = layout.sheet.placement([marks.width, marks.height]).px_per_mm;
-        let lines = match drawn.page.frame.plan.has_curves() {
-            true => drawn.renderer.lines(&drawn.page, &self.style.economy(&style, px_per_mm)),
-            false => Lines::of(marks, &drawn.renderer.perspective(&drawn.page.frame), style.tolerance * px_per_mm),
+        let (tolerance, page) = (style.tolerance * px_per_mm, &drawn.page);
+        let lines = match page.frame.plan.has_curves() {
+            true => drawn.renderer.lines(page, &self.style.economy(&style, px_per_mm), tolerance),
+            false => Lines::of(marks, &drawn.renderer.perspective(&page.frame), tolerance),
         };
         let drawing = ink::draw(&lines, &layout.sheet, &style, self.style.split())?;
         Ok(Stroked { style, lines, drawing, layout })

@@ -4,15 +4,16 @@ use super::talk::Talk;
 use crate::error::Result;
 use crate::ink::plot::Journey;
 use crate::ink::style::Plot;
-use crate::ink::{Drawing, Form};
+use crate::ink::{Drawing, Form, Layer};
 
-/// Says what the pens of a plotter will do, where all layers are lines for pens.
+/// Says what the pens of a plotter will do with the layers of lines for them, where a style is meant for plotters.
 ///
 /// # Errors
 /// As [`Talk::say`].
 pub fn tell(drawing: &Drawing, plotter: &Plot, talk: &Talk) -> Result<()> {
-    let layers = &drawing.layers;
-    if layers.is_empty() || layers.iter().any(|layer| layer.form == Form::Outlines) {
+    let is_line = |layer: &&Layer| layer.form == Form::CentreLines;
+    let layers: Vec<&Layer> = drawing.layers.iter().filter(is_line).collect();
+    if layers.is_empty() || !plotter.centre_lines {
         return Ok(());
     }
     let journey: Journey = layers.iter().map(|layer| Journey::through(&layer.strokes)).sum();

@@ -55,6 +55,20 @@ pub struct Layout {
 }
 
 impl PageArguments {
+    /// The flags that repeat it, with a space before each; none without a page.
+    pub fn flags(&self) -> String {
+        self.sheet().map_or_else(String::new, |sheet| {
+            format!(" --page {}x{} --margin {}", sheet.size.x, sheet.size.y, sheet.margin)
+        })
+    }
+
+    /// The sheet that is asked for.
+    fn sheet(&self) -> Option<Sheet> {
+        let page = self.page?;
+        let page = if self.landscape { DVec2::new(page.max_element(), page.min_element()) } else { page };
+        Some(Sheet { size: page, margin: self.margin.unwrap_or(MARGIN) })
+    }
+
     /// Blank on all sides, mm.
     pub fn margin(&self) -> Option<f64> {
         self.margin
@@ -70,7 +84,7 @@ impl PageArguments {
     /// # Errors
     /// [`Error::Setting`] where they do not go together, or are too large or too small.
     pub fn layout(&self, size: Option<Size>, otherwise: Size) -> Result<Layout> {
-        let Some(page) = self.page else {
+        let Some(sheet) = self.sheet() else {
             if self.margin.is_some() {
                 let remedy = message!["add ", Setting::Page.with_value(), " or leave it out"];
                 return Err(Error::setting(Setting::Margin, "goes with a page of millimetres only", remedy));
@@ -80,8 +94,7 @@ impl PageArguments {
             let own = f64::from(frame.width) / Sheet::WIDTH;
             return Ok(Layout { sheet, frame, px_per_mm: self.dpi.map_or(own, |dpi| dpi / MM_PER_INCH) });
         };
-        let page = if self.landscape { DVec2::new(page.max_element(), page.min_element()) } else { page };
-        let sheet = Sheet { size: page, margin: self.margin.unwrap_or(MARGIN) };
+        let page = sheet.size;
         if (page - 2.0 * sheet.margin).min_element() < LEAST_AREA {
             let what = format!("margins of {} mm leave nothing of a page of {} x {} mm", sheet.margin, page.x, page.y);
             return Err(Error::setting(Setting::Margin, what, message!["use a smaller ", Setting::Margin]));
@@ -90,17 +103,6 @@ impl PageArguments {
             Some(Size { width, height }) => sheet.check_frame([width, height]).map(|()| [width, height])?,
             None => sheet.frame(Sheet::FRAME_PX_PER_MM),
         };
-        if frame.into_iter().max() > Some(LARGEST_PAGE) {
-            let what = format!(
-                "{} x {} mm take a frame of {}x{} pixels, over {LARGEST_PAGE}",
-                page.x, page.y, frame[0], frame[1]
-            );
-            return Err(Error::setting(
-                Setting::Page,
-                what,
-                message!["use a smaller page, or give its frame by ", Setting::Size],
-            ));
-        }
         Ok(Layout { sheet, frame: Size { width: frame[0], height: frame[1] }, px_per_mm: self.px_per_mm() })
     }
 }

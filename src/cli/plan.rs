@@ -6,7 +6,7 @@ use glam::DVec2;
 use serde::Serialize;
 
 use super::draw::DrawArguments;
-use super::draw_report::DemReport;
+use super::draw_report::{DemReport, LayerReport, PageReport};
 use super::journey;
 use super::page::{Layout, MARGIN};
 use super::talk::Talk;
@@ -15,6 +15,7 @@ use super::values::{PAGES_MM, Size};
 use crate::dem::Dem;
 use crate::error::{Error, Result, Setting};
 use crate::files::Taken;
+use crate::ink::strokes::inset;
 use crate::ink::{self, Sheet};
 use crate::line::overhead;
 use crate::message;
@@ -28,7 +29,8 @@ struct PlanReport {
     version: &'static str,
     dem: DemReport,
     scale: f64,
-    page_mm: [f64; 2],
+    page: PageReport,
+    layers: Vec<LayerReport>,
     /// West, south, east and north of the page less its margins, metres of the DEM's CRS.
     area_m: [f64; 4],
     lines: usize,
@@ -44,7 +46,9 @@ pub fn run(arguments: &DrawArguments, scale: f64, talk: &Talk) -> Result<()> {
         let what = "a mask is of what an eye sees, and a plan has none";
         return Err(Error::setting(Setting::Mask, what, message!["leave out ", Setting::Mask, " or ", Setting::Plan]));
     }
-    let style = arguments.style.style()?;
+    let mut style = arguments.style.style()?;
+    // The corners of the rim do as well.
+    style.plot.registration = false;
     let started = Instant::now();
     let cache = arguments.cache.cache();
     let reading = arguments.terrain.open(&arguments.terrain.dems, 1.0, cache)?;
@@ -52,7 +56,7 @@ pub fn run(arguments: &DrawArguments, scale: f64, talk: &Talk) -> Result<()> {
     let dem = arguments.terrain.read(reading, talk)?;
     warn_of_survey(&dem, talk)?;
     dem.check_patches()?;
-    let layout = layout(&dem, scale, style.pens.border.width, arguments)?;
+    let layout = layout(&dem, scale, inset(style.broadest()) + style.wobble.reach, arguments)?;
     let frame = [layout.frame.width, layout.frame.height];
     let lines = overhead(&dem, frame, layout.sheet.placement(frame).px_per_mm * MM / scale)?;
     let drawing = ink::draw(&lines, &layout.sheet, &style, &[])?;
@@ -60,7 +64,8 @@ pub fn run(arguments: &DrawArguments, scale: f64, talk: &Talk) -> Result<()> {
         version: env!("CARGO_PKG_VERSION"),
         dem: DemReport::of(&arguments.terrain.dems, &dem),
         scale,
-        page_mm: layout.sheet.size.to_array(),
+        page: PageReport::of(&layout),
+        layers: LayerReport::all(&drawing, &style.plot),
         area_m: dem.extent(),
         lines: lines.chains.len(),
     };
@@ -78,16 +83,21 @@ pub fn run(arguments: &DrawArguments, scale: f64, talk: &Talk) -> Result<()> {
     ))
 }
 
-/// The page that is the DEM at that scale, with margins; half of a pen that draws its border lies in these.
+/// The page that is the DEM at that scale, with margins; in these lies so much that a pen takes to draw the border.
 fn layout(dem: &Dem, scale: f64, pen: f64, arguments: &DrawArguments) -> Result<Layout> {
     let ([west, south, east, north], margin) = (dem.extent(), arguments.page.margin().unwrap_or(MARGIN));
     let area = DVec2::new(east - west, north - south) * (MM / scale);
-    let margin = margin.max(pen / 2.0);
-    let sheet = Sheet { size: area + 2.0 * margin, margin: margin - pen / 2.0 };
+    let margin = margin.max(pen);
+    let sheet = Sheet { size: area + 2.0 * margin, margin: margin - pen };
     let [least, most] = PAGES_MM;
+    if 2.0 * margin + least > most {
+        let what = format!("margins of {margin} mm leave nothing of a page of {most} mm");
+        return Err(Error::setting(Setting::Margin, what, message!["use a smaller ", Setting::Margin]));
+    }
     let fits = |side: f64| side / (most - 2.0 * margin) * scale;
     if sheet.size.max_element() > most {
-        let what = format!("the DEM is {:.0} x {:.0} mm at 1:{scale}, over {most}", area.x, area.y);
+        let room = most - 2.0 * margin;
+        let what = format!("the DEM is {:.0} x {:.0} mm at 1:{scale}, over {room:.0}", area.x, area.y);
         let least = format!("1:{:.0}", fits(area.max_element()).ceil());
         return Err(Error::setting(
             Setting::Scale,

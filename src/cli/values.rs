@@ -319,7 +319,7 @@ pub fn page(text: &str) -> Result<DVec2, String> {
 /// Millimetres of a margin.
 pub fn margin(text: &str) -> Result<f64, String> {
     let margin = number(text.strip_suffix("mm").unwrap_or(text)).ok().filter(|mm| (0.0..=PAGES_MM[1]).contains(mm));
-    margin.ok_or_else(|| "want millimetres, 0 or more".into())
+    margin.ok_or_else(|| format!("want millimetres, from 0 to {}", PAGES_MM[1]))
 }
 
 /// `1:N`.

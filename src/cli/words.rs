@@ -60,7 +60,6 @@ pub fn flag(setting: Setting) -> &'static str {
         Setting::Share => "--share",
         Setting::Size => "--size",
         Setting::Sizes => "--sizes",
-        Setting::Split => "--split",
         Setting::Style => "--style",
         Setting::Views => "--views",
         Setting::Warp => "--no-warp",

@@ -122,8 +122,6 @@ settings! {
     Size = "size",
     /// Several pages.
     Sizes = "sizes",
-    /// Distances that part layers.
-    Split = "split",
     /// The look of the drawing.
     Style = "style",
     /// The file of views.

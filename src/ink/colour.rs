@@ -26,7 +26,9 @@ impl FromStr for Colour {
         let channel = |digits: &str, i: usize| u8::from_str_radix(digits.get(2 * i..2 * i + 2)?, 16).ok();
         let colour =
             digits.and_then(|digits| Some(Self([channel(digits, 0)?, channel(digits, 1)?, channel(digits, 2)?])));
-        colour.filter(|_| !text.contains('+')).ok_or_else(|| format!("`{text}` is no colour; want #rrggbb, as #26201a"))
+        colour
+            .filter(|_| !text.contains('+'))
+            .ok_or_else(|| format!("`{text}` is no colour, expected #rrggbb, as #26201a"))
     }
 }
 

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use glam::DVec2;
 use rustc_hash::FxHashMap;
 
-use super::strokes::{Inked, Inking, Run};
+use super::strokes::{Inked, Inking, Run, inset};
 use super::wobble::Hand;
 use super::{Drawing, Form, Layer, Pen, Sheet, Stroke, StrokePoint, Style, plot};
 use crate::error::{Error, Result, Setting};
@@ -85,6 +85,7 @@ pub fn draw(lines: &Lines, sheet: &Sheet, style: &Style, split: &[f64]) -> Resul
     check_dashes(lines, &inking, style)?;
     let free = ends::free(&lines.chains, [lines.width, lines.height]);
     let mut layers: Vec<Layer> = Vec::new();
+    let mut pieces = FxHashMap::default();
     for kind in Kind::ALL {
         let runs = match kind {
             Kind::Hidden => of_each(lines.hidden.iter(), |chain| inking.dashed(chain, &style.dashes)),
@@ -100,15 +101,15 @@ pub fn draw(lines: &Lines, sheet: &Sheet, style: &Style, split: &[f64]) -> Resul
                 let words = [zone_name(zone, split), width.map(|width| format!("{width} mm"))];
                 let number = format!("{} {}", layers.len() + 1, kind.name());
                 let name = [number].into_iter().chain(words.into_iter().flatten()).collect::<Vec<_>>().join(" ");
-                let finished = |(id, run)| inking.finished(run, pen.width).into_iter().map(move |run| stroke(id, &run));
-                let strokes: Vec<Stroke> = runs.into_iter().flat_map(finished).collect();
+                let finished = |(id, run)| inking.finished(run, pen.width).into_iter().map(move |run| (id, run));
+                let finished = runs.into_iter().flat_map(finished);
+                let strokes: Vec<Stroke> = finished.map(|(id, run)| stroke(id, &mut pieces, &run)).collect();
                 if !strokes.is_empty() {
                     layers.push(layer(name, pen, strokes, sheet, style));
                 }
             }
         }
     }
-    number_pieces(&mut layers);
     Ok(Drawing { sheet: *sheet, paper: style.paper, layers })
 }
 
@@ -157,8 +158,9 @@ fn by_width(runs: Vec<Named>, pen: Pen, style: &Style) -> Vec<(Option<f64>, Vec<
         return vec![(None, runs)];
     }
     let widths = if style.plot.widths.is_empty() { vec![pen.width] } else { style.plot.widths.clone() };
-    // What is finer than half the finest pen is not drawn.
-    let bounds = [widths[0] / 2.0].into_iter().chain(widths.windows(2).map(|pair| (pair[0] + pair[1]) / 2.0));
+    // What thins to half the finest pen is not drawn from there on.
+    let bounds =
+        [widths[0].min(pen.width) / 2.0].into_iter().chain(widths.windows(2).map(|pair| (pair[0] + pair[1]) / 2.0));
     let bounds: Vec<f64> = bounds.map(|bound| bound / pen.width).collect();
     let mut layers: Vec<Vec<Named>> = vec![Vec::new(); widths.len()];
     for (id, run) in runs {
@@ -172,38 +174,46 @@ fn by_width(runs: Vec<Named>, pen: Pen, style: &Style) -> Vec<(Option<f64>, Vec<
 }
 
 /// Parts of one run by pens, 0 for none, without short ones between longer ones: these are drawn as the longest beside them.
-fn settled(mut parts: Vec<(usize, Run)>) -> Vec<(usize, Run)> {
+fn settled(parts: Vec<(usize, Run)>) -> Vec<(usize, Run)> {
+    let measured = |(pen, run): (usize, Run)| (pen, run.length(), run);
+    let mut parts: Vec<(usize, f64, Run)> = parts.into_iter().map(measured).collect();
     loop {
-        let drawn = |i: usize| parts.get(i).filter(|part| part.0 > 0).map(|part| (part.1.length(), i));
+        let drawn = |i: usize| parts.get(i).filter(|part| part.0 > 0).map(|part| (part.1, i));
         let beside = |i: usize| [i.checked_sub(1), Some(i + 1)].into_iter().flatten().filter_map(drawn);
         let joins = |i: usize| {
-            let (gap, length) = (parts[i].0 == 0, parts[i].1.length());
+            let (gap, length) = (parts[i].0 == 0, parts[i].1);
             let longest = beside(i).max_by(|a, b| a.0.total_cmp(&b.0))?;
             let is_short = if gap { length < GAP && beside(i).count() == 2 } else { length < SHORT.min(longest.0) };
             is_short.then_some((i, parts[longest.1].0))
         };
-        let Some((short, pen)) = (0..parts.len()).find_map(joins) else { return parts };
+        let Some((short, pen)) = (0..parts.len()).find_map(joins) else {
+            return parts.into_iter().map(|(pen, _, run)| (pen, run)).collect();
+        };
         parts[short].0 = pen;
-        let mut merged: Vec<(usize, Run)> = Vec::with_capacity(parts.len());
-        for (pen, run) in parts {
-            match merged.last_mut().filter(|last| last.0 == pen) {
-                Some((_, last)) => last.points.extend(run.points.into_iter().skip(1)),
-                None => merged.push((pen, run)),
+        // Beside it at most two are of the same pen now.
+        let first = short.saturating_sub(1);
+        for next in (first + 1..parts.len().min(short + 2)).rev() {
+            if parts[next - 1].0 == parts[next].0 {
+                let (_, length, run) = parts.remove(next);
+                parts[next - 1].1 += length;
+                parts[next - 1].2.points.extend(run.points.into_iter().skip(1));
             }
         }
-        parts = merged;
     }
 }
 
-fn stroke(chain: Option<Id>, run: &Run) -> Stroke {
+/// The stroke of a run, one piece of its chain more.
+fn stroke(chain: Option<Id>, pieces: &mut FxHashMap<Id, u32>, run: &Run) -> Stroke {
     let point = |point: &Inked| StrokePoint { place: point.place, width: point.width };
-    Stroke { chain, piece: 0, points: run.points.iter().map(point).collect(), closed: run.closed }
+    let next = chain.map(|chain| pieces.entry(chain).or_default());
+    let piece = next.map_or(0, |next| std::mem::replace(next, *next + 1));
+    Stroke { chain, piece, points: run.points.iter().map(point).collect(), closed: run.closed }
 }
 
 /// A layer, in the order of plotting where a pen follows its lines.
 fn layer(name: String, pen: Pen, mut strokes: Vec<Stroke>, sheet: &Sheet, style: &Style) -> Layer {
     if style.plot.registration {
-        strokes.extend(marks(sheet, pen.width));
+        strokes.extend(marks(sheet, style.broadest()));
     }
     let is_even = strokes.iter().flat_map(|stroke| &stroke.points).all(|point| point.width == 1.0);
     let found = plot::Journey::through(&strokes);
@@ -213,28 +223,17 @@ fn layer(name: String, pen: Pen, mut strokes: Vec<Stroke>, sheet: &Sheet, style:
     }
 }
 
-/// Brackets in the corners of the area, by which one layer is laid over another.
+/// Brackets in the corners of the area, by which one layer is laid over another: in the same places whatever the pen, if
+/// `pen` is the broadest.
 fn marks(sheet: &Sheet, pen: f64) -> impl Iterator<Item = Stroke> {
     let [low, high] = sheet.area();
-    let (low, high) = (low + pen / 2.0, high - pen / 2.0);
-    let arm = (high - low).min_element().clamp(0.0, MARK);
+    let (low, high) = (low + inset(pen), high - inset(pen));
+    let arm = ((high - low).min_element() / 2.0).clamp(0.0, MARK);
     let corners = [low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)];
-    corners.into_iter().map(move |corner| {
+    corners.into_iter().filter(move |_| arm > 0.0).map(move |corner| {
         let inward = ((low + high) / 2.0 - corner).signum() * arm;
         let places = [corner + DVec2::new(inward.x, 0.0), corner, corner + DVec2::new(0.0, inward.y)];
         let points = places.map(|place| StrokePoint { place, width: 1.0 }).to_vec();
         Stroke { chain: None, piece: 0, points, closed: false }
     })
-}
-
-/// Tells the strokes of each chain apart, in the order of the drawing.
-fn number_pieces(layers: &mut [Layer]) {
-    let mut next: FxHashMap<Id, u32> = FxHashMap::default();
-    for stroke in layers.iter_mut().flat_map(|layer| &mut layer.strokes) {
-        if let Some(chain) = stroke.chain {
-            let count = next.entry(chain).or_default();
-            stroke.piece = *count;
-            *count += 1;
-        }
-    }
 }

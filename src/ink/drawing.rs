@@ -63,9 +63,9 @@ pub enum Form {
 /// One line without lifting the pen; one point is a dot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stroke {
-    /// The chain it draws, or the first of those it draws; `None` where that has no name.
+    /// The chain it draws, of several the lowest; `None` where that has no name.
     pub chain: Option<Id>,
-    /// Which of the strokes of that chain it is, from 0 on, in the order of the drawing.
+    /// Which of the strokes of that chain it is, from 0 on: along the chain, layer by layer.
     pub piece: u32,
     /// At least one.
     pub points: Vec<StrokePoint>,

@@ -14,7 +14,7 @@ pub mod pdf;
 pub mod plot;
 pub mod png;
 pub mod sheet;
-mod strokes;
+pub mod strokes;
 pub mod style;
 pub mod styles;
 pub mod svg;

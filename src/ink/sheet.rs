@@ -69,10 +69,11 @@ impl Sheet {
     /// Whether a frame fills the area.
     ///
     /// # Errors
-    /// [`Error::Setting`] where it is longer or shorter by more than a pixel.
+    /// [`Error::Setting`] where it is longer or shorter by a pixel or more.
     pub fn check_frame(&self, [width, height]: [u32; 2]) -> Result<()> {
         let fitting = self.frame_across(f64::from(width));
-        if height.abs_diff(fitting[1]) <= 1 {
+        let down = self.inner().y * f64::from(width) / self.inner().x;
+        if (f64::from(height) - down).abs() < 1.0 {
             return Ok(());
         }
         let DVec2 { x, y } = self.inner();

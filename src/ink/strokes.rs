@@ -6,12 +6,15 @@
 
 use glam::{DVec2, FloatExt};
 
+use super::plot;
 use super::sheet::Placement;
 use super::style::{Dashes, Weight};
 use super::wobble::Hand;
 use crate::line::{Chain, ChainPoint, Recession};
 use crate::view::cut::share_within;
 
+/// Most points between two of a line where it tapers.
+const TAPERED: usize = 16;
 /// Least weight of a hidden line that is drawn.
 const SHOWN: f64 = 0.5;
 /// Pixels of the square in which ink crowds.
@@ -88,9 +91,9 @@ impl Inking<'_> {
 
     /// What lies inside the margins of a run that a pen so wide draws, as the hand draws it.
     pub fn finished(&self, run: Run, pen: f64) -> Vec<Run> {
-        let strayed = self.strayed(run);
-        let [low, high] = self.area;
-        strayed.within([low + pen / 2.0, high - pen / 2.0])
+        let [low, high] = [self.area[0] + inset(pen), self.area[1] - inset(pen)];
+        // A pen may be broader than the sheet.
+        if low.cmplt(high).all() { self.strayed(run).within([low, high]) } else { Vec::new() }
     }
 
     fn inked(&self, point: &ChainPoint, width: f64) -> Inked {
@@ -115,6 +118,11 @@ impl Inking<'_> {
         let stray = |point: &Inked| Inked { place: self.hand.stray(point.place), ..*point };
         Run { points: run.points.iter().map(stray).collect(), ..run }
     }
+}
+
+/// How far inside the margins the lines of a pen end, mm: what is too short to leave ink will grow.
+pub fn inset(pen: f64) -> f64 {
+    pen / 2.0 + plot::GROWTH
 }
 
 impl Run {
@@ -149,20 +157,32 @@ impl Run {
             return;
         }
         let length = self.length();
+        if length == 0.0 {
+            return;
+        }
         let ends = if free == [true; 2] { 2.0 } else { 1.0 };
         let taper = taper.min(length / ends);
-        *self = std::mem::replace(self, Self { points: Vec::new(), closed: false }).stepped(taper / 4.0);
+        let runs_out = |is_free: bool, way: f64| {
+            let t = if is_free { (way / taper).clamp(0.0, 1.0) } else { 1.0 };
+            t * (2.0 - t)
+        };
+        let share = |arc: f64| runs_out(free[0], arc) * runs_out(free[1], length - arc);
+        let mut tapered = Vec::with_capacity(self.points.len() + 2 * TAPERED);
         let mut arc = 0.0;
-        for i in 0..self.points.len() {
-            if i > 0 {
-                arc += self.points[i - 1].place.distance(self.points[i].place);
-            }
-            let runs_out = |is_free: bool, way: f64| {
-                let t = if is_free { (way / taper).clamp(0.0, 1.0) } else { 1.0 };
-                t * (2.0 - t)
-            };
-            self.points[i].width *= runs_out(free[0], arc) * runs_out(free[1], length - arc);
+        for pair in self.points.windows(2) {
+            let step = pair[0].place.distance(pair[1].place);
+            // What is whole at both ends is so between, but for runs shorter than both tapers.
+            let is_whole = share(arc) == 1.0 && share(arc + step) == 1.0;
+            let steps = if is_whole { 1.0 } else { (step / taper * 4.0).ceil().clamp(1.0, TAPERED as f64) };
+            tapered.extend((0..steps as u32).map(|s| {
+                let t = f64::from(s) / steps;
+                let point = pair[0].lerp(&pair[1], t);
+                Inked { width: point.width * share(arc + t * step), ..point }
+            }));
+            arc += step;
         }
+        tapered.extend(self.points.last().map(|last| Inked { width: last.width * share(length), ..*last }));
+        self.points = tapered;
     }
 
     /// The parts with width: they run out to points without, between two of which there is nothing.

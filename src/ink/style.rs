@@ -83,7 +83,7 @@ pub struct Weight {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Wobble {
-    /// How far lines stray at most; not farther than the tolerance.
+    /// How far lines stray at most: less than the tolerance.
     #[serde(deserialize_with = "length")]
     #[schemars(range(min = LENGTH[0], max = LENGTH[1]))]
     pub reach: f64,
@@ -131,6 +131,7 @@ pub struct Plot {
     pub centre_lines: bool,
     /// Widths of the pens at hand for that, a layer each; none: the pen of each kind of line.
     #[serde(deserialize_with = "widths")]
+    #[schemars(length(max = MOST_WIDTHS), inner(range(min = WIDTH[0], max = WIDTH[1])))]
     pub widths: Vec<f64>,
     /// Whether every layer has marks in the corners, to lay the next one over it.
     pub registration: bool,
@@ -218,14 +219,21 @@ impl Style {
         Economy { min_jump: self.min_jump, min_gap: self.min_gap * px_per_mm }
     }
 
+    /// Width of the broadest pen.
+    pub fn broadest(&self) -> f64 {
+        let Pens { silhouette, border, crease, hidden } = self.pens;
+        let own = [silhouette, border, crease, hidden].map(|pen| pen.width).into_iter().fold(0.0, f64::max);
+        self.plot.widths.last().copied().filter(|_| self.plot.centre_lines).unwrap_or(own)
+    }
+
     /// What two settings say together that each may say alone.
     ///
     /// Else what is wrong, and what to do.
     pub(super) fn check(&self) -> Result<(), (String, String)> {
         let (reach, tolerance) = (self.wobble.reach, self.tolerance);
-        if reach > tolerance {
-            let what = format!("`wobble.reach` of {reach} mm is more than the `tolerance` of {tolerance} mm");
-            return Err((what, format!("lower `reach` in [wobble] to {tolerance}, or raise `tolerance`")));
+        if reach > 0.0 && reach >= tolerance {
+            let what = format!("`wobble.reach` of {reach} mm is not below the `tolerance` of {tolerance} mm");
+            return Err((what, format!("lower `reach` in [wobble] below {tolerance}, or raise `tolerance`")));
         }
         Ok(())
     }
@@ -238,7 +246,7 @@ fn within<'de, D: Deserializer<'de>>(from: D, bounds: [f64; 2], what: impl Displ
     if (least..=most).contains(&number) {
         return Ok(number);
     }
-    Err(de::Error::custom(format!("{number} is out of range; want {what}, {least} to {most}")))
+    Err(de::Error::custom(format!("{number} is out of range, expected {what}, {least} to {most}")))
 }
 
 fn length<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
@@ -279,7 +287,9 @@ fn widths<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<f64>, D::Error> {
     struct Width(#[serde(deserialize_with = "width")] f64);
     let widths: Vec<f64> = Vec::<Width>::deserialize(from)?.into_iter().map(|width| width.0).collect();
     if widths.len() > MOST_WIDTHS || !widths.is_sorted_by(|a, b| a < b) {
-        return Err(de::Error::custom(format!("want at most {MOST_WIDTHS} widths, each broader than the last")));
+        return Err(de::Error::custom(format!(
+            "widths are not in order, expected at most {MOST_WIDTHS}, each broader than the last"
+        )));
     }
     Ok(widths)
 }

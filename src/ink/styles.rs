@@ -4,7 +4,8 @@
 //! none. Mistakes are told with line and column, unknown keys and names with the known ones they come nearest to.
 
 use std::fmt::{self, Display, Formatter};
-use std::fs;
+use std::fs::{self, File};
+use std::io::{self, Read};
 use std::ops::Range;
 use std::path::Path;
 
@@ -88,7 +89,7 @@ pub fn find(name: &str) -> Result<Style> {
         return read(path);
     }
     let names = BuiltIn::ALL.map(|known| known.to_string());
-    let what = format!("there is no style {}", shown(path));
+    let what = format!("there is no style `{}`", shown(path));
     let known = names.iter().map(String::as_str).collect::<Vec<_>>();
     let remedy = format!("use {}, or a file that ends in .toml", meant(name, &known));
     Err(Error::setting(Setting::Style, what, remedy))
@@ -99,12 +100,17 @@ pub fn find(name: &str) -> Result<Style> {
 /// # Errors
 /// [`Error::Input`] where it cannot be read or is no style: where in it, what, and what was meant.
 fn read(path: &Path) -> Result<Style> {
-    let unreadable = |what: String| Error::input(path, what, "name a style that is there, or write one");
-    let length = fs::metadata(path).map_err(|e| unreadable(e.to_string()))?.len();
-    if length > LARGEST {
-        return Err(Error::input(path, format!("{length} bytes are no style"), "name a file of TOML"));
+    let unreadable = |e: io::Error| Error::input(path, e.to_string(), "name a file of TOML that can be read");
+    let wrong = |what: String| Error::input(path, what, "name a file of TOML");
+    // A pipe would be waited for.
+    if !fs::metadata(path).map_err(unreadable)?.is_file() {
+        return Err(wrong("it is no regular file".to_owned()));
     }
-    let text = fs::read_to_string(path).map_err(|e| unreadable(e.to_string()))?;
+    let mut text = String::new();
+    File::open(path).and_then(|file| file.take(LARGEST + 1).read_to_string(&mut text)).map_err(unreadable)?;
+    if text.len() as u64 > LARGEST {
+        return Err(wrong(format!("over {LARGEST} bytes are no style")));
+    }
     parse(&text, path)
 }
 
@@ -152,7 +158,7 @@ fn mistake(text: &str, path: &Path, message: &str, span: Option<Range<usize>>) -
     let remedy = match (unknown, &known[..]) {
         (Some(unknown), [_, ..]) => format!("use {}", meant(unknown, &known)),
         _ if !expected.is_empty() => format!("want {expected}"),
-        _ => "mend it; the JSON schema of styles says what each key takes".to_owned(),
+        _ => "mend it as the schema of styles says".to_owned(),
     };
     Error::input(path, format!("{place}{}", what.replace("unknown field", "unknown key")), remedy)
 }

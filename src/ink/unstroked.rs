@@ -8,8 +8,8 @@ use serde::Serialize;
 
 use super::Drawing;
 use super::sheet::Placement;
-use crate::line::strays::{around, connected};
-use crate::line::{Lines, Marks};
+use crate::line::strays::{LEAST, around, connected};
+use crate::line::{Id, Lines, Marks};
 use crate::view::cut::steps;
 
 /// An 8-connected set of inked pixels in which and beside which no stroke runs.
@@ -31,14 +31,15 @@ pub enum Why {
     Economy,
     /// Its line is finer than half the finest pen.
     Pens,
+    /// It is a speck of some pixels without a line: lone ones are dots, if the style draws these.
+    Speck,
     /// It lies at the edge, where a pen would leave the margins.
     Margin,
     /// No line was found there.
     NoLine,
 }
 
-/// The parts of a mask without a stroke of the drawing of its lines, in reading order. Traced lines are all drawn, but for
-/// dots.
+/// The parts of a mask without a stroke of the drawing of its lines, in reading order; dashes of hidden lines are none.
 pub fn unstroked(mask: &Marks, lines: &Lines, drawing: &Drawing) -> Vec<Unstroked> {
     let size = [mask.width, mask.height];
     let placement = drawing.sheet.placement(size);
@@ -48,6 +49,8 @@ pub fn unstroked(mask: &Marks, lines: &Lines, drawing: &Drawing) -> Vec<Unstroke
         pixels(size, kept.map(|pair| pair.map(|point| point.place)))
     };
     let (found, weighed) = (points(|_| true), points(|weight| weight > 0.0));
+    let lone = lines.chains.iter().filter(|chain| chain.points.len() == 1);
+    let dots = pixels(size, lone.flat_map(|chain| chain.pairs()).map(|pair| pair.map(|point| point.place)));
     let stroked = pixels(size, strokes(drawing, placement));
     let ink: Vec<[i64; 2]> = mask.places().map(|at| at.map(i64::from)).collect();
     let edge = |[x, y]: &[i64; 2]| *x <= 1 || *y <= 1 || *x >= i64::from(size[0]) - 2 || *y >= i64::from(size[1]) - 2;
@@ -58,9 +61,11 @@ pub fn unstroked(mask: &Marks, lines: &Lines, drawing: &Drawing) -> Vec<Unstroke
             return None;
         }
         let why = match (meets(&weighed), meets(&found)) {
+            _ if set.len() == 1 && meets(&dots) => Why::Speck,
             (true, _) if set.iter().any(edge) => Why::Margin,
             (true, _) => Why::Pens,
             (false, true) => Why::Economy,
+            (false, false) if set.len() < LEAST => Why::Speck,
             (false, false) => Why::NoLine,
         };
         let first = set.iter().min_by_key(|[x, y]| (*y, *x))?;
@@ -69,10 +74,11 @@ pub fn unstroked(mask: &Marks, lines: &Lines, drawing: &Drawing) -> Vec<Unstroke
     connected(&ink).into_iter().filter_map(of_set).collect()
 }
 
-/// The pieces of all strokes in pixels of the frame.
+/// The pieces of all strokes of what is seen, in pixels of the frame.
 fn strokes(drawing: &Drawing, placement: Placement) -> impl Iterator<Item = [DVec2; 2]> {
     let strokes = drawing.layers.iter().flat_map(|layer| &layer.strokes);
-    strokes.flat_map(move |stroke| {
+    let seen = strokes.filter(|stroke| !stroke.chain.is_some_and(Id::is_hidden));
+    seen.flat_map(move |stroke| {
         let next = |i: usize| stroke.points.get(i + 1).or(stroke.points.first().filter(|_| stroke.closed));
         let piece = move |(i, point)| {
             let end: &super::StrokePoint = next(i).unwrap_or(point);

@@ -80,6 +80,21 @@ impl ChainPoint {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Id(pub u64);
 
+impl Id {
+    /// What the names of hidden chains have before those of seen ones.
+    const HIDDEN: u64 = 1 << 63;
+
+    /// The name of a chain that is hidden, by one that seen ones may have too.
+    pub(super) fn hidden(self) -> Self {
+        Self(self.0 | Self::HIDDEN)
+    }
+
+    /// Whether its chain is hidden by nearer land.
+    pub fn is_hidden(self) -> bool {
+        self.0 & Self::HIDDEN != 0
+    }
+}
+
 /// An ordered polyline on the page; one point is a dot. Chains of [curves](super::curve) run as those do: what they draw the end
 /// of lies on their left, what is behind on their right.
 #[derive(Debug, Clone, PartialEq)]

@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3, UVec2};
 use rustc_hash::FxHashMap;
 
 use super::simplify::needed;
-use super::{Chain, ChainPoint, Line, Lines, Recession};
+use super::{Chain, ChainPoint, Id, Line, Lines, Recession};
 use crate::dem::Dem;
 use crate::error::Result;
 use crate::surface::rim::{RimEdge, rim};
@@ -34,11 +34,12 @@ pub fn overhead(dem: &Dem, [width, height]: [u32; 2], px_per_metre: f64) -> Resu
         ChainPoint { place, line, depth: 1.0, behind: 0.0, world, crowd: 0, weight: 1.0 }
     };
     let chain = |ring: Vec<Sample>| {
+        let id = Id(u64::from(ring[0][1]) << 32 | u64::from(ring[0][0]));
         let mut points: Vec<ChainPoint> = ring.iter().map(|sample| point(*sample)).collect();
         points.push(points[0]);
         let places: Vec<DVec3> = points.iter().map(|point| point.place.extend(0.0)).collect();
         let kept = needed(&places, STRAIGHT);
-        Chain { id: None, points: kept[..kept.len() - 1].iter().map(|i| points[*i]).collect(), closed: true }
+        Chain { id: Some(id), points: kept[..kept.len() - 1].iter().map(|i| points[*i]).collect(), closed: true }
     };
     Ok(Lines {
         width,

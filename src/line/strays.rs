@@ -7,7 +7,7 @@ use rustc_hash::FxHashSet;
 use super::{Chain, Marks, one_pixel_wide};
 
 /// Pixels of the smallest set of ink that counts as a line.
-const LEAST: usize = 6;
+pub const LEAST: usize = 6;
 
 /// Pixels of lines that one of the two has alone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -22,14 +22,32 @@ impl Strays {
     /// Compares the visible chains of a page with its mask.
     pub fn of(chains: &[Chain], mask: &Marks) -> Self {
         let drawn = one_pixel_wide(chains, [mask.width, mask.height]);
-        let places = |marks: &Marks| marks.places().map(|at| at.map(i64::from)).collect::<Vec<_>>();
-        let (lines, ink) = (places(&drawn), places(mask));
-        let beside = |marks: &Marks, at: [i64; 2]| around(at).any(|[x, y]| is_ink(marks, x, y));
-        let alone = lines.iter().filter(|at| !beside(mask, **at)).count();
-        let sets = connected(&ink).into_iter().filter(|set| set.len() >= LEAST);
-        let strange = sets.filter(|set| !set.iter().any(|at| beside(&drawn, *at)));
-        Self { chains: alone, ink: strange.map(|set| set.len()).sum() }
+        let alone = places(&drawn).into_iter().filter(|at| !is_beside(mask, *at)).count();
+        Self { chains: alone, ink: without_chain(&drawn, mask).map(|set| set.len()).sum() }
     }
+}
+
+/// The ink of a mask that is a line, and in which and beside which none of the chains runs.
+pub fn unchained(chains: &[Chain], mask: &Marks) -> Marks {
+    let size = [mask.width, mask.height];
+    let drawn = one_pixel_wide(chains, size);
+    let sets = without_chain(&drawn, mask);
+    Marks::new(size, sets.flatten().filter_map(|[x, y]| mask.at(x, y).copied()).collect())
+}
+
+/// The 8-connected sets of ink that count as lines without one that is drawn.
+fn without_chain(drawn: &Marks, mask: &Marks) -> impl Iterator<Item = Vec<[i64; 2]>> {
+    let sets = connected(&places(mask)).into_iter().filter(|set| set.len() >= LEAST);
+    sets.filter(|set| !set.iter().any(|at| is_beside(drawn, *at)))
+}
+
+fn places(marks: &Marks) -> Vec<[i64; 2]> {
+    marks.places().map(|at| at.map(i64::from)).collect()
+}
+
+/// Whether a pixel is inked, or one beside it.
+fn is_beside(marks: &Marks, at: [i64; 2]) -> bool {
+    around(at).any(|[x, y]| is_ink(marks, x, y))
 }
 
 fn is_ink(marks: &Marks, column: i64, row: i64) -> bool {

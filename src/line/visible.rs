@@ -35,9 +35,6 @@ const SHOWN: f64 = 0.03;
 /// Longest piece of a chain without a point, px: what varies along it is still told.
 const APART: f64 = 4.0;
 
-/// What the names of hidden chains have before those of seen ones.
-const HIDDEN: u64 = 1 << 63;
-
 /// What is drawn, in the order of labels.
 const LINES: [Line; 3] = [Line::Occluding, Line::Skyline, Line::Border];
 
@@ -70,9 +67,7 @@ fn sighted(mut curves: Vec<Curve>, [width, height]: [u32; 2], wants_hidden: bool
     };
     let (seen, hidden): (Vec<_>, Vec<_>) = (0..curves.len()).into_par_iter().map(of_curve).unzip();
     let (chains, mut hidden) = (named(seen.concat()), named(hidden.concat()));
-    for Id(id) in hidden.iter_mut().filter_map(|chain| chain.id.as_mut()) {
-        *id |= HIDDEN;
-    }
+    hidden.iter_mut().for_each(|chain| chain.id = chain.id.map(Id::hidden));
     (chains, hidden)
 }
 

@@ -2,7 +2,7 @@
 
 use super::{Drawn, Renderer};
 use crate::error::Result;
-use crate::line::{Chain, Economy, Lines, Marks, marks, one_pixel_wide, visible};
+use crate::line::{Chain, Economy, Lines, Marks, marks, one_pixel_wide, rest, visible};
 use crate::plan::{Curves, Frame, Piece, Plan, Yields};
 use crate::view::Camera;
 
@@ -24,13 +24,22 @@ pub struct Page {
 }
 
 impl Renderer {
-    /// Draws a frame and brings back its ink, piece by piece; tells `progress` what share is done.
+    /// Draws a frame and brings back its ink, piece by piece; tells `progress` what share is done. Hidden curves take a frame
+    /// of their own.
     ///
     /// # Errors
     /// As [`Self::frame`] and [`Self::read`].
     pub fn page(&mut self, plan: &Plan, camera: &Camera, progress: impl Fn(f64)) -> Result<Page> {
-        let frame = self.plan(plan, camera)?;
-        self.page_of(frame, progress)
+        if plan.curves != Curves::All {
+            let frame = self.plan(plan, camera)?;
+            return self.page_of(frame, progress);
+        }
+        // Land behind the horizon is as fine as before it, which may make that finer too: what is seen is not to change.
+        let all = self.plan(plan, camera)?;
+        let hidden = self.page_of(all, |share| progress(share / 2.0))?.hidden;
+        let seen = self.plan(&Plan { curves: Curves::On, ..*plan }, camera)?;
+        let page = self.page_of(seen, |share| progress(0.5 + share / 2.0))?;
+        Ok(Page { hidden, ..page })
     }
 
     /// The same of a frame that is planned, on a page that may be [cut](Frame::cut) in a way of its own.
@@ -67,9 +76,12 @@ impl Renderer {
         Ok(Page { marks, chains, hidden, covered, longest_walk, frame })
     }
 
-    /// The lines of a page with curves, drawn as sparingly as `economy` says.
-    pub fn lines(&self, page: &Page, economy: &Economy) -> Lines {
-        Lines::sparing(&page.chains, &page.hidden, &self.perspective(&page.frame), economy)
+    /// The lines of a page with curves, drawn as sparingly as `economy` says; those of its ink that no curve accounts for are
+    /// traced, and smoothed within `tolerance` px.
+    pub fn lines(&self, page: &Page, economy: &Economy, tolerance: f64) -> Lines {
+        let perspective = self.perspective(&page.frame);
+        let rest = rest(&page.chains, &page.marks, &perspective, economy, tolerance);
+        Lines::sparing(&[&page.chains[..], &rest].concat(), &page.hidden, &perspective, economy)
     }
 
     /// Draws a piece of a frame and brings it back, halo and all: `piece.drawn` of the page.

@@ -16,6 +16,8 @@ use crate::ink::{Stroke, StrokePoint};
 const SEGMENT: f64 = 0.0215;
 /// Length of the shortest stroke, mm: .05 in files.
 const STROKE: f64 = 0.0515;
+/// How far ends of strokes that are too short move outwards at most, mm.
+pub const GROWTH: f64 = STROKE / 2.0;
 
 /// The stroke without segments that are too short. A ring of two points is left to go there and back.
 pub fn thinned(mut stroke: Stroke) -> Stroke {
@@ -77,8 +79,7 @@ pub fn leaves_ink(stroke: &Stroke) -> bool {
     length(stroke) >= STROKE
 }
 
-/// A thinned stroke that was shorter, drawn out at both ends to the least length; a dot, to the left and to the right. It may
-/// stand over a margin by half of that.
+/// A thinned stroke that was shorter, drawn out at both ends to the least length; a dot, to the left and to the right.
 pub fn lengthened(mut stroke: Stroke) -> Stroke {
     let more = (STROKE - length(&stroke)) / 2.0;
     if let [dot] = stroke.points[..] {

@@ -17,6 +17,8 @@ mod nearest;
 mod once;
 mod order;
 
+pub use long_enough::GROWTH;
+
 use std::iter::Sum;
 
 use glam::DVec2;
