@@ -8,7 +8,6 @@ use hachure::geo::{ReadOptions, read};
 use hachure::ink::sheet::PAPERS;
 use hachure::ink::styles::BuiltIn;
 use hachure::ink::{Drawing, Sheet, draw};
-use hachure::line::Lines;
 use hachure::plan::{Border, Curves, Detail, Method, Plan};
 use hachure::render::Renderer;
 use hachure::surface::Surface;
@@ -128,8 +127,8 @@ fn over(drawing: &Drawing) -> f64 {
     ink.map(over).fold(f64::NEG_INFINITY, f64::max)
 }
 
-#[test]
-fn no_stroke_leaves_the_margins_in_any_style() {
+/// The Golden Gate in every built-in style, hidden lines and all, in zones of distance.
+pub fn real_drawings() -> Vec<(BuiltIn, Drawing)> {
     let dem = concat!(env!("CARGO_MANIFEST_DIR"), "/dem/golden-gate.tif");
     let surface = Arc::new(Surface::new(read(dem, &ReadOptions::default()).expect("a DEM")));
     let sheet = Sheet { size: DVec2::new(105.0, 74.0), margin: 7.5 };
@@ -139,16 +138,27 @@ fn no_stroke_leaves_the_margins_in_any_style() {
     let plan = Plan { curves: Curves::All, ..Plan::new(Detail::default(), Method::Walk, Border::On) };
     let page = renderer.page(&plan, &camera, |_| ()).expect("a page");
     assert!(!page.hidden.is_empty());
-    let perspective = renderer.perspective(&page.frame);
-    for name in BuiltIn::ALL {
+    let px_per_mm = sheet.placement(frame).px_per_mm;
+    let drawing = |name: BuiltIn| {
         let style = name.style().expect("a style");
-        let lines =
-            Lines::sparing(&page.chains, &page.hidden, &perspective, &style.economy(sheet.placement(frame).px_per_mm));
-        let drawing = draw(&lines, &sheet, &style, &[5000.0, 9000.0]).expect("a drawing");
+        let lines = renderer.lines(&page, &style.economy(px_per_mm), style.tolerance * px_per_mm);
+        (name, draw(&lines, &sheet, &style, &[5000.0, 9000.0]).expect("a drawing"))
+    };
+    BuiltIn::ALL.map(drawing).to_vec()
+}
+
+#[test]
+fn no_stroke_leaves_the_margins_in_any_style() {
+    for (name, drawing) in real_drawings() {
         let (strokes, over) = (drawing.layers.iter().map(|layer| layer.strokes.len()).sum::<usize>(), over(&drawing));
         println!("{name}: {strokes} strokes, {} layers, {over:.4} mm over", drawing.layers.len());
         assert!(strokes > 50 && over <= 1e-9, "{name}");
         // Lines do run off the page, so that something was cut.
         assert!(over > -0.5, "{name}");
+        // Each stroke of a chain has a name of its own.
+        let names = drawing.layers.iter().flat_map(|layer| &layer.strokes);
+        let mut names: Vec<_> = names.filter_map(|stroke| Some((stroke.chain?, stroke.piece))).collect();
+        names.sort_unstable();
+        assert!(names.windows(2).all(|pair| pair[0] != pair[1]), "{name}");
     }
 }

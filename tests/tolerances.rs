@@ -488,6 +488,12 @@ pub const RESVG_DARKNESS: f64 = 3.0;
 /// Example: of such a line three pixels in four are black in part; where each is a tenth lighter, the block is 2.4 off.
 pub const POPPLER_DARKNESS: f64 = 7.0;
 
+/// How many times as far blocks may be off where lines crowd.
+///
+/// Example: two lines that cover half a pixel each cover half of it or all, as they lie; laid one over the other, blind, three
+/// quarters. Dashes of hidden lines upon each other: a block 3.5 off where resvg draws.
+pub const CROWDED: f64 = 1.5;
+
 /// Darkness of a pixel that must be answered by another picture within a pixel, of 255.
 pub const DARK: u8 = 96;
 

@@ -2,7 +2,7 @@
 //!
 //! Lines thin with distance, where little lies between them and what is behind, and by the weight that
 //! [economy](crate::line::economy) leaves contours; traced lines thin where many crowd together. Free ends taper. A hand's
-//! [wobble](super::wobble) moves the sheet under the pen. All is cut at the margins, half a pen inside them.
+//! wobble moves the sheet under the pen. All is cut at the margins, half a pen inside them.
 
 use glam::{DVec2, FloatExt};
 

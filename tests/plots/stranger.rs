@@ -7,10 +7,12 @@ use std::process::Command;
 use std::thread;
 
 use hachure::ink::plot::planned;
+use hachure::ink::styles::BuiltIn;
 use hachure::ink::{self, Colour, Drawing, Form, Layer, Pen, Sheet, Stroke};
 
 use crate::plots::checks;
 use crate::plots::made::curves;
+use crate::sheets::real_drawings;
 
 /// Millimetres of a unit of vpype's, which has 96 in an inch.
 const UNIT: f64 = 25.4 / 96.0;
@@ -88,6 +90,20 @@ fn drawing(layers: Vec<(&str, Vec<Stroke>)>) -> Drawing {
     };
     let sheet = Sheet { size: glam::DVec2::new(420.0, 297.0), margin: 0.0 };
     Drawing { sheet, paper: Colour([255; 3]), layers: layers.into_iter().map(layer).collect() }
+}
+
+#[test]
+fn vpype_reads_a_real_plot_and_finds_no_shorter_way() {
+    let Some(vpype) = vpype() else { return };
+    let plot = real_drawings().into_iter().find(|(style, _)| *style == BuiltIn::Plotter);
+    let (_, plot) = plot.expect("a plot");
+    let found = judged(&vpype, &plot);
+    let names = |said: &[Said]| said.iter().map(|layer| layer.name.clone()).collect::<Vec<_>>();
+    assert_eq!(names(&found[0]), plot.layers.iter().map(|layer| layer.name.clone()).collect::<Vec<_>>());
+    assert!(plot.layers.len() > 3, "{:?}", names(&found[0]));
+    for (before, after) in found[0].iter().zip(&found[1]) {
+        assert!(before.travel - after.travel < 0.05 * before.travel, "{before:?}, {after:?}");
+    }
 }
 
 #[test]

@@ -6,12 +6,13 @@ use std::process::Command;
 use std::thread;
 
 use glam::{DVec2, dvec2};
-use hachure::ink::{Drawing, Layer, Stroke};
+use hachure::ink::{Colour, Drawing, Layer, Stroke};
 use image::RgbImage;
 
 use super::pictures::{Seen, difference, farthest_block, png, seen};
 use super::samples::{all, centre_lines, dot, drawing, even, layer, ring, shares, spiral, tapered, widths, zigzag};
-use crate::tolerances::LENGTH_MM;
+use crate::sheets::real_drawings;
+use crate::tolerances::{CROWDED, LENGTH_MM};
 
 /// Pixels a millimetre: of both the sheet is a whole number of pixels.
 const SCALES: [f64; 2] = [4.0, 8.0];
@@ -101,6 +102,25 @@ fn cases() -> Vec<(&'static str, Drawing)> {
         ),
         ("all", all()),
     ]
+}
+
+#[test]
+fn strangers_see_real_drawings_as_pictures_show_them() {
+    let poppler = Poppler::find();
+    for (style, drawing) in real_drawings() {
+        // Vectors have no paper; and poppler moves upright and level lines, as marks are, to whole pixels.
+        let mut drawing = Drawing { paper: Colour([255; 3]), ..drawing };
+        drawing.layers.iter_mut().for_each(|layer| layer.strokes.retain(|stroke| stroke.chain.is_some()));
+        // Far lines of a tenth of a millimetre are nowhere thinner than a pixel or two.
+        let picture = png(&drawing, 16.0);
+        for Seen { who, picture: found, darkness } in seen(&drawing, 16.0, poppler.as_ref()) {
+            let (block, by) = farthest_block(&picture, &found);
+            assert!(by <= darkness * CROWDED, "{style}, {who}: block at {block:?} is {by} darker or lighter");
+            // Poppler makes whatever is thinner than a pixel as wide as one: ends that run out are dark.
+            let places = (who == "resvg").then(|| difference(&picture, &found, darkness * CROWDED)).flatten();
+            assert!(places.is_none(), "{style}, {who}: {places:?}");
+        }
+    }
 }
 
 #[test]
