@@ -1,9 +1,10 @@
-//! What stands in the files: layers, names, numbers, by an XML parser and by GDAL's reader of PDFs.
+//! What stands in the files: layers, names, numbers, by an XML parser and by GDAL's tools, which read PDFs.
 
 use std::collections::HashSet;
 use std::fs;
+use std::path::Path;
+use std::process::Command;
 
-use gdal::{Dataset, DatasetOptions, DriverManager, GdalOpenFlags, Metadata};
 use glam::{DVec2, dvec2};
 use hachure::ink::{Drawing, Stroke};
 use hachure::line::Id;
@@ -125,25 +126,31 @@ struct Opened {
     rows: Vec<f64>,
 }
 
-/// `None`, with a line that says so, where GDAL reads no PDFs.
+/// `None`, with a line that says so, where GDAL's tools read no PDFs. They run by themselves: a process that reads DEMs may
+/// have closed its GDAL to other formats.
 fn opened(file: &[u8], options: &[&str]) -> Option<Opened> {
-    if DriverManager::get_driver_by_name("PDF").is_err() {
-        skip("install a GDAL that reads PDF");
+    let run = |tool: &str, arguments: &[&str], folder: &Path| {
+        let output = Command::new(tool).args(arguments).current_dir(folder).output();
+        output.ok().filter(|output| output.status.success())
+    };
+    let folder = tempfile::tempdir().expect("a folder");
+    if run("gdalinfo", &["--format", "PDF"], folder.path()).is_none() {
+        skip("install GDAL's tools, with PDF");
         return None;
     }
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("in.pdf");
-    fs::write(&path, file).expect("in.pdf");
-    let flags = GdalOpenFlags::GDAL_OF_RASTER;
-    let options = DatasetOptions { open_flags: flags, open_options: Some(options), ..DatasetOptions::default() };
-    let dataset = Dataset::open_ex(&path, options).expect("GDAL reads it");
-    let layers = dataset.metadata_domain("LAYERS").unwrap_or_default();
-    let layers = layers.iter().map(|line| line.split_once('=').expect("a name").1.to_owned()).collect();
-    let (width, height) = dataset.raster_size();
-    let band = dataset.rasterband(1).expect("a band");
-    let pixels = band.read_as::<u8>((0, 0), (width, height), (width, height), None).expect("pixels");
-    let mean = |row: &[u8]| row.iter().map(|&value| f64::from(value)).sum::<f64>() / width as f64;
-    Some(Opened { layers, rows: pixels.data().chunks(width).map(mean).collect() })
+    fs::write(folder.path().join("in.pdf"), file).expect("in.pdf");
+    let info = run("gdalinfo", &["-mdd", "LAYERS", "in.pdf"], folder.path()).expect("GDAL reads it");
+    let info = String::from_utf8(info.stdout).expect("text");
+    let listed = info.lines().filter_map(|line| line.trim().strip_prefix("LAYER_"));
+    let layers = listed.map(|line| line.split_once('=').expect("a name").1.to_owned()).collect();
+    let options: Vec<&str> = options.iter().flat_map(|option| ["-oo", option]).collect();
+    let arguments = [&["-q", "-of", "PNG"], &options[..], &["in.pdf", "out.png"]].concat();
+    run("gdal_translate", &arguments, folder.path()).expect("GDAL draws it");
+    let picture = image::open(folder.path().join("out.png")).expect("out.png").to_rgb8();
+    let mean = |row: image::buffer::Pixels<image::Rgb<u8>>| {
+        row.map(|pixel| f64::from(pixel.0[0])).sum::<f64>() / f64::from(picture.width())
+    };
+    Some(Opened { layers, rows: picture.rows().map(mean).collect() })
 }
 
 #[test]
