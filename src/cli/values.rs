@@ -180,6 +180,11 @@ pub fn crop(text: &str) -> Result<[f64; 4], String> {
     if west != east && south < north { Ok(window) } else { Err("want west,south,east,north in this order".into()) }
 }
 
+/// The help of a flag for the pixels of a page.
+pub fn size_help(Size { width, height }: Size) -> String {
+    format!("Pixels across and down, each from 1 to {LARGEST_PAGE} [default: {width}x{height}]")
+}
+
 /// `WxH` in pixels.
 pub fn size(text: &str) -> Result<Size, String> {
     let form = || format!("want WxH in pixels, each from 1 to {LARGEST_PAGE}");

@@ -10,7 +10,6 @@ use super::talk::Talk;
 use super::values::{self, Height, LookAt, Size, Standpoint};
 use crate::dem::{Crs, Dem, Georeference, North};
 use crate::error::{Error, Result, Setting};
-use crate::plan::pieces::LARGEST_PAGE;
 use crate::surface::{Level, Surface};
 use crate::view::{Camera, Fixed, choose, direction};
 
@@ -62,10 +61,7 @@ pub struct ViewArguments {
     /// Horizontal field of view, degrees
     #[arg(long, value_name = "DEG", value_parser = values::fov, allow_hyphen_values = true, default_value_t = FOV)]
     fov: f64,
-    #[arg(
-        long, value_name = "WxH", value_parser = values::size,
-        help = format!("Pixels across and down, each from 1 to {LARGEST_PAGE} [default: {}x{}]", SIZE.width, SIZE.height)
-    )]
+    #[arg(long, value_name = "WxH", value_parser = values::size, help = values::size_help(SIZE))]
     size: Option<Size>,
 }
 

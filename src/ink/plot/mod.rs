@@ -55,9 +55,9 @@ impl Journey {
     /// Through the strokes of a layer as they stand.
     pub fn through(strokes: &[Stroke]) -> Self {
         let starts = strokes.iter().map(|stroke| stroke.points[0].place);
-        let ends = strokes.iter().map(|stroke| {
-            let end = if stroke.closed { stroke.points.first() } else { stroke.points.last() };
-            end.expect("a stroke has a point").place
+        let ends = strokes.iter().map(|Stroke { points, closed, .. }| {
+            let end = if *closed { 0 } else { points.len() - 1 };
+            points[end].place
         });
         let way = |stroke: &Stroke| segments(stroke).map(|[from, to]| from.distance(to)).sum::<f64>();
         Self {
