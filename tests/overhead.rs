@@ -76,8 +76,9 @@ fn land_that_touches_by_a_corner_stays_apart() {
             .sum::<f64>()
     };
     assert_eq!(total, by_patches(&["###....", "###....", "#######", "..#####", "..#####"]));
-    // Two triangles that share a sample are two rings.
-    let pinch = plan(&["##...", "##...", ".###.", "..##."]);
+    // Two blocks that share a sample are two rings.
+    let pinch = plan(&["..###", "..###", "#####", "###..", "###.."]);
+    assert_eq!(pinch.chains.len(), 2);
     assert!(
         pinch.chains.iter().all(|chain| {
             let mut places: Vec<_> =
