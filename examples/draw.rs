@@ -20,7 +20,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let page = renderer.page(&plan, &camera, |_| ())?;
     let (style, sheet) = (Style::default(), Sheet::for_frame([1200, 600]));
     let px_per_mm = sheet.placement([1200, 600]).px_per_mm;
-    let lines = renderer.lines(&page, &style.economy(px_per_mm), style.tolerance * px_per_mm);
+    let lines = page.lines(&style.economy(px_per_mm), style.tolerance * px_per_mm);
     let drawing = ink::draw(&lines, &sheet, &style, &[])?;
     Ok(ink::write_png(&drawing, px_per_mm, BufWriter::new(File::create(picture)?))?)
 }

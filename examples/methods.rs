@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         times.sort_by(f64::total_cmp);
         println!("{name:18} {:9} {:9.1}", marks.inked(), times[FRAMES / 2]);
         let mask = File::create(folder.join(name).with_extension("png"))?;
-        ink::write_mask([1200, 600], marks.places(), BufWriter::new(mask))?;
+        ink::write_mask([1200, 600], marks.places(), None, BufWriter::new(mask))?;
     }
     Ok(())
 }

@@ -19,7 +19,7 @@
 //! let page = renderer.page(&plan, &camera, |_| ())?;
 //! let (style, sheet) = (Style::default(), Sheet::for_frame([1200, 600]));
 //! let px_per_mm = sheet.placement([1200, 600]).px_per_mm;
-//! let lines = renderer.lines(&page, &style.economy(px_per_mm), style.tolerance * px_per_mm);
+//! let lines = page.lines(&style.economy(px_per_mm), style.tolerance * px_per_mm);
 //! let drawing = ink::draw(&lines, &sheet, &style, &[])?;
 //! ink::write_png(&drawing, px_per_mm, std::fs::File::create("picture.png")?)?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -38,7 +38,7 @@
 //! | curves | the frame | [`Curve`](line::Curve)s on the surface: contours and rims, linked; each stretch seen or not | [`Renderer::curves`](render::Renderer::curves), GPU, CPU |
 //! | read back | the mask | [`Drawn`](render::Drawn): ink, kind, sub-pixel place and depth a pixel | [`Renderer::read`](render::Renderer::read) |
 //! | page | plan and camera | [`Page`](render::Page): ink and visible chains, frame and read-back for each piece of a page of any size | [`Renderer::page`](render::Renderer::page) |
-//! | line | the page | [`Lines`](line::Lines): chains on the page and in the world, with weights; or traced from the ink | [`Renderer::lines`](render::Renderer::lines), [`Lines::of`](line::Lines::of), CPU |
+//! | line | the page | [`Lines`](line::Lines): chains on the page and in the world, with weights; or traced from the ink | [`Page::lines`](render::Page::lines), CPU |
 //! | ink | the lines | [`Drawing`](ink::Drawing): layers of strokes | [`ink::draw`], CPU |
 //! | write | the drawing | PNG, SVG, PDF | [`ink::write_png`], [`ink::write_svg`], [`ink::write_pdf`] |
 //! | truth | surface and camera | [`Truth`](truth::Truth): where the lines really are | [`Terrain::truth`](truth::Terrain::truth), CPU |
@@ -70,6 +70,7 @@
 //! | [`truth`] | where the lines really are, in f64, and how far ink is from them; knows nothing of the GPU |
 //! | [`render`] | the whole algorithm on one screen |
 //! | [`measure`] | trials against truth, costs of passes, floors beside their times; truths that are kept |
+//! | [`job`] | many drawings as one piece of work: skipped where they are done, shared out, taken up again |
 //! | [`report`] | comparisons as JSON, CSV, a plot and a page to read |
 //! | [`cli`] | flags as typed become options checked |
 
@@ -83,6 +84,7 @@ pub mod files;
 pub mod geo;
 pub mod gpu;
 pub mod ink;
+pub mod job;
 pub mod line;
 pub mod measure;
 pub mod plan;

@@ -1,6 +1,8 @@
 //! The whole algorithm on one screen: plan, upload, passes, readback.
 
 mod curves;
+mod estimate;
+mod illustration;
 mod page;
 mod time;
 mod vertices;
@@ -21,6 +23,8 @@ use crate::surface::Surface;
 use crate::view::{Camera, Perspective};
 
 pub use crate::gpu::clock::{FrameTime, PassTime};
+pub use estimate::Estimate;
+pub use illustration::Illustration;
 pub use page::Page;
 
 /// A surface on a device, ready to be seen from any eye by any plan on a page of any size.

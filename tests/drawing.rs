@@ -158,7 +158,7 @@ fn page(width: u32, height: u32, pen: f64, strokes: Vec<Stroke>) -> image::GrayI
     let layers = vec![Layer { name: "1 ink".into(), pen, form: Form::Outlines, found: Journey::default(), strokes }];
     let sheet = Sheet { size: DVec2::new(width.into(), height.into()), margin: 0.0 };
     let mut file = Vec::new();
-    write_png(&Drawing { sheet, paper: Colour([255; 3]), layers }, 1.0, &mut file).unwrap();
+    write_png(&Drawing { sheet, paper: Colour([255; 3]), layers, seal: None }, 1.0, &mut file).unwrap();
     image::load_from_memory(&file).unwrap().to_luma8()
 }
 
@@ -211,7 +211,9 @@ fn closed_strokes_and_huge_pages_are_drawn_whole() {
     let wide = page(40_000, 4, 1.0, vec![through(&[(-10.0, 2.5), (40_010.0, 2.5)])]);
     assert!(wide.enumerate_pixels().all(|(_, y, p)| (p.0[0] < 5) == (y == 2)));
     let sheet = Sheet { size: DVec2::new(0.0, 5.0), margin: 0.0 };
-    assert!(write_png(&Drawing { sheet, paper: Colour([255; 3]), layers: vec![] }, 1.0, Vec::new()).is_err());
+    assert!(
+        write_png(&Drawing { sheet, paper: Colour([255; 3]), layers: vec![], seal: None }, 1.0, Vec::new()).is_err()
+    );
 }
 
 #[test]

@@ -111,13 +111,13 @@ fn pixel_packs_kind_place_and_depth() {
 fn mask_has_one_bit_a_pixel_and_ink_is_0() {
     let raster = picture(&["#..b.....#.", "...........", "..........#"]);
     let mut file = Vec::new();
-    write_mask([11, 3], Marks::from(&raster).places(), &mut file).unwrap();
+    write_mask([11, 3], Marks::from(&raster).places(), None, &mut file).unwrap();
     assert_eq!((file[24], file[25]), (1, 0), "bit depth and colour type of the PNG header");
     let read = image::load_from_memory(&file).unwrap().to_luma8();
     assert_eq!(read.dimensions(), (11, 3));
     let expected: Vec<u8> = raster.pixels.iter().map(|p| if p.is_ink() { 0 } else { 255 }).collect();
     assert_eq!(read.into_raw(), expected);
-    assert!(write_mask([0, 0], [], Vec::new()).is_err());
+    assert!(write_mask([0, 0], [], None, Vec::new()).is_err());
 }
 
 #[test]

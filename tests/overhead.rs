@@ -27,7 +27,8 @@ fn plan(rows: &[&str]) -> Lines {
     }
     fs::write(&path, text).expect("a file");
     let size = [rows[0].len(), rows.len()].map(|samples| 10 * (samples as u32 - 1));
-    overhead(&read(&path, &ReadOptions::default()).expect("a DEM"), size, 1.0).expect("a plan")
+    let dem = read(&path, &ReadOptions::default()).expect("a DEM");
+    overhead(&dem, dem.extent(), size, 1.0).expect("a plan")
 }
 
 /// Twice the area to the left of a ring as seen from above; rows run down.

@@ -141,7 +141,7 @@ pub fn real_drawings() -> Vec<(BuiltIn, Drawing)> {
     let px_per_mm = sheet.placement(frame).px_per_mm;
     let drawing = |name: BuiltIn| {
         let style = name.style().expect("a style");
-        let lines = renderer.lines(&page, &style.economy(px_per_mm), style.tolerance * px_per_mm);
+        let lines = page.lines(&style.economy(px_per_mm), style.tolerance * px_per_mm);
         (name, draw(&lines, &sheet, &style, &[5000.0, 9000.0]).expect("a drawing"))
     };
     BuiltIn::ALL.map(drawing).to_vec()

@@ -27,7 +27,7 @@ Examples:
   hachure cache --clear";
 
 /// Flags that say where things are kept.
-#[derive(Debug, clap::Args)]
+#[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "Cache")]
 pub struct CacheArguments {
     /// The folder in which things are kept for later runs [default: the user's folder for caches]

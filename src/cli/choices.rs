@@ -2,6 +2,7 @@
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
+use super::progress::Form;
 use super::style::Hidden;
 use crate::dem::North;
 use crate::plan::registry::Entry;
@@ -21,6 +22,11 @@ const NORTHS: [Word<North>; 2] = [
 const HIDDEN: [Word<Hidden>; 2] = [
     ("dashed", "Draw them in dashes, in a layer of their own", Hidden::Dashed),
     ("off", "Leave them out", Hidden::Off),
+];
+const PROGRESS: [Word<Form>; 3] = [
+    ("bar", "As a bar on a terminal", Form::Bar),
+    ("json", "As lines of JSON on standard output: start, frame, skip, fail, wait, done", Form::Json),
+    ("none", "Not at all", Form::None),
 ];
 const BORDERS: [Word<Border>; 2] = [("on", "Draw it", Border::On), ("off", "Leave it out", Border::Off)];
 
@@ -53,6 +59,16 @@ pub fn hidden() -> impl TypedValueParser<Value = Hidden> {
 /// The word for what becomes of them if nothing is said.
 pub fn default_hidden() -> &'static str {
     word_for(&HIDDEN, Hidden::default())
+}
+
+/// How progress is shown.
+pub fn progress() -> impl TypedValueParser<Value = Form> {
+    one_of(PROGRESS)
+}
+
+/// The word for how it is shown if nothing is said.
+pub fn default_progress() -> &'static str {
+    word_for(&PROGRESS, Form::default())
 }
 
 /// Whether the border is drawn.

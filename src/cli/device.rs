@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::gpu::{AdapterChoice, Gpu, Int64};
 
 /// The flags, as typed.
-#[derive(Debug, clap::Args)]
+#[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "Device")]
 pub struct DeviceArguments {
     /// Adapter: cpu, gpu, or words of its name [default: the best one]

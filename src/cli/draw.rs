@@ -1,35 +1,32 @@
 //! `hachure draw`: a DEM as ink on a page.
 
-use std::panic::resume_unwind;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::thread;
 use std::time::Instant;
 
 use super::cache::CacheArguments;
 use super::device::DeviceArguments;
 use super::draw_report::{ChainsReport, DemReport, LayerReport, LeftOutReport, PageReport, Report};
+use super::drawing::{DrawingArguments, Wanted};
 use super::flat_earth::FlatEarth;
 use super::outputs::OutputArguments;
-use super::page::{Layout, PageArguments};
-use super::style::StyleArguments;
 use super::talk::Talk;
 use super::terrain::{TerrainArguments, warn_of_survey};
-use super::values::{self, LevelChoice, Size};
+use super::values::{self, Size};
 use super::view_report::ViewReport;
-use super::viewpoint::{SIZE, View, ViewArguments};
+use super::viewpoint::{View, ViewArguments};
 use super::words::told;
-use super::{blank, cells, choices, journey, plan};
+use super::{blank, cells, journey, plan, scene};
 use crate::cache::Cache;
-use crate::error::{Error, Result, Setting};
+use crate::error::Result;
 use crate::files::Taken;
 use crate::geo::Reading;
-use crate::gpu::Gpu;
-use crate::ink::{self, Drawing, Style};
+use crate::ink::{self, Drawing};
+use crate::job::name::Naming;
 use crate::line::Lines;
-use crate::plan::detail::ERROR_PX;
+use crate::plan::Frame;
 use crate::plan::left_out::LeftOut;
-use crate::plan::{Border, Curves, Detail, Frame, Method, Plan, Share};
-use crate::render::{Page, PassTime, Renderer};
+use crate::render::{Illustration, Page, PassTime, Renderer};
 use crate::surface::Surface;
 
 /// Warm frames behind the median of `--json`; a page in pieces, which may take minutes, has one.
@@ -52,7 +49,7 @@ Examples:
   hachure draw dem/golden-gate.tif -o golden-gate.png --json golden-gate.json --mask - | wc -c";
 
 /// Flags of `hachure draw`, as typed.
-#[derive(Debug, clap::Args)]
+#[derive(Debug, Clone, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct DrawArguments {
     #[command(flatten)]
@@ -75,37 +72,11 @@ pub struct DrawArguments {
     #[arg(long, value_name = "1:N", value_parser = values::scale, requires = "plan", help_heading = "View")]
     scale: Option<f64>,
 
-    /// Factor on every elevation
-    #[arg(long, value_name = "X", value_parser = values::exaggeration, allow_hyphen_values = true, default_value = "1", help_heading = "Surface")]
-    exaggeration: f64,
-    /// Subdivisions of a cell's edge: 1, 2, 4, 8, 16, 32 or 64; auto: each part of the DEM as fine as the page shows
-    #[arg(long, value_name = "N|auto", value_parser = values::level_choice, default_value = "auto", help_heading = "Surface")]
-    level: LevelChoice,
-    #[arg(
-        long, value_name = "PX", value_parser = values::error_px, help_heading = "Surface",
-        help = format!("--level auto only: how far facets may deviate from the surface on the page, in pixels [default: {ERROR_PX}]")
-    )]
-    error_px: Option<f64>,
-
-    /// How silhouettes are found
-    #[arg(long, value_parser = choices::family(), default_value = Method::default().entry().family, help_heading = "Method")]
-    method: Method,
-    /// toward-away only: away surface counts wherever it touches the pixel or the neighbour it is compared with
-    #[arg(long, help_heading = "Method")]
-    wide: bool,
-    #[arg(
-        long, value_parser = choices::share(), help_heading = "Method",
-        help = format!("adjacency only: what neighbouring facets share [default: {}]", choices::default_share())
-    )]
-    share: Option<Share>,
-    /// Whether to draw the visible border of the DEM and of its voids
-    #[arg(long, value_parser = choices::border(), default_value = choices::default_border(), help_heading = "Method")]
-    border: Border,
-
     #[command(flatten)]
-    pub(super) page: PageArguments,
-    #[command(flatten)]
-    pub(super) style: StyleArguments,
+    pub(super) drawing: DrawingArguments,
+    /// What a plan shows, metres of the world: west, south, east, north; all of the DEM where nobody says.
+    #[arg(skip)]
+    pub(super) area: Option<[f64; 4]>,
 
     /// Say at which levels parts of the DEM are drawn, what the frame did without, why, and what that saved
     #[arg(long)]
@@ -123,12 +94,12 @@ struct Drawn<'a> {
     page: Page,
 }
 
-/// Its lines, and their drawing on a sheet.
-struct Stroked {
-    style: Style,
-    lines: Lines,
-    drawing: Drawing,
-    layout: Layout,
+/// Its lines, and their drawing.
+#[derive(Clone, Copy)]
+struct Stroked<'a> {
+    illustration: &'a Illustration,
+    lines: &'a Lines,
+    drawing: &'a Drawing,
 }
 
 /// Draws.
@@ -139,39 +110,39 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     if let Some(scale) = arguments.scale {
         return plan::run(arguments, scale, talk);
     }
-    let plan = arguments.check()?;
-    let (style, layout) = (arguments.style.style()?, arguments.layout()?);
+    let illustration = arguments.check()?;
     let started = Instant::now();
     let cache = arguments.cache.cache();
-    let reading = arguments.terrain.open(&arguments.terrain.dems, arguments.exaggeration, cache.clone())?;
+    let reading = arguments.open(cache.clone())?;
     let mut outputs = arguments.outputs.open(Taken::inputs(reading.files()))?;
-    let surface = Arc::new(arguments.surface(reading, talk)?);
-    let gpu = arguments.prepare(&surface, &cache, talk)?;
-    let view = arguments.look(&surface, layout.frame, talk)?;
+    let surface = Arc::new(scene::surface(&arguments.terrain, reading, talk)?);
+    let gpu = scene::prepare_and_open(&surface, &cache, &arguments.device, talk)?;
+    let view = arguments.look(&surface, &illustration, talk)?;
     let gpu = Arc::new(gpu?);
     DeviceArguments::tell(&gpu, talk)?;
     talk.progress("drawing", 0.3);
     let mut renderer = Renderer::new(gpu, surface.clone())?;
-    let page = renderer.page(&plan, &view.camera, |share| talk.progress("drawing", 0.3 + 0.3 * share))?;
+    let page = renderer.page(&illustration.plan, &view.camera, |share| talk.progress("drawing", 0.3 + 0.3 * share))?;
     cache.discard_damaged(surface.dem(), &|message| talk.warn(&told(message)));
     let mut drawn = Drawn { renderer: &mut renderer, view: &view, page };
-    let stroked = arguments.stroked(&drawn, style, layout)?;
-    let report = outputs.want_report().then(|| arguments.report(&mut drawn, &stroked, talk)).transpose()?;
+    let (lines, drawing) = illustration.drawing(&drawn.page)?;
+    let stroked = Stroked { illustration: &illustration, lines: &lines, drawing: &drawing };
+    let report = outputs.want_report().then(|| arguments.report(&mut drawn, stroked, talk)).transpose()?;
     if arguments.explain || talk.is_verbose() {
         explain(talk, &drawn.page.frame, &surface, report.as_ref())?;
     }
     talk.progress("writing", 0.8);
-    outputs.write(&stroked.drawing, layout.px_per_mm, Some(&drawn.page), report.as_ref())?;
+    outputs.write(&drawing, illustration.px_per_mm, Some(&drawn.page), report.as_ref())?;
     surface.dem().check()?;
     talk.progress("writing", 1.0);
     outputs.publish()?;
-    journey::tell(&stroked.drawing, &stroked.style.plot, talk)?;
+    journey::tell(&drawing, &illustration.style.plot, talk)?;
     arguments.tell(&drawn, started, talk)?;
     let Drawn { page, .. } = drawn;
-    if stroked.drawing.layers.is_empty() && page.marks.inked() > 0 {
+    if drawing.layers.is_empty() && page.marks.inked() > 0 {
         talk.warn("nothing is drawn: the style leaves no stroke of the lines; give it finer pens, or --min-gap 0 --min-jump 0");
     }
-    blank::warn(&mut renderer, &view, arguments.level, &page, talk);
+    arguments.warn_of_blank(&mut renderer, &view, &page, talk);
     Ok(())
 }
 
@@ -181,117 +152,91 @@ impl DrawArguments {
         self.outputs.fill_stdout()
     }
 
-    /// What is to be drawn, if the flags go together.
-    fn check(&self) -> Result<Plan> {
-        let (method, detail) = (self.method()?, self.detail()?);
+    /// The same of a sheet of a map: of the DEM in `crop`, in the file's coordinates; a plan is of `area`, metres of the world;
+    /// its files are `renamed`.
+    ///
+    /// # Errors
+    /// Those of `renamed`; [`Error::Setting`](crate::error::Error::Setting) where there is a crop already.
+    pub fn of_sheet(&self, crop: [f64; 4], area: [f64; 4], renamed: impl Fn(&Path) -> Result<PathBuf>) -> Result<Self> {
+        let (terrain, outputs) = (self.terrain.cropped(crop)?, self.outputs.renamed(renamed)?);
+        Ok(Self { terrain, outputs, area: Some(area), ..self.clone() })
+    }
+
+    /// The scale of a plan, where one is drawn.
+    pub fn scale(&self) -> Option<f64> {
+        self.scale
+    }
+
+    /// Opens the DEM.
+    ///
+    /// # Errors
+    /// As [`TerrainArguments::open`].
+    pub fn open(&self, cache: Cache) -> Result<Reading> {
+        self.terrain.open(&self.terrain.dems, self.drawing.exaggeration, cache)
+    }
+
+    /// What the DEM is read of, and how: the same for drawings of one surface.
+    pub fn scene(&self) -> String {
+        format!("{:?} {} {}", self.terrain.dems, self.terrain.read_as(), self.drawing.exaggeration)
+    }
+
+    /// The name of all that the drawing is made of.
+    ///
+    /// # Errors
+    /// Where the DEM or the style cannot be read.
+    pub fn name(&self, cache: &Cache, talk: &Talk) -> Result<u128> {
+        let dem = self.terrain.content(self.drawing.exaggeration, cache, talk)?;
+        let naming = Naming::new().with("dem", dem.hash()).with("read", self.terrain.read_as());
+        let naming = match self.scale {
+            Some(scale) => naming.with(
+                "plan",
+                format!("{scale} {:?} {:?} {:?}", self.area, self.drawing.page, self.drawing.style.style()?),
+            ),
+            None => {
+                let view = format!("{:?} {}", self.view, self.drawing.exaggeration);
+                naming.with("view", view).with("drawing", format!("{:?}", self.check()?))
+            }
+        };
+        Ok(naming.name())
+    }
+
+    /// Warns where a page of it is blank.
+    pub fn warn_of_blank(&self, renderer: &mut Renderer, view: &View, page: &Page, talk: &Talk) {
+        blank::warn(renderer, view, self.drawing.level, page, talk);
+    }
+
+    /// How it is to be drawn, if the flags go together.
+    ///
+    /// # Errors
+    /// [`Error::Setting`](crate::error::Error::Setting); as [`styles::find`](crate::ink::styles::find).
+    pub fn check(&self) -> Result<Illustration> {
+        self.drawing.plan(Wanted::Drawing)?;
         self.view.check()?;
         self.outputs.check()?;
-        // Strokes of the walk's mask are contours.
-        let curves = match (self.style.draws_hidden(), method) {
-            (true, Method::Walk | Method::Contour) => Curves::All,
-            (_, Method::Walk) => Curves::On,
-            _ => Curves::Off,
-        };
-        let plan = Plan { curves, ..Plan::new(detail, method, self.border) };
-        if !plan.has_curves() {
-            self.style.refuse_for_traced()?;
-        }
-        Ok(plan)
-    }
-
-    /// Reads the DEM and finds its normals.
-    fn surface(&self, reading: Reading, talk: &Talk) -> Result<Surface> {
-        let dem = self.terrain.read(reading, talk)?;
-        // The renderer holds all samples on the device.
-        talk.progress("computing normals", 0.1);
-        if !dem.is_filed() {
-            dem.check_patches()?;
-        }
-        Ok(Surface::new(dem))
-    }
-
-    /// Looks at the samples of a DEM that stays in its file, while the device opens: drivers take their time to start. What
-    /// opening comes to is told after all that is said of the DEM and its view.
-    fn prepare(&self, surface: &Surface, cache: &Cache, talk: &Talk) -> Result<Result<Gpu>> {
-        let prepare = || {
-            cache.prepare(surface, &|message| talk.warn(&told(message)), &|done| {
-                talk.progress("looking at every sample, once for this file", 0.1 + 0.1 * done);
-            })
-        };
-        // Samples stay on this thread, where HDF5 keeps silent.
-        let (prepared, gpu) = thread::scope(|scope| {
-            let open = || self.device.open_silently(wgpu::Features::empty());
-            match thread::Builder::new().spawn_scoped(scope, open) {
-                Ok(gpu) => (prepare(), gpu.join().unwrap_or_else(|panic| resume_unwind(panic))),
-                // The system has no thread left.
-                Err(_) => (prepare(), open()),
-            }
-        });
-        prepared?;
-        surface.dem().check_patches()?;
-        Ok(gpu)
+        self.drawing.illustration(self.view.typed_size(), Wanted::Drawing, self.outputs.want_picture())
     }
 
     /// The view, told as flags that repeat it, and what is to be said of it and of the DEM.
-    fn look(&self, surface: &Surface, frame: Size, talk: &Talk) -> Result<View> {
-        cells::warn(surface.dem(), self.exaggeration, talk);
+    ///
+    /// # Errors
+    /// As [`ViewArguments::view`].
+    pub fn look(&self, surface: &Surface, illustration: &Illustration, talk: &Talk) -> Result<View> {
+        cells::warn(surface.dem(), self.drawing.exaggeration, talk);
         warn_of_survey(surface.dem(), talk)?;
-        let view = self.view.sized(frame).view(surface, self.level.near())?;
-        view.warn_below_ground(surface, self.level.near(), talk);
-        let page = self.page.flags();
+        let ([width, height], near) = (illustration.frame, self.drawing.level.near());
+        let view = self.view.sized(Size { width, height }).view(surface, near)?;
+        view.warn_below_ground(surface, near, talk);
+        let page = self.drawing.page.flags();
         talk.say(&format!("view: {}{page}", view.flags()))?;
         view.lonlat_flags().map_or(Ok(()), |flags| talk.say(&format!("or with: {flags}{page}")))?;
         view.norths.words().map_or(Ok(()), |words| talk.say(&words))?;
         Ok(view)
     }
 
-    /// How the page is laid out.
-    fn layout(&self) -> Result<Layout> {
-        let layout = self.page.layout(self.view.typed_size(), SIZE)?;
-        if self.outputs.want_picture() {
-            layout.check_picture()?;
-        }
-        Ok(layout)
-    }
-
-    fn detail(&self) -> Result<Detail> {
-        if self.error_px.is_some() && self.level != LevelChoice::Auto {
-            return Err(Error::setting(Setting::ErrorPx, "goes with --level auto only", "leave one of them out"));
-        }
-        Ok(self.level.detail(self.error_px.unwrap_or(ERROR_PX)))
-    }
-
-    /// The variant of the method that further flags ask for.
-    fn method(&self) -> Result<Method> {
-        if self.wide && !matches!(self.method, Method::TowardAway { .. }) {
-            return Err(Error::setting(Setting::Wide, "goes with toward-away only", "add --method toward-away"));
-        }
-        if self.share.is_some() && !matches!(self.method, Method::Adjacency { .. }) {
-            return Err(Error::setting(Setting::Share, "goes with adjacency only", "add --method adjacency"));
-        }
-        Ok(match self.method {
-            Method::TowardAway { .. } => Method::TowardAway { wide: self.wide },
-            Method::Adjacency { .. } => Method::Adjacency { share: self.share.unwrap_or_default() },
-            plain => plain,
-        })
-    }
-
-    /// The drawing of the page: of contours as sparingly as is asked, or traced from the mask.
-    fn stroked(&self, drawn: &Drawn, style: Style, layout: Layout) -> Result<Stroked> {
-        let marks = &drawn.page.marks;
-        let px_per_mm = layout.sheet.placement([marks.width, marks.height]).px_per_mm;
-        let (tolerance, page) = (style.tolerance * px_per_mm, &drawn.page);
-        let lines = match page.frame.plan.has_curves() {
-            true => drawn.renderer.lines(page, &self.style.economy(&style, px_per_mm), tolerance),
-            false => Lines::of(marks, &drawn.renderer.perspective(&page.frame), tolerance),
-        };
-        let drawing = ink::draw(&lines, &layout.sheet, &style, self.style.split())?;
-        Ok(Stroked { style, lines, drawing, layout })
-    }
-
     /// Times more frames and says what was done.
-    fn report(&self, drawn: &mut Drawn, stroked: &Stroked, talk: &Talk) -> Result<Report> {
+    fn report(&self, drawn: &mut Drawn, stroked: Stroked, talk: &Talk) -> Result<Report> {
         talk.progress("timing more frames", 0.6);
+        let Stroked { illustration, lines, drawing } = stroked;
         let flat_earth = drawn.flat_earth();
         let Drawn { renderer, view, page } = drawn;
         let Frame { plan, camera, pieces, .. } = &page.frame;
@@ -304,13 +249,13 @@ impl DrawArguments {
             version: env!("CARGO_PKG_VERSION"),
             dem: DemReport::of(&self.terrain.dems, surface.dem()),
             method: plan.method.entry().family,
-            level: self.detail()?.into(),
+            level: plan.detail.into(),
             facets: page.frame.facets(&surface),
             inked: page.marks.inked(),
             chains: plan.has_curves().then(|| ChainsReport::of(page)),
-            without_stroke: ink::unstroked(&page.marks, &stroked.lines, &stroked.drawing),
-            page: PageReport::of(&stroked.layout),
-            layers: LayerReport::all(&stroked.drawing, &stroked.style.plot),
+            without_stroke: ink::unstroked(&page.marks, lines, drawing),
+            page: PageReport::of(&illustration.sheet, illustration.frame),
+            layers: LayerReport::all(drawing, &illustration.style.plot),
             covered: page.covered,
             longest_walk: page.longest_walk,
             pieces,
@@ -318,9 +263,9 @@ impl DrawArguments {
             frame_ms: times[warm_frames / 2],
             timing: gpu.clock.describe(),
             passes: renderer.timed_frame(plan, camera)?.passes,
-            adapter: format!("{} ({})", gpu.info.name, gpu.info.driver_info),
+            adapter: gpu.adapter_and_driver(),
             int64: gpu.int64,
-            view: ViewReport::of(view, surface.dem().georeference(), self.exaggeration),
+            view: ViewReport::of(view, surface.dem().georeference(), self.drawing.exaggeration),
             flat_earth,
             left_out: page.frame.left_out(&surface)?.into_iter().map(LeftOutReport::of).collect(),
         })

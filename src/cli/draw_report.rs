@@ -5,14 +5,13 @@ use std::path::PathBuf;
 use serde::Serialize;
 
 use super::flat_earth::FlatEarth;
-use super::page::Layout;
 use super::view_report::ViewReport;
 use super::words::told;
 use crate::dem::Dem;
 use crate::ink::plot::Journey;
 use crate::ink::style::Plot;
 use crate::ink::unstroked::Unstroked;
-use crate::ink::{Drawing, Form, Layer};
+use crate::ink::{Drawing, Form, Layer, Sheet};
 use crate::line::{Chain, Strays};
 use crate::measure::figures::DrawnLevel;
 use crate::plan::left_out::LeftOut;
@@ -106,12 +105,11 @@ struct PlotReport {
 }
 
 impl PageReport {
-    pub fn of(layout: &Layout) -> Self {
-        let Layout { sheet, frame, .. } = layout;
+    pub fn of(sheet: &Sheet, frame: [u32; 2]) -> Self {
         Self {
             size_mm: sheet.size.to_array(),
             margin_mm: sheet.margin,
-            frame_px_per_mm: sheet.placement([frame.width, frame.height]).px_per_mm,
+            frame_px_per_mm: sheet.placement(frame).px_per_mm,
         }
     }
 }

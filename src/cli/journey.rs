@@ -1,5 +1,6 @@
 //! What is said of a plot: how far its pens go, and how long that takes.
 
+use super::progress::duration;
 use super::talk::Talk;
 use crate::error::Result;
 use crate::ink::plot::Journey;
@@ -32,14 +33,4 @@ pub fn tell(drawing: &Drawing, plotter: &Plot, talk: &Talk) -> Result<()> {
 
 fn metres(mm: f64) -> String {
     format!("{:.2} m", mm / 1000.0)
-}
-
-fn duration(seconds: f64) -> String {
-    let whole = seconds.round() as u64;
-    let (hours, minutes, seconds) = (whole / 3600, whole / 60 % 60, whole % 60);
-    match (hours, minutes) {
-        (0, 0) => format!("{seconds} s"),
-        (0, _) => format!("{minutes} min {seconds} s"),
-        _ => format!("{hours} h {minutes} min"),
-    }
 }

@@ -1,5 +1,6 @@
 //! The command line, one file a subcommand: flags as typed become options checked.
 
+pub mod batch;
 pub mod blank;
 pub mod cache;
 pub mod cells;
@@ -8,15 +9,22 @@ pub mod compare;
 pub mod device;
 pub mod draw;
 mod draw_report;
+pub mod drawing;
+pub mod film;
 pub mod flat_earth;
 pub mod generate;
 pub mod info;
+pub mod jobs;
 pub mod journey;
+mod listing;
 pub mod memory;
+pub mod merge;
 pub mod norths;
 pub mod outputs;
 pub mod page;
 mod plan;
+pub mod progress;
+pub mod scene;
 pub mod style;
 pub mod styles;
 pub mod talk;
@@ -27,6 +35,7 @@ pub mod view_report;
 pub mod viewpoint;
 pub mod views;
 pub mod words;
+mod work;
 
 use clap::{Parser, Subcommand};
 
@@ -56,6 +65,10 @@ pub struct Arguments {
 enum Command {
     /// Draw a DEM as seen from an eye
     Draw(Box<draw::DrawArguments>),
+    /// Make many drawings, as a file lists them
+    Batch(Box<batch::BatchArguments>),
+    /// Say whether all frames or drawings of a folder are there
+    Merge(merge::MergeArguments),
     /// Compare silhouette methods: their errors and their times, as a report
     Compare(Box<compare::CompareArguments>),
     /// List, clear or make what is kept for later runs
@@ -74,6 +87,7 @@ impl Arguments {
     pub fn talk(&self) -> Talk {
         let lines = match &self.command {
             Command::Draw(arguments) if arguments.fill_stdout() => Lines::Stderr,
+            Command::Batch(arguments) if arguments.fills_stdout() => Lines::Stderr,
             _ => Lines::Stdout,
         };
         Talk::new(&self.talk, lines)
@@ -86,6 +100,8 @@ impl Arguments {
     pub fn run(&self, talk: &Talk) -> Result<()> {
         match &self.command {
             Command::Draw(arguments) => draw::run(arguments, talk),
+            Command::Batch(arguments) => batch::run(arguments, talk),
+            Command::Merge(arguments) => merge::run(arguments, talk),
             Command::Compare(arguments) => compare::run(arguments, talk),
             Command::Cache(arguments) => cache::run(arguments, talk),
             Command::Styles(arguments) => styles::run(arguments, talk),

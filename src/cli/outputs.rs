@@ -1,17 +1,18 @@
 //! The files `hachure draw` writes: opened before the work starts, named when all are whole.
 
-use std::io::{IsTerminal, stdout};
+use std::io::{self, IsTerminal, Write, stdout};
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
 use crate::error::{Error, Result, Setting, shown};
 use crate::files::{Output, Taken};
-use crate::ink;
+use crate::ink::{self, Seal};
+use crate::job::name;
 use crate::render::Page;
 
 /// Flags that name files; `-` is standard output, for one of them.
-#[derive(Debug, clap::Args)]
+#[derive(Debug, Clone, clap::Args)]
 pub struct OutputArguments {
     /// The drawing: a .png, .svg or .pdf, each as often as wanted; - is standard output, a PNG
     #[arg(short, long, value_name = "OUT.png|.svg|.pdf|-", required = true)]
@@ -26,9 +27,12 @@ pub struct OutputArguments {
 
 /// How a drawing is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Format {
+pub enum Format {
+    /// As a picture.
     Png,
+    /// As vectors, a group a layer.
     Svg,
+    /// As vectors, a layer a group of optional content.
     Pdf,
 }
 
@@ -48,6 +52,28 @@ impl OutputArguments {
     /// Whether one of the drawings is a picture.
     pub fn want_picture(&self) -> bool {
         self.output.iter().any(|path| Format::of(path) == Some(Format::Png))
+    }
+
+    /// The files of the drawing, and that of the mask.
+    pub fn files(&self) -> (&[PathBuf], Option<&Path>) {
+        (&self.output, self.mask.as_deref())
+    }
+
+    /// The same files under other names.
+    ///
+    /// # Errors
+    /// Those of `renamed`.
+    pub fn renamed(&self, renamed: impl Fn(&Path) -> Result<PathBuf>) -> Result<Self> {
+        Ok(Self {
+            output: self.output.iter().map(|path| renamed(path)).collect::<Result<_>>()?,
+            mask: self.mask.as_deref().map(&renamed).transpose()?,
+            json: self.json.clone(),
+        })
+    }
+
+    /// Whether a report is asked for.
+    pub fn want_report(&self) -> bool {
+        self.json.is_some()
     }
 
     /// Whether the mask is asked for.
@@ -140,15 +166,13 @@ impl Outputs {
         report: Option<&impl Serialize>,
     ) -> Result<()> {
         for (format, file) in &mut self.drawings {
-            file.write(|out| match format {
-                Format::Png => ink::write_png(drawing, px_per_mm, out),
-                Format::Svg => ink::write_svg(drawing, out),
-                Format::Pdf => ink::write_pdf(drawing, out),
-            })?;
+            file.write(|out| format.write(drawing, px_per_mm, out))?;
         }
         if let (Some(mask), Some(page)) = (&mut self.mask, page) {
             let marks = &page.marks;
-            mask.write(|out| ink::write_mask([marks.width, marks.height], marks.places(), out))?;
+            let of_mask = |seal: &Seal| Seal { job: name::of_mask(seal.job), ..seal.clone() };
+            let seal = drawing.seal.as_ref().map(of_mask);
+            mask.write(|out| ink::write_mask([marks.width, marks.height], marks.places(), seal.as_ref(), out))?;
         }
         if let (Some(json), Some(report)) = (&mut self.json, report) {
             json.write(|out| {
@@ -177,8 +201,20 @@ fn is_stdout(path: &Path) -> bool {
 }
 
 impl Format {
+    /// Writes a drawing, pictures with so many pixels for each millimetre.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn write(self, drawing: &ink::Drawing, px_per_mm: f64, out: impl Write) -> io::Result<()> {
+        match self {
+            Self::Png => ink::write_png(drawing, px_per_mm, out),
+            Self::Svg => ink::write_svg(drawing, out),
+            Self::Pdf => ink::write_pdf(drawing, out),
+        }
+    }
+
     /// The format that a name asks for.
-    fn of(path: &Path) -> Option<Self> {
+    pub fn of(path: &Path) -> Option<Self> {
         let ends_in = |extension: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(extension));
         let known = [("png", Self::Png), ("svg", Self::Svg), ("pdf", Self::Pdf)];
         let named = known.into_iter().find(|(extension, _)| ends_in(extension)).map(|(_, format)| format);

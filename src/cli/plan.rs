@@ -16,7 +16,7 @@ use crate::dem::Dem;
 use crate::error::{Error, Result, Setting};
 use crate::files::Taken;
 use crate::ink::strokes::inset;
-use crate::ink::{self, Sheet};
+use crate::ink::{self, Drawing, Sheet, Style};
 use crate::line::overhead;
 use crate::message;
 
@@ -36,56 +36,85 @@ struct PlanReport {
     lines: usize,
 }
 
-/// Draws the plan: no GPU, no view.
+/// A plan, drawn.
+pub struct Planned {
+    /// Its strokes.
+    pub drawing: Drawing,
+    /// Pixels of pictures for each millimetre.
+    pub px_per_mm: f64,
+    style: Style,
+    layout: Layout,
+    lines: usize,
+}
+
+/// Whether what is asked of a plan goes together.
 ///
 /// # Errors
-/// Whatever went wrong; nothing stands under a final name then.
-pub fn run(arguments: &DrawArguments, scale: f64, talk: &Talk) -> Result<()> {
+/// [`Error::Setting`]; as [`styles::find`](crate::ink::styles::find).
+pub fn check(arguments: &DrawArguments) -> Result<Style> {
     arguments.outputs.check()?;
     if arguments.outputs.want_mask() {
         let what = "a mask is of what an eye sees, and a plan has none";
         return Err(Error::setting(Setting::Mask, what, message!["leave out ", Setting::Mask, " or ", Setting::Plan]));
     }
-    let mut style = arguments.style.style()?;
+    let mut style = arguments.drawing.style.style()?;
     // The corners of the rim do as well.
     style.plot.registration = false;
+    Ok(style)
+}
+
+/// Draws the plan of a DEM: no GPU, no view.
+///
+/// # Errors
+/// As [`check`]; [`Error::Setting`] for a scale that fits no page.
+pub fn draw(arguments: &DrawArguments, scale: f64, dem: &Dem) -> Result<Planned> {
+    let style = check(arguments)?;
+    let area = arguments.area.unwrap_or(dem.extent());
+    let layout = layout(area, scale, inset(style.broadest()) + style.wobble.reach, arguments)?;
+    let frame = [layout.frame.width, layout.frame.height];
+    let lines = overhead(dem, area, frame, layout.sheet.placement(frame).px_per_mm * MM / scale)?;
+    let drawing = ink::draw(&lines, &layout.sheet, &style, &[])?;
+    Ok(Planned { drawing, px_per_mm: layout.px_per_mm, style, layout, lines: lines.chains.len() })
+}
+
+/// Reads a DEM, draws its plan and writes it.
+///
+/// # Errors
+/// Whatever went wrong; nothing stands under a final name then.
+pub fn run(arguments: &DrawArguments, scale: f64, talk: &Talk) -> Result<()> {
+    check(arguments)?;
     let started = Instant::now();
-    let cache = arguments.cache.cache();
-    let reading = arguments.terrain.open(&arguments.terrain.dems, 1.0, cache)?;
+    let reading = arguments.open(arguments.cache.cache())?;
     let mut outputs = arguments.outputs.open(Taken::inputs(reading.files()))?;
     let dem = arguments.terrain.read(reading, talk)?;
     warn_of_survey(&dem, talk)?;
     dem.check_patches()?;
-    let layout = layout(&dem, scale, inset(style.broadest()) + style.wobble.reach, arguments)?;
-    let frame = [layout.frame.width, layout.frame.height];
-    let lines = overhead(&dem, frame, layout.sheet.placement(frame).px_per_mm * MM / scale)?;
-    let drawing = ink::draw(&lines, &layout.sheet, &style, &[])?;
+    let Planned { drawing, px_per_mm, style, layout, lines } = draw(arguments, scale, &dem)?;
     let report = PlanReport {
         version: env!("CARGO_PKG_VERSION"),
         dem: DemReport::of(&arguments.terrain.dems, &dem),
         scale,
-        page: PageReport::of(&layout),
+        page: PageReport::of(&layout.sheet, [layout.frame.width, layout.frame.height]),
         layers: LayerReport::all(&drawing, &style.plot),
         area_m: dem.extent(),
-        lines: lines.chains.len(),
+        lines,
     };
-    outputs.write(&drawing, layout.px_per_mm, None, Some(&report))?;
+    outputs.write(&drawing, px_per_mm, None, Some(&report))?;
     dem.check()?;
     outputs.publish()?;
     journey::tell(&drawing, &style.plot, talk)?;
     talk.say(&format!(
-        "{}: {} lines at 1:{scale}, {:.0} x {:.0} mm, {:.2} s",
+        "{}: {lines} lines at 1:{scale}, {:.0} x {:.0} mm, {:.2} s",
         arguments.outputs.drawing(),
-        lines.chains.len(),
         layout.sheet.size.x,
         layout.sheet.size.y,
         started.elapsed().as_secs_f64()
     ))
 }
 
-/// The page that is the DEM at that scale, with margins; in these lies so much that a pen takes to draw the border.
-fn layout(dem: &Dem, scale: f64, pen: f64, arguments: &DrawArguments) -> Result<Layout> {
-    let ([west, south, east, north], margin) = (dem.extent(), arguments.page.margin().unwrap_or(MARGIN));
+/// The page that is this part of the DEM's world at that scale, with margins; in these lies so much that a pen takes to draw the border.
+fn layout(area: [f64; 4], scale: f64, pen: f64, arguments: &DrawArguments) -> Result<Layout> {
+    let ([west, south, east, north], margin) = (area, arguments.drawing.page.margin().unwrap_or(MARGIN));
     let area = DVec2::new(east - west, north - south) * (MM / scale);
     let margin = margin.max(pen);
     let sheet = Sheet { size: area + 2.0 * margin, margin: margin - pen };
@@ -111,8 +140,11 @@ fn layout(dem: &Dem, scale: f64, pen: f64, arguments: &DrawArguments) -> Result<
         return Err(Error::setting(Setting::Scale, what, message!["use ", Setting::Scale.at(most)]));
     }
     let frame = sheet.frame(Sheet::FRAME_PX_PER_MM);
-    let layout =
-        Layout { sheet, frame: Size { width: frame[0], height: frame[1] }, px_per_mm: arguments.page.px_per_mm() };
+    let layout = Layout {
+        sheet,
+        frame: Size { width: frame[0], height: frame[1] },
+        px_per_mm: arguments.drawing.page.px_per_mm(),
+    };
     if arguments.outputs.want_picture() {
         layout.check_picture()?;
     }

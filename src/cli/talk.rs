@@ -49,6 +49,8 @@ pub struct TalkArguments {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Loudness {
     Quiet,
+    /// Warnings alone.
+    Hushed,
     Normal,
     Verbose,
 }
@@ -83,6 +85,12 @@ impl Talk {
         Self { loudness, lines, began: Instant::now(), bar: Mutex::new(None) }
     }
 
+    /// The same for one of many pieces of work, of which warnings alone are said unless more is wanted.
+    pub fn hushed(&self) -> Self {
+        let loudness = if self.loudness == Loudness::Normal { Loudness::Hushed } else { self.loudness };
+        Self { loudness, lines: self.lines, began: self.began, bar: Mutex::default() }
+    }
+
     /// Whether details are said: they need not be gathered otherwise.
     pub fn is_verbose(&self) -> bool {
         self.loudness == Loudness::Verbose
@@ -106,7 +114,7 @@ impl Talk {
     /// As [`Self::answer`].
     pub fn say(&self, line: &str) -> Result<()> {
         match self.lines {
-            _ if self.loudness == Loudness::Quiet => Ok(()),
+            _ if self.loudness <= Loudness::Hushed => Ok(()),
             Lines::Stdout => self.answer(&plain(line.to_owned())),
             Lines::Stderr => {
                 self.aside(&plain(line.to_owned()));
@@ -141,7 +149,7 @@ impl Talk {
     /// How far a stage of the work has come, from 0 to 1, which ends it. A bar appears on a terminal once the work has
     /// lasted over a second.
     pub fn progress(&self, stage: &str, share: f64) {
-        if self.loudness == Loudness::Quiet || !stderr().is_terminal() {
+        if self.loudness <= Loudness::Hushed || !stderr().is_terminal() {
             return;
         }
         if share >= 1.0 {

@@ -1,17 +1,19 @@
 //! Flags of every subcommand that reads a DEM.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::talk::Talk;
 use super::values;
 use super::words::told;
 use crate::cache::Cache;
 use crate::dem::Dem;
-use crate::error::Result;
+use crate::error::{Error, Result, Setting};
 use crate::geo::{ElevationUnit, Encoding, Nodata, Order, ReadOptions, Reading, Stage};
+use crate::job::Content;
+use crate::job::name::Naming;
 
 /// Which files, and what of them.
-#[derive(Debug, clap::Args)]
+#[derive(Debug, Clone, clap::Args)]
 pub struct TerrainArguments {
     /// The DEM: any raster; several are laid together, the finest on top, of those on one grid the last
     #[arg(required = true, value_name = "DEM")]
@@ -90,6 +92,45 @@ impl TerrainArguments {
             cache,
             allow_remote: self.allow_remote,
             memory: self.memory,
+        }
+    }
+
+    /// How the DEM is read, as far as its heights depend on it.
+    pub fn read_as(&self) -> String {
+        let Self { crop, band, cell, order, cell_of, resample, no_warp, fill_voids, .. } = self;
+        let Self { elevation_unit, nodata, encoding, keep_steps, generalise, .. } = self;
+        let grid = (crop, band, cell, order, cell_of, resample, no_warp, fill_voids);
+        format!("{grid:?} {:?}", (elevation_unit, nodata, encoding, keep_steps, generalise))
+    }
+
+    /// Which files are read, and how, wherever from they are named.
+    pub fn asked(&self) -> u128 {
+        let absolute = |path: &PathBuf| std::path::absolute(path).unwrap_or_else(|_| path.clone());
+        let dems: Vec<PathBuf> = self.dems.iter().map(absolute).collect();
+        Naming::bare().with("files", format!("{dems:?}")).with("read", self.read_as()).name()
+    }
+
+    /// What the DEM's files hold, known or found.
+    ///
+    /// # Errors
+    /// As [`Self::open`] where it is not known, and [`Cache::content`].
+    pub fn content(&self, exaggeration: f64, cache: &Cache, talk: &Talk) -> Result<Content> {
+        let of = self.dems.iter().map(|dem| dem.display().to_string()).collect::<Vec<_>>().join(", ");
+        let files = || {
+            let reading = self.open(&self.dems, exaggeration, cache.clone())?;
+            Ok(reading.files().map(Path::to_owned).collect::<Vec<_>>())
+        };
+        cache.content(self.asked(), &of, &|message| talk.warn(&told(message)), files)
+    }
+
+    /// The same of a part.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] where it is a part already.
+    pub fn cropped(&self, crop: [f64; 4]) -> Result<Self> {
+        match self.crop {
+            None => Ok(Self { crop: Some(crop), ..self.clone() }),
+            Some(_) => Err(Error::setting(Setting::Crop, "each sheet is a part by itself", "leave it out")),
         }
     }
 

@@ -282,6 +282,16 @@ pub fn min_gap(text: &str) -> Result<Gap, String> {
     })
 }
 
+/// A length on the ground: a number with `m` or `km`.
+pub fn distance(text: &str) -> Result<f64, String> {
+    let (number_of, unit) = match text.strip_suffix("km") {
+        Some(text) => (text, 1000.0),
+        None => (text.strip_suffix('m').unwrap_or(text), 1.0),
+    };
+    let metres = number(number_of).ok().map(|number| number * unit).filter(|metres| *metres >= 0.0);
+    metres.ok_or_else(|| "want metres or kilometres, as 10km".into())
+}
+
 /// `distance:D,D…`, each a number with `m` or `km`, rising.
 pub fn split(text: &str) -> Result<Split, String> {
     let form = "want distance: and distances that rise, as distance:5km,10km";

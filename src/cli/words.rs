@@ -35,6 +35,7 @@ pub fn flag(setting: Setting) -> &'static str {
         Setting::ErrorPx => "--error-px",
         Setting::Exaggeration => "--exaggeration",
         Setting::FillVoids => "--fill-voids",
+        Setting::Grid => "--grid",
         Setting::Generalise => "--generalise",
         Setting::Hidden => "--hidden",
         Setting::Json => "--json",
@@ -51,16 +52,22 @@ pub fn flag(setting: Setting) -> &'static str {
         Setting::Nodata => "--nodata",
         Setting::Margin => "--margin",
         Setting::North => "--north",
+        Setting::Fps => "--fps",
+        Setting::Frames => "--frames",
         Setting::Order => "--order",
         Setting::Output => "--output",
         Setting::Page => "--page",
         Setting::Plan => "--plan",
         Setting::Resample => "--resample",
         Setting::Scale => "--scale",
+        Setting::Shard => "--shard",
+        Setting::ShardFromEnv => "--shard-from-env",
         Setting::Share => "--share",
+        Setting::Sheet => "--sheet",
         Setting::Size => "--size",
         Setting::Sizes => "--sizes",
         Setting::Style => "--style",
+        Setting::Video => "--video",
         Setting::Views => "--views",
         Setting::Warp => "--no-warp",
         Setting::Wide => "--wide",
@@ -92,7 +99,10 @@ pub fn line(error: &Error) -> String {
     match error {
         Error::Input { path, what, remedy } => format!("{}: {}; {}", shown(path), told(what), told(remedy)),
         Error::Setting { setting, what, remedy } => format!("{}: {}; {}", flag(*setting), told(what), told(remedy)),
-        Error::Limit { what, remedy } | Error::Scene { what, remedy } => format!("{}; {}", told(what), told(remedy)),
+        Error::Limit { what, remedy }
+        | Error::Scene { what, remedy }
+        | Error::Incomplete { what, remedy }
+        | Error::Ended { what, remedy } => format!("{}; {}", told(what), told(remedy)),
         Error::Output { why, .. } => format!("{error}; {}", way_out(*why)),
         Error::Gpu { .. } => format!("{error}; try `--adapter cpu`, a smaller --size or a lower --level"),
         Error::DeviceLost { .. } => format!("{error}; try again, or use `--adapter cpu`"),
@@ -104,7 +114,7 @@ pub fn line(error: &Error) -> String {
 pub fn exit_code(error: &Error) -> u8 {
     match error {
         Error::Setting { .. } => 2,
-        Error::DeviceLost { .. } => TRY_AGAIN,
+        Error::DeviceLost { .. } | Error::Ended { .. } => TRY_AGAIN,
         _ => FAILED,
     }
 }

@@ -72,6 +72,8 @@ settings! {
     Exaggeration = "exaggeration",
     /// Whether voids are filled.
     FillVoids = "fill voids",
+    /// The grid of a map's sheets.
+    Grid = "grid",
     /// Metres of what is smoothed away.
     Generalise = "generalise",
     /// Whether hidden lines are drawn.
@@ -104,6 +106,10 @@ settings! {
     Margin = "margin",
     /// What azimuths are counted from.
     North = "north",
+    /// The jobs that are done.
+    Frames = "frames",
+    /// Pictures a second.
+    Fps = "fps",
     /// Which files lie on top.
     Order = "order",
     /// The file or folder that is written.
@@ -116,14 +122,22 @@ settings! {
     Resample = "resample",
     /// Millimetres of land for one of the sheet.
     Scale = "scale",
+    /// Which share of the jobs is done.
+    Shard = "shard",
+    /// Whether the environment says which.
+    ShardFromEnv = "shard from the environment",
     /// What neighbouring facets share.
     Share = "share",
+    /// The side of a map's sheets.
+    Sheet = "sheet",
     /// Pixels of the page.
     Size = "size",
     /// Several pages.
     Sizes = "sizes",
     /// The look of the drawing.
     Style = "style",
+    /// The motion picture.
+    Video = "video",
     /// The file of views.
     Views = "file of views",
     /// Whether maps off the ground stay as they are.

@@ -2,6 +2,7 @@
 //! program ends is for the program to say.
 
 mod message;
+pub mod text;
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -61,6 +62,22 @@ pub enum Error {
         /// What the user can do.
         remedy: Message,
     },
+    /// Work of which a part was not done; what was stays.
+    #[error("{what}; {remedy}")]
+    Incomplete {
+        /// How much of it, and why.
+        what: Message,
+        /// What the user can do.
+        remedy: Message,
+    },
+    /// Work that was asked to end before it was done; it can be taken up again.
+    #[error("{what}; {remedy}")]
+    Ended {
+        /// How far it had come.
+        what: Message,
+        /// What the user can do.
+        remedy: Message,
+    },
     /// No GPU and no software driver either, or none of the asked name.
     #[error("no GPU adapter: {what}; {remedy}")]
     NoAdapter {
@@ -103,6 +120,11 @@ impl Error {
     /// A file that cannot be written: which, and why.
     pub fn output(path: &Path, why: &io::Error) -> Self {
         Self::Output { path: path.to_owned(), what: why.to_string(), why: why.kind() }
+    }
+
+    /// Work of which a part was not done: how much, and what to do.
+    pub fn incomplete(what: impl Into<Message>, remedy: impl Into<Message>) -> Self {
+        Self::Incomplete { what: what.into(), remedy: remedy.into() }
     }
 
     /// A limit that is passed: which, with both numbers, and what to do.

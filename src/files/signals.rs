@@ -1,7 +1,7 @@
 //! The end of a process by a signal: outputs that are not whole go first.
 //!
 //! Two kinds of end. One is asked for ([`end_when_asked`]): by the user, or by the system that shuts down. A thread of its own
-//! removes what was begun. The other is a failure in the midst of the work ([`fail_through`]): there may be no memory left
+//! removes what was begun; work that would rather come to an end by itself ([`finish_first`]) is asked once. The other is a failure in the midst of the work ([`fail_through`]): there may be no memory left
 //! and any lock may be held, so whoever is called may only do what needs neither, as [`end_now`] does.
 //!
 //! Does not handle: signals that no process can catch.
@@ -9,8 +9,14 @@
 use std::io;
 #[cfg(unix)]
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::output::{discard_all, discard_now};
+
+/// Whether the present work ends by itself when it is asked.
+static FINISHES: AtomicBool = AtomicBool::new(false);
+/// Whether it was asked.
+static ASKED: AtomicBool = AtomicBool::new(false);
 
 /// From here on a process that is asked to end (SIGINT, SIGTERM, SIGHUP) removes what was begun and ends with this code.
 ///
@@ -18,10 +24,23 @@ use super::output::{discard_all, discard_now};
 /// The system's, where it takes no handler: a signal may leave temporary files behind then.
 pub fn end_when_asked(code: i32) -> io::Result<()> {
     ctrlc::set_handler(move || {
+        if FINISHES.load(Ordering::SeqCst) && !ASKED.swap(true, Ordering::SeqCst) {
+            return;
+        }
         discard_all();
         exit(code)
     })
     .map_err(io::Error::other)
+}
+
+/// From here on the work looks by itself whether the process [is asked](is_asked) to end; asked again, it ends at once.
+pub fn finish_first() {
+    FINISHES.store(true, Ordering::SeqCst);
+}
+
+/// Whether the process was asked to end.
+pub fn is_asked() -> bool {
+    ASKED.load(Ordering::SeqCst)
 }
 
 /// Removes what was begun and ends the process with this code. Asks for no memory, and waits for no thread.

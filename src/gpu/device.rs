@@ -134,6 +134,11 @@ impl Gpu {
         self.compiled.pass(self, name, source.into(), constants)
     }
 
+    /// Adapter and driver in words.
+    pub fn adapter_and_driver(&self) -> String {
+        format!("{} ({})", self.info.name, self.info.driver_info)
+    }
+
     /// How many passes were compiled so far.
     pub fn compiled(&self) -> usize {
         self.compiled.count()

@@ -110,7 +110,7 @@ pub fn draw(lines: &Lines, sheet: &Sheet, style: &Style, split: &[f64]) -> Resul
             }
         }
     }
-    Ok(Drawing { sheet: *sheet, paper: style.paper, layers })
+    Ok(Drawing { sheet: *sheet, paper: style.paper, layers, seal: None })
 }
 
 /// The runs of each chain, with its name.

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::plot::Journey;
 use super::style::{SHARE, WIDTH, share, width};
-use super::{Colour, Sheet};
+use super::{Colour, Seal, Sheet};
 use crate::line::Id;
 
 /// A sheet of line work.
@@ -18,6 +18,8 @@ pub struct Drawing {
     pub paper: Colour,
     /// From bottom to top, in the order of plotting.
     pub layers: Vec<Layer>,
+    /// What made it, for files that are to tell.
+    pub seal: Option<Seal>,
 }
 
 /// A pen: one width, one colour.

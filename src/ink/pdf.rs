@@ -3,7 +3,7 @@
 //! Method: the page's unit is turned from a 72nd of an inch into a millimetre once, y downwards. A layer is a form inside
 //! an optional-content group, and consists of forms that hold some thousand strokes each: so it may be of any size.
 //! Where it lets the paper through, it is a transparency group painted with its opacity: crossings are not darker. The
-//! bytes tell nothing but the drawing: neither dates nor names.
+//! bytes tell nothing but the drawing, and what made it where it has a seal: no dates.
 //!
 //! Cost: .8 s for a million points of outlines on two cores, most of it compression; memory for the whole file. Does not
 //! handle: files beyond 10 GB, which the format's cross references cannot tell.
@@ -17,7 +17,7 @@ use pdf_writer::writers::Resources;
 use pdf_writer::{Content, Dict, Filter, Finish, Name, Pdf, Rect, Ref, TextStr};
 
 use super::paths::{in_order, number, paths};
-use super::{Drawing, Form, Layer, Stroke};
+use super::{Drawing, Form, Layer, Seal, Stroke};
 
 /// Points in a millimetre.
 const POINTS: f64 = 72.0 / 25.4;
@@ -39,6 +39,9 @@ struct Written<'a> {
 pub fn write_pdf(drawing: &Drawing, mut out: impl Write) -> io::Result<()> {
     let (mut pdf, mut next) = (Pdf::new(), Ref::new(1));
     let [catalog, pages, page, contents] = [(); 4].map(|()| next.bump());
+    if let Some(seal) = &drawing.seal {
+        write_seal(&mut pdf, next.bump(), seal);
+    }
     let size = drawing.sheet.size;
     let layers: Vec<Written> =
         drawing.layers.iter().map(|layer| write_layer(&mut pdf, &mut next, layer, size)).collect();
@@ -125,6 +128,15 @@ fn write_layer<'a>(pdf: &mut Pdf, next: &mut Ref, layer: &'a Layer, size: DVec2)
     let mut group = pdf.indirect(written.group).dict();
     group.pair(Name(b"Type"), Name(b"OCG")).pair(Name(b"Name"), TextStr(&layer.name));
     written
+}
+
+/// What made it, in the information about the document.
+fn write_seal(pdf: &mut Pdf, id: Ref, seal: &Seal) {
+    let plain = |text: &str| text.replace(|c: char| !c.is_ascii(), "?");
+    let mut about = pdf.document_info(id);
+    about.producer(TextStr(Seal::SOFTWARE));
+    about.keywords(TextStr(&seal.to_string()));
+    about.subject(TextStr(&plain(&seal.adapter)));
 }
 
 /// The list of layers that readers show.

@@ -57,6 +57,7 @@ pub fn write_png(drawing: &Drawing, px_per_mm: f64, out: impl Write) -> io::Resu
     encoder.set_filter(::png::Filter::Adaptive);
     let per_metre = (px_per_mm * 1000.0).round() as u32;
     encoder.set_pixel_dims(Some(PixelDimensions { xppu: per_metre, yppu: per_metre, unit: Unit::Meter }));
+    drawing.seal.as_ref().map_or(Ok(()), |seal| seal.write_into(&mut encoder))?;
     let layers: Vec<Vec<Segment>> = drawing.layers.iter().map(|layer| segments(layer, px_per_mm)).collect();
     let columns = width.div_ceil(TILE) as usize;
     let tiles = sort_into_tiles(&layers, columns, height.div_ceil(TILE) as usize);

@@ -14,13 +14,11 @@ use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
 use super::Style;
+use crate::error::text::{meant, place};
 use crate::error::{Error, Result, Setting, shown};
 
 /// Largest style file, bytes: what is larger is no style.
 const LARGEST: u64 = 1 << 20;
-
-/// How much of a name must agree for another to be meant (Jaro, Winkler 1990).
-const ALIKE: f64 = 0.75;
 
 /// A style that comes with the program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
@@ -141,11 +139,7 @@ fn overlay(under: &mut Table, over: Table) {
 
 /// A mistake in a style, with its place and what was meant.
 fn mistake(text: &str, path: &Path, message: &str, span: Option<Range<usize>>) -> Error {
-    let before = span.and_then(|span| text.get(..span.start));
-    let place = before.map_or_else(String::new, |before| {
-        let line = before.rsplit('\n').next().unwrap_or_default();
-        format!("line {}, column {}: ", before.matches('\n').count() + 1, line.chars().count() + 1)
-    });
+    let place = span.map_or_else(String::new, |span| format!("{}: ", place(text, span)));
     let message = message.trim().replace('\n', " ");
     let (what, expected) = message.split_once(", expected ").unwrap_or((&message, ""));
     let expected = match expected {
@@ -161,14 +155,4 @@ fn mistake(text: &str, path: &Path, message: &str, span: Option<Range<usize>>) -
         _ => "mend it as the schema of styles says".to_owned(),
     };
     Error::input(path, format!("{place}{}", what.replace("unknown field", "unknown key")), remedy)
-}
-
-/// The known name that comes nearest, else all.
-fn meant(name: &str, known: &[&str]) -> String {
-    let likeness = |known: &&&str| strsim::jaro_winkler(&name.to_lowercase(), known);
-    let nearest = known.iter().max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
-    match nearest.filter(|nearest| likeness(nearest) >= ALIKE) {
-        Some(nearest) => format!("`{nearest}`"),
-        None => format!("one of {}", known.iter().map(|known| format!("`{known}`")).collect::<Vec<_>>().join(", ")),
-    }
 }

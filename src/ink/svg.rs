@@ -2,20 +2,21 @@
 //!
 //! Groups are layers to Inkscape and to programs for plotters. A path is called after the chain it draws, `c` and its
 //! number, then which piece of it: so scripts find it again in the next frame. Nothing but paths: no text, clips, masks,
-//! transforms, and no paper.
+//! transforms, and no paper. Where a drawing has a seal, metadata tell what made it.
 //!
 //! Cost: .2 s for a million points of outlines on two cores; memory for two pieces of a layer a core.
 
 use std::io::{self, Write};
 
 use super::paths::{in_order, micrometres, number, paths};
-use super::{Drawing, Form, Layer, Sheet, Stroke};
+use super::{Drawing, Form, Layer, Seal, Sheet, Stroke};
 
 /// Writes the drawing; lengths are in micrometres as decimals of a millimetre.
 ///
 /// Errors are those of the writer.
 pub fn write_svg(drawing: &Drawing, mut out: impl Write) -> io::Result<()> {
     out.write_all(head(&drawing.sheet).as_bytes())?;
+    drawing.seal.as_ref().map_or(Ok(()), |seal| out.write_all(metadata(seal).as_bytes()))?;
     for (i, layer) in drawing.layers.iter().enumerate() {
         out.write_all(group(i + 1, layer).as_bytes())?;
         in_order(&layer.strokes, |piece| elements(piece, layer)).try_for_each(|text| out.write_all(&text))?;
@@ -32,6 +33,11 @@ fn head(sheet: &Sheet) -> String {
          xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" \
          width=\"{width}mm\" height=\"{height}mm\" viewBox=\"0 0 {width} {height}\">\n"
     )
+}
+
+/// What made it.
+fn metadata(seal: &Seal) -> String {
+    format!("<metadata>{}; {seal}; {}</metadata>\n", Seal::SOFTWARE, escaped(&seal.adapter))
 }
 
 /// The start of a layer, with all that its strokes have in common.

@@ -19,14 +19,15 @@ const STRAIGHT: f64 = 1e-6;
 /// A sample, by column and row.
 type Sample = [u32; 2];
 
-/// The plan of a DEM in a frame of so many pixels across and down, its middle in the middle, with so many pixels for each
-/// metre.
+/// The plan of a DEM in a frame of so many pixels across and down, the middle of an area of its world (west, south, east and
+/// north, metres) in the middle, with so many pixels for each metre.
 ///
 /// # Errors
 /// As [`Dem::survey`].
-pub fn overhead(dem: &Dem, [width, height]: [u32; 2], px_per_metre: f64) -> Result<Lines> {
-    let ([west, south, east, north], cell) = (dem.extent(), dem.cell());
-    let (middle, frame) = (DVec2::new(west + east, south + north) / 2.0, UVec2::new(width, height).as_dvec2() / 2.0);
+pub fn overhead(dem: &Dem, area: [f64; 4], [width, height]: [u32; 2], px_per_metre: f64) -> Result<Lines> {
+    let ([west, .., north], cell) = (dem.extent(), dem.cell());
+    let middle = DVec2::new(area[0] + area[2], area[1] + area[3]) / 2.0;
+    let frame = UVec2::new(width, height).as_dvec2() / 2.0;
     let point = |[column, row]: Sample| {
         let world = DVec2::new(west + f64::from(column) * cell.x, north - f64::from(row) * cell.y);
         let place = frame + (world - middle) * DVec2::new(1.0, -1.0) * px_per_metre;

@@ -4,7 +4,7 @@ use super::{Drawn, Renderer};
 use crate::error::Result;
 use crate::line::{Chain, Economy, Lines, Marks, marks, one_pixel_wide, rest, visible};
 use crate::plan::{Curves, Frame, Piece, Plan, Yields};
-use crate::view::Camera;
+use crate::view::{Camera, Perspective};
 
 /// The ink of a frame on a page of any size, and its curves.
 #[derive(Debug, Clone)]
@@ -21,6 +21,21 @@ pub struct Page {
     pub longest_walk: u32,
     /// What was drawn.
     pub frame: Frame,
+    /// How its camera sees.
+    pub perspective: Perspective,
+}
+
+impl Page {
+    /// Its lines: curves, drawn as sparingly as `economy` says, and what of its ink no curve accounts for, traced and smoothed
+    /// within `tolerance` px; of a plan without curves all its ink, traced.
+    pub fn lines(&self, economy: &Economy, tolerance: f64) -> Lines {
+        let Self { marks, chains, hidden, perspective, .. } = self;
+        if !self.frame.plan.has_curves() {
+            return Lines::of(marks, perspective, tolerance);
+        }
+        let rest = rest(chains, marks, perspective, economy, tolerance);
+        Lines::sparing(&[&chains[..], &rest].concat(), hidden, perspective, economy)
+    }
 }
 
 impl Renderer {
@@ -73,15 +88,8 @@ impl Renderer {
             Yields::Ink => Marks::new(size, list),
             Yields::Curves => one_pixel_wide(&chains, size),
         };
-        Ok(Page { marks, chains, hidden, covered, longest_walk, frame })
-    }
-
-    /// The lines of a page with curves, drawn as sparingly as `economy` says; those of its ink that no curve accounts for are
-    /// traced, and smoothed within `tolerance` px.
-    pub fn lines(&self, page: &Page, economy: &Economy, tolerance: f64) -> Lines {
-        let perspective = self.perspective(&page.frame);
-        let rest = rest(&page.chains, &page.marks, &perspective, economy, tolerance);
-        Lines::sparing(&[&page.chains[..], &rest].concat(), &page.hidden, &perspective, economy)
+        let perspective = self.perspective(&frame);
+        Ok(Page { marks, chains, hidden, covered, longest_walk, frame, perspective })
     }
 
     /// Draws a piece of a frame and brings it back, halo and all: `piece.drawn` of the page.

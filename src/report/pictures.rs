@@ -37,7 +37,7 @@ pub fn of_shown(name: String, shown: Shown<'_>) -> Result<Picture> {
 
 /// A mask: 1 bit a pixel.
 fn mask_picture(name: String, mask: &Mask) -> Result<Picture> {
-    picture(name, |png| ink::write_mask(mask.size, mask.inked.iter().map(|pixel| [pixel.column, pixel.row]), png))
+    picture(name, |png| ink::write_mask(mask.size, mask.inked.iter().map(|pixel| [pixel.column, pixel.row]), None, png))
 }
 
 /// Truth drawn one pixel wide.

@@ -89,7 +89,7 @@ fn drawing(layers: Vec<(&str, Vec<Stroke>)>) -> Drawing {
         strokes,
     };
     let sheet = Sheet { size: glam::DVec2::new(420.0, 297.0), margin: 0.0 };
-    Drawing { sheet, paper: Colour([255; 3]), layers: layers.into_iter().map(layer).collect() }
+    Drawing { sheet, paper: Colour([255; 3]), layers: layers.into_iter().map(layer).collect(), seal: None }
 }
 
 #[test]

@@ -69,7 +69,7 @@ pub fn drawing(mut layers: Vec<Layer>) -> Drawing {
     for (i, stroke) in layers.iter_mut().flat_map(|layer| &mut layer.strokes).enumerate() {
         (stroke.chain, stroke.piece) = (Some(Id(0x2f_0000_0000 + i as u64 / 2)), i as u32 % 2);
     }
-    Drawing { sheet: SHEET, paper: Colour([255; 3]), layers }
+    Drawing { sheet: SHEET, paper: Colour([255; 3]), layers, seal: None }
 }
 
 /// All of it, in four layers, one over the other.

@@ -1,0 +1,244 @@
+//! `hachure batch`: many drawings, as a file lists them.
+
+mod entry;
+mod sheets;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::cache::CacheArguments;
+use super::device::DeviceArguments;
+use super::draw::DrawArguments;
+use super::jobs::JobArguments;
+use super::listing;
+use super::plan::{self, Planned};
+use super::progress::{Form, Progress};
+use super::scene;
+use super::talk::Talk;
+use super::words::told;
+use super::work::Work;
+use crate::cache::Cache;
+use crate::error::{Error, Result};
+use crate::files::Taken;
+use crate::gpu::Gpu;
+use crate::ink::Seal;
+use crate::job::Job;
+use crate::job::manifest::Sequence;
+use crate::job::name::Naming;
+use crate::plan::frame::Kept;
+use crate::render::{Estimate, Illustration, Page, Renderer};
+use crate::surface::Surface;
+use entry::Entry;
+use sheets::SheetArguments;
+
+/// The end of `hachure batch --help`.
+const EXAMPLES: &str = "\
+The file is TOML. Its keys are the flags of `hachure draw` without their dashes, its paths count from the folder in which the
+command runs:
+
+  [defaults]
+  dem = \"dem/golden-gate.tif\"
+  style = \"atlas\"
+  size = \"1600x700\"
+
+  [[drawing]]
+  name = \"from the north\"
+  output = [\"north.png\", \"north.svg\"]
+  eye = \"547500,4190300,+300\"
+  azimuth = 190
+
+What is done already, and made of the same, is not made again. The manifest stands in the folder of the first drawing.
+
+Examples:
+  hachure batch drawings.toml
+
+  Each drawing once for every sheet of 10 km, its outputs named as sheets/{sheet}.svg:
+  hachure batch drawings.toml --grid EPSG:32610 --sheet 10km --halo 2km
+
+  The first of four shares, told in lines of JSON:
+  hachure batch drawings.toml --shard 0/4 --progress json";
+
+/// Flags of `hachure batch`, as typed.
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub struct BatchArguments {
+    /// The list of drawings
+    #[arg(value_name = "FILE.toml")]
+    file: PathBuf,
+    #[command(flatten)]
+    sheets: SheetArguments,
+    #[command(flatten)]
+    jobs: JobArguments,
+    #[command(flatten)]
+    device: DeviceArguments,
+    #[command(flatten)]
+    cache: CacheArguments,
+}
+
+/// A DEM on a device, for all drawings of it that follow one another.
+struct Scene {
+    /// What it was read of and how.
+    of: String,
+    surface: Arc<Surface>,
+    /// None where only plans were drawn of it so far.
+    renderer: Option<Renderer>,
+}
+
+/// A drawing on its way to its files.
+struct Drawn<'a> {
+    entry: &'a Entry,
+    what: What,
+}
+
+/// What it is made of.
+enum What {
+    /// What an eye sees, by this adapter.
+    View(Box<Page>, Illustration, String),
+    /// A plan, which is drawn.
+    Plan(Planned),
+}
+
+/// Makes the drawings.
+///
+/// # Errors
+/// As [`Work::run`]; [`Error::Input`] for a file that is no list of drawings.
+pub fn run(arguments: &BatchArguments, talk: &Talk) -> Result<()> {
+    let cache = arguments.cache.cache();
+    let entries = arguments.sheets.sheets(entry::read(&arguments.file)?, &cache, talk)?;
+    entry::each_output_once(&arguments.file, &entries)?;
+    let share = arguments.jobs.share(entries.len() as u32, "drawings")?;
+    let names: Vec<u128> = entries.iter().map(|entry| entry.name(&cache, talk)).collect();
+    let all: Vec<Job> = (0..).zip(&entries).zip(&names).map(|((n, entry), name)| entry.job(n, *name)).collect();
+    let jobs: Vec<Job> = share.frames.numbers().iter().map(|n| all[*n as usize].clone()).collect();
+    let together = names.iter().fold(Naming::new(), |naming, name| naming.with("drawing", name.to_le_bytes()));
+    let file = arguments.file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let sequence = Sequence {
+        of: format!("the {} drawings of {file}", entries.len()),
+        sequence: Naming::bare().with("batch", &file).name(),
+        job: together.name(),
+        count: entries.len() as u32,
+        fps: None,
+        inks: None,
+    };
+    let mut studio = Studio { arguments, cache, gpu: None, scene: None, talk: talk.hushed() };
+    if arguments.jobs.list {
+        return studio.list(&entries, &jobs, talk);
+    }
+    let folder = all.first().map(|job| folder_of(&job.files[0].path)).unwrap_or_default();
+    let work = Work { sequence, share, called: ["drawing", "drawings"], jobs, folder, dem: None };
+    let draw = |job: &Job, progress: &Progress| studio.draw(&entries[job.number as usize], progress);
+    work.run(talk, arguments.jobs.progress, draw, |job, drawn: Drawn| drawn.write(job))
+}
+
+impl BatchArguments {
+    /// Whether standard output holds something else than lines on the work.
+    pub fn fills_stdout(&self) -> bool {
+        self.jobs.progress == Form::Json || self.jobs.list
+    }
+}
+
+/// Where drawings are made, with what stays between them.
+struct Studio<'a> {
+    arguments: &'a BatchArguments,
+    cache: Cache,
+    gpu: Option<Arc<Gpu>>,
+    scene: Option<Scene>,
+    /// Tells more of each drawing than is wanted of many.
+    talk: Talk,
+}
+
+impl Studio<'_> {
+    /// Lists jobs with what they may take.
+    fn list(&mut self, entries: &[Entry], jobs: &[Job], talk: &Talk) -> Result<()> {
+        let mut kept = Kept::default();
+        for job in jobs {
+            let Entry { draw, .. } = &entries[job.number as usize];
+            let estimate = match draw.scale() {
+                _ if job.is_done() => Estimate::NOTHING,
+                Some(_) => Estimate::of_plan(self.scene(draw)?.surface.dem()),
+                None => {
+                    let (illustration, surface) = (draw.check()?, self.scene(draw)?.surface.clone());
+                    let view = draw.look(&surface, &illustration, &self.talk)?;
+                    listing::estimate(&illustration.plan, &surface, &view.camera, &mut kept)?
+                }
+            };
+            listing::tell(job, estimate, talk)?;
+        }
+        Ok(())
+    }
+
+    /// Draws what a view of an entry shows.
+    fn draw<'e>(&mut self, entry: &'e Entry, progress: &Progress) -> Result<Drawn<'e>> {
+        self.talk.say(&format!("{}:", entry.called))?;
+        if let Some(scale) = entry.draw.scale() {
+            let scene = self.scene(&entry.draw)?;
+            return Ok(Drawn { entry, what: What::Plan(plan::draw(&entry.draw, scale, scene.surface.dem())?) });
+        }
+        let illustration = entry.draw.check()?;
+        let gpu = match &self.gpu {
+            Some(gpu) => gpu.clone(),
+            None => {
+                let gpu = Arc::new(self.arguments.device.open_with(wgpu::Features::empty(), &self.talk)?);
+                self.gpu.insert(gpu).clone()
+            }
+        };
+        let adapter = gpu.adapter_and_driver();
+        progress.on(&adapter);
+        let surface = self.scene(&entry.draw)?.surface.clone();
+        let Self { scene: Some(scene), talk, .. } = self else {
+            return Err(Error::mistake("a DEM was read and is not there"));
+        };
+        let view = entry.draw.look(&surface, &illustration, talk)?;
+        let renderer = match &mut scene.renderer {
+            Some(renderer) => renderer,
+            none => none.insert(Renderer::new(gpu, surface)?),
+        };
+        let page = renderer.page(&illustration.plan, &view.camera, |_| ())?;
+        entry.draw.warn_of_blank(renderer, &view, &page, talk);
+        Ok(Drawn { entry, what: What::View(Box::new(page), illustration, adapter) })
+    }
+
+    /// The DEM of a drawing: the last one's, or read.
+    fn scene(&mut self, draw: &DrawArguments) -> Result<&mut Scene> {
+        let talk = &self.talk;
+        let of = draw.scene();
+        if self.scene.as_ref().is_none_or(|scene| scene.of != of) {
+            // Both together may be more than there is room for.
+            self.scene = None;
+            let reading = draw.open(self.cache.clone())?;
+            let surface = Arc::new(scene::surface(&draw.terrain, reading, talk)?);
+            scene::prepare(&surface, &self.cache, talk)?;
+            self.cache.discard_damaged(surface.dem(), &|message| talk.warn(&told(message)));
+            self.scene = Some(Scene { of, surface, renderer: None });
+        }
+        self.scene.as_mut().ok_or_else(|| Error::mistake("a DEM was read and is not there"))
+    }
+}
+
+impl Drawn<'_> {
+    fn write(self, job: &Job) -> Result<()> {
+        let Self { entry, what } = self;
+        let (page, mut drawing, px_per_mm, adapter) = match what {
+            What::View(page, illustration, adapter) => {
+                let (_, drawing) = illustration.drawing(&page)?;
+                (Some(page), drawing, illustration.px_per_mm, adapter)
+            }
+            What::Plan(planned) => (None, planned.drawing, planned.px_per_mm, "none".to_owned()),
+        };
+        drawing.seal = Some(Seal { job: job.files[0].name, adapter });
+        for made in &job.files {
+            let folder = folder_of(&made.path);
+            fs::create_dir_all(&folder).map_err(|error| Error::output(&folder, &error))?;
+        }
+        let mut outputs = entry.draw.outputs.open(Taken::default())?;
+        outputs.write(&drawing, px_per_mm, page.as_deref(), None::<&()>)?;
+        outputs.publish()
+    }
+}
+
+/// The folder in which a file stands.
+fn folder_of(path: &Path) -> PathBuf {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    folder.unwrap_or(Path::new(".")).to_owned()
+}

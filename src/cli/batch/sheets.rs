@@ -1,0 +1,187 @@
+//! The sheets of a map: squares of a grid, each a drawing of its own with some land around it.
+
+use std::path::PathBuf;
+
+use glam::DVec2;
+
+use super::entry::Entry;
+use crate::cache::Cache;
+use crate::cli::talk::Talk;
+use crate::cli::values;
+use crate::dem::{Crs, Dem};
+use crate::error::{Error, Result, Setting, shown};
+use crate::message;
+
+/// Most sheets of a map.
+const MOST: u64 = 100_000;
+/// Places along a side of a sheet at which is looked whether there is land, and where the side runs.
+const LOOKS: u32 = 16;
+/// What stands for the name of a sheet in the names of files.
+const MARK: &str = "{sheet}";
+
+/// The flags, as typed.
+#[derive(Debug, Clone, clap::Args)]
+#[command(next_help_heading = "Sheets")]
+pub struct SheetArguments {
+    /// Make each drawing once for each sheet of a map, squares of this system of coordinates in which there is land of the DEM;
+    /// names of outputs hold {sheet}, which becomes the sheet's south-western corner
+    #[arg(long, value_name = "EPSG:N", value_parser = values::epsg, requires = "sheet")]
+    grid: Option<u32>,
+    /// The side of a sheet
+    #[arg(long, value_name = "10km", value_parser = values::distance, requires = "grid")]
+    sheet: Option<f64>,
+    /// Land around each sheet that is drawn from too; of a plan it stays off the page
+    #[arg(long, value_name = "2km", value_parser = values::distance, requires = "grid", default_value = "0m")]
+    halo: f64,
+}
+
+/// Squares of a grid.
+struct Grid {
+    crs: Crs,
+    /// Metres, and units of the grid.
+    side: f64,
+    halo: f64,
+    metres: f64,
+}
+
+impl SheetArguments {
+    /// The drawings, one for each sheet where a grid is given.
+    ///
+    /// # Errors
+    /// [`Error::Setting`]; whatever keeps a DEM from being read.
+    pub fn sheets(&self, entries: Vec<Entry>, cache: &Cache, talk: &Talk) -> Result<Vec<Entry>> {
+        let (Some(code), Some(side)) = (self.grid, self.sheet) else { return self.without_grid(entries) };
+        if side <= 0.0 {
+            return Err(Error::setting(Setting::Sheet, "a sheet of no length holds nothing", "give its side, as 10km"));
+        }
+        let crs = Crs::from_epsg(code)?;
+        let Some(metres) = crs.metres_per_unit() else {
+            let what = format!("{} counts degrees, a sheet is so many metres long", crs.label());
+            return Err(Error::setting(Setting::Grid, what, "give a system of metres, as that of a UTM zone"));
+        };
+        let grid = Grid { crs, side: side / metres, halo: self.halo / metres, metres };
+        let (mut sheets, mut last): (Vec<Entry>, Option<(String, Dem)>) = Default::default();
+        for entry in entries {
+            let of = entry.draw.scene();
+            if last.as_ref().is_none_or(|(other, _)| *other != of) {
+                let reading = entry.draw.open(cache.clone())?;
+                last = Some((of, entry.draw.terrain.read(reading, talk)?));
+            }
+            let Some((_, dem)) = &last else { continue };
+            for corner in grid.corners(dem)? {
+                sheets.push(grid.sheet(&entry, dem, corner)?);
+            }
+        }
+        match sheets.is_empty() {
+            true => Err(Error::setting(
+                Setting::Grid,
+                "no sheet holds land of a DEM",
+                "give the system in which the DEM lies",
+            )),
+            false => Ok(sheets),
+        }
+    }
+
+    /// The drawings as they are, none of which may ask for sheets.
+    fn without_grid(&self, entries: Vec<Entry>) -> Result<Vec<Entry>> {
+        let has_mark = |path: &&PathBuf| path.to_string_lossy().contains(MARK);
+        let marked = entries.iter().flat_map(|entry| entry.draw.outputs.files().0).find(has_mark);
+        marked.map_or(Ok(()), |path| {
+            let what = format!("{} is named after sheets, and there are none", shown(path));
+            Err(Error::setting(
+                Setting::Output,
+                what,
+                message!["add ", Setting::Grid.with_value(), ", or name it without"],
+            ))
+        })?;
+        Ok(entries)
+    }
+}
+
+impl Grid {
+    /// South-western corners of the sheets that hold land, from south to north and from west to east, in sides.
+    fn corners(&self, dem: &Dem) -> Result<Vec<[i64; 2]>> {
+        let ([west, south, east, north], georeference) = (dem.extent(), dem.georeference());
+        let outline = outline([DVec2::new(west, south), DVec2::new(east, north)]);
+        let places: Vec<DVec2> = outline.filter_map(|place| georeference.place_in(&self.crs, place)).collect();
+        let Some(first) = places.first() else {
+            let what = format!("the DEM has no place in {}", self.crs.label());
+            return Err(Error::setting(Setting::Grid, what, "give the system in which the DEM lies"));
+        };
+        let low = places.iter().fold(*first, |low, place| low.min(*place)) / self.side;
+        let high = places.iter().fold(*first, |high, place| high.max(*place)) / self.side;
+        let span = |low: f64, high: f64| (low.floor() as i64, (high.ceil() as i64).max(low.floor() as i64 + 1));
+        let ((left, right), (bottom, top)) = (span(low.x, high.x), span(low.y, high.y));
+        if (right - left) as u64 * (top - bottom) as u64 > MOST {
+            let what = format!("makes over {MOST} sheets");
+            return Err(Error::setting(Setting::Sheet, what, message!["use a larger ", Setting::Sheet]));
+        }
+        let thinned = dem.thinned()?;
+        let all = (bottom..top).flat_map(|row| (left..right).map(move |column| [column, row]));
+        Ok(all.filter(|corner| self.has_land(&thinned, dem, *corner)).collect())
+    }
+
+    /// Whether a look at places spread over a sheet finds land.
+    fn has_land(&self, thinned: &Dem, dem: &Dem, corner: [i64; 2]) -> bool {
+        let low = DVec2::new(corner[0] as f64, corner[1] as f64) * self.side;
+        let looks = (0..LOOKS * LOOKS).map(|i| {
+            let share = DVec2::new(f64::from(i % LOOKS), f64::from(i / LOOKS)) + 0.5;
+            low + share / f64::from(LOOKS) * self.side
+        });
+        looks.filter_map(|place| dem.georeference().world_place(&self.crs, place)).any(|world| {
+            let at = thinned.grid_place(world).round();
+            let inside = at.x >= 0.0 && at.y >= 0.0 && at.x < thinned.columns() as f64 && at.y < thinned.rows() as f64;
+            inside && thinned.height(at.x as usize, at.y as usize).is_some()
+        })
+    }
+
+    /// The drawing of a sheet.
+    fn sheet(&self, entry: &Entry, dem: &Dem, corner: [i64; 2]) -> Result<Entry> {
+        let low = DVec2::new(corner[0] as f64, corner[1] as f64) * self.side;
+        let georeference = dem.georeference();
+        let in_world = |place: DVec2| georeference.world_place(&self.crs, place);
+        let in_file = |place: DVec2| georeference.place_in(georeference.file(), in_world(place)?);
+        let bounds = |grown: f64, carry: &dyn Fn(DVec2) -> Option<DVec2>| {
+            let places: Vec<DVec2> = outline([low - grown, low + self.side + grown]).filter_map(carry).collect();
+            let first = places.first()?;
+            let least = places.iter().fold(*first, |low, place| low.min(*place));
+            let most = places.iter().fold(*first, |high, place| high.max(*place));
+            Some([least.x, least.y, most.x, most.y])
+        };
+        let name = self.name(low);
+        let nowhere = || {
+            let what = format!("sheet {name} has no place in {}", georeference.file().label());
+            Error::setting(Setting::Grid, what, "give the system in which the DEM lies")
+        };
+        let crop = bounds(self.halo, &in_file).ok_or_else(nowhere)?;
+        let area = bounds(0.0, &in_world).ok_or_else(nowhere)?;
+        let draw = entry.draw.of_sheet(crop, area, |path| {
+            let text = path.to_string_lossy();
+            match text.contains(MARK) {
+                true => Ok(PathBuf::from(text.replace(MARK, &name))),
+                false => {
+                    let what = format!("{} would be each sheet's", shown(path));
+                    Err(Error::setting(Setting::Output, what, format!("put {MARK} in its name")))
+                }
+            }
+        })?;
+        Ok(Entry { called: format!("{}, sheet {name}", entry.called), draw })
+    }
+
+    /// A sheet is called after its corner: in kilometres where these are whole, else in metres.
+    fn name(&self, low: DVec2) -> String {
+        let metres = low * self.metres;
+        let unit = if (self.side * self.metres) % 1000.0 == 0.0 { 1000.0 } else { 1.0 };
+        let [east, north] = (metres / unit).to_array().map(|n| n.round() as i64);
+        format!("E{east}_N{north}")
+    }
+}
+
+/// Places along the sides of a rectangle.
+fn outline([low, high]: [DVec2; 2]) -> impl Iterator<Item = DVec2> {
+    let corners = [low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)];
+    (0..4 * LOOKS).map(move |i| {
+        let (side, share) = ((i / LOOKS) as usize, f64::from(i % LOOKS) / f64::from(LOOKS));
+        corners[side].lerp(corners[(side + 1) % 4], share)
+    })
+}

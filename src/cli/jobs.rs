@@ -1,0 +1,67 @@
+//! Flags of every subcommand that makes many drawings: which of them, and how their progress is shown.
+
+use std::env;
+
+use super::choices;
+use super::progress::Form;
+use crate::error::{Error, Result, Setting};
+use crate::job::{Frames, Shard};
+use crate::message;
+
+/// The flags, as typed.
+#[derive(Debug, Clone, clap::Args)]
+#[command(next_help_heading = "Jobs")]
+pub struct JobArguments {
+    /// Make these alone, counted from 0: numbers and ranges, every fifth with :5
+    #[arg(long, value_name = "3,5-10,0-99:5", value_parser = |text: &str| text.parse::<Frames>())]
+    frames: Option<Frames>,
+    /// Make one of n shares alone, i from 0 on; a share is a run of frames
+    #[arg(long, value_name = "i/n", value_parser = |text: &str| text.parse::<Shard>(), conflicts_with = "shard_from_env")]
+    shard: Option<Shard>,
+    /// Make the share that the environment names: of a job array of Slurm or AWS Batch, of an indexed job of Kubernetes
+    /// (which does not say how many there are: set HACHURE_SHARDS)
+    #[arg(long)]
+    shard_from_env: bool,
+    /// List the jobs as lines of JSON, with the seconds, memory and device memory they may take; make nothing
+    #[arg(long)]
+    pub list: bool,
+    /// How progress is shown: a bar on a terminal, lines of JSON on standard output, or none
+    #[arg(long, value_parser = choices::progress(), default_value = choices::default_progress())]
+    pub progress: Form,
+}
+
+/// Which jobs a process has to do.
+#[derive(Debug, Clone)]
+pub struct Share {
+    /// The jobs of which it has a share, where those are not all.
+    pub part: Option<Frames>,
+    /// Which share.
+    pub shard: Shard,
+    /// Its own.
+    pub frames: Frames,
+}
+
+impl JobArguments {
+    /// Which of `count` jobs are to be done; they are called `frames` or `drawings`.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] for jobs beyond the last, and where the environment names no shard.
+    pub fn share(&self, count: u32, called: &str) -> Result<Share> {
+        let all = self.frames.clone().unwrap_or_else(|| Frames::first(count));
+        if let Some(last) = all.last().filter(|last| *last >= count) {
+            let what = format!("there is no {last}; the {count} {called} count from 0 to {}", count.saturating_sub(1));
+            return Err(Error::setting(Setting::Frames, what, "name those that there are"));
+        }
+        let from_env = || {
+            Shard::from_env(|name| env::var(name).ok()).map_err(|what| {
+                Error::setting(Setting::ShardFromEnv, what, message!["give ", Setting::Shard.with_value()])
+            })
+        };
+        let shard = match self.shard {
+            Some(shard) => shard,
+            None if self.shard_from_env => from_env()?,
+            None => Shard::WHOLE,
+        };
+        Ok(Share { part: self.frames.clone(), shard, frames: shard.of(&all) })
+    }
+}

@@ -1,0 +1,52 @@
+//! Jobs as lines of JSON, with what they may take: for farms that book memory and time.
+
+use serde::Serialize;
+
+use super::talk::Talk;
+use crate::error::{Error, Result};
+use crate::job::{Job, name};
+use crate::plan::frame::Kept;
+use crate::plan::{Frame, Plan};
+use crate::render::Estimate;
+use crate::surface::Surface;
+use crate::view::Camera;
+
+/// A job.
+#[derive(Serialize)]
+struct Line {
+    n: u32,
+    files: Vec<String>,
+    job: String,
+    done: bool,
+    facets: u64,
+    seconds: f64,
+    memory_bytes: u64,
+    device_bytes: u64,
+}
+
+/// What a view may take.
+///
+/// # Errors
+/// As [`Frame::new`] and [`Estimate::of`].
+pub fn estimate(plan: &Plan, surface: &Surface, camera: &Camera, kept: &mut Kept) -> Result<Estimate> {
+    Estimate::of(&Frame::new(plan, surface, camera, true, kept)?, surface)
+}
+
+/// Prints a job and what it may take, which is nothing where it is done.
+///
+/// # Errors
+/// As [`Talk::answer`].
+pub fn tell(job: &Job, estimate: Estimate, talk: &Talk) -> Result<()> {
+    let Estimate { facets, seconds, memory, device } = estimate;
+    let line = Line {
+        n: job.number,
+        files: job.files.iter().map(|made| made.path.to_string_lossy().into_owned()).collect(),
+        job: job.files.first().map(|made| name::text(made.name)).unwrap_or_default(),
+        done: job.is_done(),
+        facets,
+        seconds: (seconds * 1e3).round() / 1e3,
+        memory_bytes: memory,
+        device_bytes: device,
+    };
+    talk.answer(&serde_json::to_string(&line).map_err(|error| Error::mistake(error.to_string()))?)
+}

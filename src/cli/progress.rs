@@ -1,0 +1,180 @@
+//! How far a sequence has come: a bar on a terminal, or lines of JSON for programs.
+//!
+//! Lines go to standard output, one object each: `start`, `frame`, `skip` and `fail` for each job, `done`; `wait` where nothing
+//! else was to be said for a while.
+
+use std::io::{Write, stdout};
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use serde_json::{Value, json};
+
+use super::talk::Talk;
+use super::words;
+use crate::job::Event;
+
+/// Longest silence.
+const SILENCE: Duration = Duration::from_secs(25);
+
+/// How it is shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Form {
+    /// As a bar on a terminal.
+    #[default]
+    Bar,
+    /// As lines of JSON.
+    Json,
+    /// Not at all.
+    None,
+}
+
+/// How far the jobs have come.
+pub struct Progress<'a> {
+    talk: &'a Talk,
+    form: Form,
+    jobs: usize,
+    began: Instant,
+    counts: Mutex<Counts>,
+    adapter: Mutex<Option<String>>,
+    spoken: Arc<Mutex<Instant>>,
+    /// Dropped with this, it ends who breaks silences.
+    _silence: Option<Sender<()>>,
+}
+
+/// What became of jobs.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Made.
+    pub made: usize,
+    /// There already.
+    pub skipped: usize,
+    /// Failed.
+    pub failed: usize,
+}
+
+impl Counts {
+    fn all(self) -> usize {
+        self.made + self.skipped + self.failed
+    }
+}
+
+impl<'a> Progress<'a> {
+    /// Begins so many jobs.
+    pub fn start(talk: &'a Talk, form: Form, jobs: usize) -> Self {
+        let spoken = Arc::new(Mutex::new(Instant::now()));
+        let silence = (form == Form::Json).then(|| break_silences(&spoken));
+        let progress = Self {
+            talk,
+            form,
+            jobs,
+            began: Instant::now(),
+            counts: Mutex::default(),
+            adapter: Mutex::default(),
+            spoken,
+            _silence: silence.flatten(),
+        };
+        progress.line(|| json!({"event": "start", "jobs": jobs}));
+        progress
+    }
+
+    /// From here on jobs are made on this adapter.
+    pub fn on(&self, adapter: &str) {
+        *lock(&self.adapter) = Some(adapter.to_owned());
+    }
+
+    /// The adapter on which jobs are made, once it is known.
+    pub fn adapter(&self) -> Option<String> {
+        lock(&self.adapter).clone()
+    }
+
+    /// Something became of a job.
+    pub fn hear(&self, event: &Event) {
+        let counts = {
+            let mut counts = lock(&self.counts);
+            match event {
+                Event::Made(..) => counts.made += 1,
+                Event::Skipped(_) => counts.skipped += 1,
+                Event::Failed(..) => counts.failed += 1,
+            }
+            *counts
+        };
+        let elapsed = self.began.elapsed().as_secs_f64();
+        // What was skipped took no time.
+        let left = self.jobs.saturating_sub(counts.all()) as f64;
+        let eta = elapsed / (counts.made + counts.failed).max(1) as f64 * left;
+        self.line(|| match event {
+            Event::Made(job, ms) => {
+                let adapter = self.adapter();
+                json!({"event": "frame", "n": job.number, "ms": rounded(*ms), "eta_s": rounded(eta), "adapter": adapter})
+            }
+            Event::Skipped(job) => json!({"event": "skip", "n": job.number}),
+            Event::Failed(job, error) => json!({"event": "fail", "n": job.number, "error": words::line(error)}),
+        });
+        if self.form == Form::Bar {
+            let stage = format!("{} of {}, {} left", counts.all(), self.jobs, duration(eta));
+            // The end is told with the last line.
+            self.talk.progress(&stage, (counts.all() as f64 / self.jobs.max(1) as f64).min(0.999));
+        }
+    }
+
+    /// No job is left; what became of them.
+    pub fn done(&self) -> Counts {
+        let counts = *lock(&self.counts);
+        let Counts { made, skipped, failed } = counts;
+        let s = rounded(self.began.elapsed().as_secs_f64());
+        self.line(|| json!({"event": "done", "made": made, "skipped": skipped, "failed": failed, "s": s}));
+        self.talk.progress("", 1.0);
+        counts
+    }
+
+    fn line(&self, line: impl FnOnce() -> Value) {
+        if self.form == Form::Json {
+            *lock(&self.spoken) = Instant::now();
+            say(&line());
+        }
+    }
+}
+
+/// Says from time to time that the work goes on, where nothing else was said, until what it gives is dropped; `None` where the
+/// system has no thread left.
+fn break_silences(spoken: &Arc<Mutex<Instant>>) -> Option<Sender<()>> {
+    let (sender, receiver) = channel::<()>();
+    let spoken = spoken.clone();
+    let work = move || {
+        while receiver.recv_timeout(Duration::from_secs(1)) == Err(RecvTimeoutError::Timeout) {
+            let mut spoken = lock(&spoken);
+            if spoken.elapsed() >= SILENCE {
+                *spoken = Instant::now();
+                say(&json!({"event": "wait"}));
+            }
+        }
+    };
+    thread::Builder::new().spawn(work).ok().map(|_| sender)
+}
+
+/// A reader that has gone away has had what it wanted.
+fn say(line: &Value) {
+    let mut out = stdout().lock();
+    let _ = writeln!(out, "{line}").and_then(|()| out.flush());
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// With three decimals.
+fn rounded(number: f64) -> f64 {
+    (number * 1e3).round() / 1e3
+}
+
+/// Seconds in words.
+pub fn duration(seconds: f64) -> String {
+    let whole = seconds.round() as u64;
+    match (whole / 3600, whole / 60 % 60, whole % 60) {
+        (0, 0, seconds) => format!("{seconds} s"),
+        (0, minutes, seconds) => format!("{minutes} min {seconds} s"),
+        (hours, minutes, _) => format!("{hours} h {minutes} min"),
+    }
+}

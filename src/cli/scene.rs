@@ -1,0 +1,62 @@
+//! A DEM on its way to a device: read, looked at, and the device opened meanwhile.
+
+use std::panic::resume_unwind;
+use std::thread;
+
+use super::device::DeviceArguments;
+use super::talk::Talk;
+use super::terrain::TerrainArguments;
+use super::words::told;
+use crate::cache::Cache;
+use crate::error::Result;
+use crate::geo::Reading;
+use crate::gpu::Gpu;
+use crate::surface::Surface;
+
+/// Reads the DEM and finds its normals.
+///
+/// # Errors
+/// As [`TerrainArguments::read`]; where there is nothing to draw.
+pub fn surface(terrain: &TerrainArguments, reading: Reading, talk: &Talk) -> Result<Surface> {
+    let dem = terrain.read(reading, talk)?;
+    // The renderer holds all samples on the device.
+    talk.progress("computing normals", 0.1);
+    if !dem.is_filed() {
+        dem.check_patches()?;
+    }
+    Ok(Surface::new(dem))
+}
+
+/// Looks at the samples of a DEM that stays in its file.
+///
+/// # Errors
+/// As [`Cache::prepare`]; where there is nothing to draw.
+pub fn prepare(surface: &Surface, cache: &Cache, talk: &Talk) -> Result<()> {
+    cache.prepare(surface, &|message| talk.warn(&told(message)), &|done| {
+        talk.progress("looking at every sample, once for this file", 0.1 + 0.1 * done);
+    })?;
+    surface.dem().check_patches()
+}
+
+/// The same while the device opens: drivers take their time to start. What opening comes to is told after all that is said
+/// of the DEM and its view.
+///
+/// # Errors
+/// As [`prepare`].
+pub fn prepare_and_open(
+    surface: &Surface,
+    cache: &Cache,
+    device: &DeviceArguments,
+    talk: &Talk,
+) -> Result<Result<Gpu>> {
+    // Samples stay on this thread, where HDF5 keeps silent.
+    let (prepared, gpu) = thread::scope(|scope| {
+        let open = || device.open_silently(wgpu::Features::empty());
+        match thread::Builder::new().spawn_scoped(scope, open) {
+            Ok(gpu) => (prepare(surface, cache, talk), gpu.join().unwrap_or_else(|panic| resume_unwind(panic))),
+            // The system has no thread left.
+            Err(_) => (prepare(surface, cache, talk), open()),
+        }
+    });
+    prepared.map(|()| gpu)
+}

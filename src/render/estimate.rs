@@ -1,0 +1,82 @@
+//! What a frame may take, before a device hears of it: for farms that book memory and time.
+//!
+//! Buffers follow from the plan. Times are those of two cores with a software driver, fitted to measured frames; another
+//! device is another matter, often a hundredth of it. Memory counts the device's too, which a software driver keeps in it.
+
+use crate::dem::Dem;
+use crate::error::Result;
+use crate::gpu::{Capacity, sizes};
+use crate::plan::batches::BATCH_CHUNKS;
+use crate::plan::{Detail, Frame};
+use crate::surface::Surface;
+use crate::surface::lattice::CHUNK_VERTICES;
+
+/// Seconds of a frame whatever it shows.
+const SECONDS: f64 = 0.02;
+/// Seconds a facet: to the mask, and for curves, their chains and strokes.
+const OF_FACET: [f64; 2] = [60e-9, 150e-9];
+/// Seconds a pixel.
+const OF_PIXEL: f64 = 100e-9;
+/// Seconds a sample, of a plan.
+const OF_SAMPLE_SECONDS: f64 = 50e-9;
+/// Bytes of the program and its driver.
+const PROGRAM: u64 = 160 << 20;
+/// Bytes a sample that is held: height, normal, and what is made of them.
+const OF_SAMPLE: u64 = 16;
+/// Bytes a pixel of drawings on their way to their files, of which there are up to three.
+const OF_DRAWING: u64 = 3 * 24;
+
+/// What a frame may take.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Estimate {
+    /// Facets.
+    pub facets: u64,
+    /// Seconds, once the device is warm.
+    pub seconds: f64,
+    /// Bytes of the process, those of the device included.
+    pub memory: u64,
+    /// Bytes on the device.
+    pub device: u64,
+}
+
+impl Estimate {
+    /// What is done already.
+    pub const NOTHING: Self = Self { facets: 0, seconds: 0.0, memory: 0, device: 0 };
+
+    /// Of the plan of a DEM, which no device sees.
+    pub fn of_plan(dem: &Dem) -> Self {
+        let samples = (dem.columns() * dem.rows()) as u64;
+        Self {
+            seconds: SECONDS + samples as f64 * OF_SAMPLE_SECONDS,
+            memory: PROGRAM + samples * OF_SAMPLE,
+            ..Self::NOTHING
+        }
+    }
+
+    /// Of a frame that is planned.
+    ///
+    /// # Errors
+    /// As [`sizes::of_page`].
+    pub fn of(frame: &Frame, surface: &Surface) -> Result<Self> {
+        let (facets, [width, height]) = (frame.facets(surface), frame.pieces.page());
+        let pixels = u64::from(width) * u64::from(height);
+        let least = Capacity::of(&frame.lattice);
+        let capacity = match frame.plan.detail {
+            Detail::Uniform(_) => least,
+            Detail::Adaptive { .. } => Capacity::FIRST.grown(least),
+        };
+        let of_scene = sizes::of_scene(capacity);
+        let of_page = sizes::of_page(frame.pieces.largest())?;
+        let batch = u64::from(capacity.chunks.min(BATCH_CHUNKS));
+        let of_curves = if frame.plan.has_curves() { batch * u64::from(CHUNK_VERTICES) * sizes::WORD_BYTES } else { 0 };
+        let device = of_scene.iter().chain(&of_page).map(|(_, bytes)| bytes).sum::<u64>() + of_curves;
+        let samples = surface.dem().held().map_or(0, |_| surface.dem().columns() as u64 * surface.dem().rows() as u64);
+        let of_facet = OF_FACET[usize::from(frame.plan.has_curves())];
+        Ok(Self {
+            facets,
+            seconds: SECONDS + facets as f64 * of_facet + pixels as f64 * OF_PIXEL,
+            memory: PROGRAM + samples * OF_SAMPLE + device + pixels * OF_DRAWING,
+            device,
+        })
+    }
+}

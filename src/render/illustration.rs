@@ -1,0 +1,39 @@
+//! How a view becomes a drawing: what is found, how it is stroked, on which sheet.
+
+use super::Page;
+use crate::error::Result;
+use crate::ink::{self, Drawing, Sheet, Style};
+use crate::line::{Economy, Lines};
+use crate::plan::Plan;
+
+/// All that a drawing is made by, but what it shows and from where.
+#[derive(Debug, Clone)]
+pub struct Illustration {
+    /// What is found.
+    pub plan: Plan,
+    /// How it is stroked.
+    pub style: Style,
+    /// How sparing it is with curves.
+    pub economy: Economy,
+    /// Distances that part layers, metres.
+    pub split: Vec<f64>,
+    /// What it stands on.
+    pub sheet: Sheet,
+    /// Pixels that lines are found in, across and down.
+    pub frame: [u32; 2],
+    /// Pixels of pictures for each millimetre.
+    pub px_per_mm: f64,
+}
+
+impl Illustration {
+    /// The lines of a page, and their drawing.
+    ///
+    /// # Errors
+    /// As [`ink::draw`].
+    pub fn drawing(&self, page: &Page) -> Result<(Lines, Drawing)> {
+        let tolerance = self.style.tolerance * self.sheet.placement(self.frame).px_per_mm;
+        let lines = page.lines(&self.economy, tolerance);
+        let drawing = ink::draw(&lines, &self.sheet, &self.style, &self.split)?;
+        Ok((lines, drawing))
+    }
+}
