@@ -20,7 +20,7 @@ pub use encoding::Encoding;
 pub use info::{Info, info};
 pub use nodata::Nodata;
 pub use read::{Order, ReadOptions, Stage, read, read_all};
-pub use track::Track;
+pub use track::{Track, with_layer};
 #[cfg(not(feature = "gdal"))]
 pub use without::{Reading, available, track, write};
 

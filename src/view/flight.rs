@@ -194,7 +194,9 @@ impl Flight {
     pub fn new(course: &Course, surface: &Surface, level: Level) -> Result<Self> {
         let (curve, stops) = match &course.way {
             Way::Through(stops) => through(stops)?,
-            Way::Around { centre, radius, .. } => (Curve::Circle { centre: *centre, radius: *radius }, Stops::default()),
+            Way::Around { centre, radius, .. } => {
+                (Curve::Circle { centre: *centre, radius: *radius }, Stops::default())
+            }
         };
         let length = curve.length();
         let pace = stops.pace(length);
@@ -237,6 +239,11 @@ impl Flight {
     /// Whether the way ends where it begins.
     pub fn is_closed(&self) -> bool {
         self.curve.is_closed()
+    }
+
+    /// Whether some of it is over land of the DEM.
+    pub fn is_over_land(&self) -> bool {
+        self.heights.over_land
     }
 
     /// By how many exaggerated metres the eye is lifted, where it is most, to keep clear of the ground; 0 where nowhere.
@@ -293,7 +300,9 @@ impl Flight {
 
 fn same(a: Height, b: Height) -> bool {
     match (a, b) {
-        (Height::Absolute(a), Height::Absolute(b)) | (Height::AboveGround(a), Height::AboveGround(b)) => (a - b).abs() <= SAME,
+        (Height::Absolute(a), Height::Absolute(b)) | (Height::AboveGround(a), Height::AboveGround(b)) => {
+            (a - b).abs() <= SAME
+        }
         _ => false,
     }
 }

@@ -6,9 +6,11 @@
 //! (`ogr2ogr -nlt CONVERT_TO_LINEAR`), heights in other units than metres or above other zeros than the DEM's, times, and
 //! single heights that are missing, which GDAL reads as 0.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use gdal::vector::{Feature, Geometry, Layer, LayerAccess, OGRwkbGeometryType, geometry_type_flatten, geometry_type_has_z};
+use gdal::vector::{
+    Feature, Geometry, Layer, LayerAccess, OGRwkbGeometryType, geometry_type_flatten, geometry_type_has_z,
+};
 use gdal::{Dataset, GdalOpenFlags};
 use glam::DVec3;
 
@@ -19,6 +21,7 @@ use super::{lossless, vsi};
 use crate::dem::Crs;
 use crate::error::{Error, Message, Result, Setting};
 use crate::geo::Track;
+use crate::geo::track::with_layer;
 use crate::message;
 
 /// Layers of GPX that hold ways, the best first.
@@ -78,7 +81,10 @@ pub fn track(path: &Path, allow_remote: bool) -> Result<Track> {
     let (line, found) = chosen(&found, is_gpx, path)?;
     let count = line.points.len();
     if count < 2 {
-        return Err(wrong("holds one point".into(), message!["give a path of two points at least, or ", Setting::Orbit]));
+        return Err(wrong(
+            "holds one point".into(),
+            message!["give a path of two points at least, or ", Setting::Orbit],
+        ));
     }
     if !line.points.iter().all(|point| point.truncate().is_finite()) {
         return Err(wrong("holds a point that is nowhere".into(), "mend it, or take it out".into()));
@@ -95,18 +101,6 @@ pub fn track(path: &Path, allow_remote: bool) -> Result<Track> {
     })
 }
 
-/// The file and the layer in a name, where the whole is none of a file.
-fn with_layer(path: &Path) -> (PathBuf, Option<String>) {
-    let text = lossless::text(path.as_os_str());
-    match text.rsplit_once(':') {
-        Some((file, layer)) if !path.exists() && !file.is_empty() && !layer.contains('/') => {
-            let file = PathBuf::from(lossless::name(file));
-            if file.is_file() { (file, Some(layer.to_owned())) } else { (path.to_owned(), None) }
-        }
-        _ => (path.to_owned(), None),
-    }
-}
-
 fn open(path: &Path, allow_remote: bool) -> Result<Dataset> {
     let name = match path.exists() {
         true => Name::Local(Local::by_ending(path)),
@@ -120,7 +114,8 @@ fn open(path: &Path, allow_remote: bool) -> Result<Dataset> {
         }
         Name::Remote(name) if allow_remote => name,
         Name::Remote(_) => {
-            let remedy = message!["download it first, or add `", Setting::AllowRemote, "` if you trust where it comes from"];
+            let remedy =
+                message!["download it first, or add `", Setting::AllowRemote, "` if you trust where it comes from"];
             return Err(Error::input(path, "lies on a network", remedy));
         }
         Name::Other => {
@@ -131,7 +126,8 @@ fn open(path: &Path, allow_remote: bool) -> Result<Dataset> {
     let flags = GdalOpenFlags::GDAL_OF_VECTOR | GdalOpenFlags::GDAL_OF_READONLY | GdalOpenFlags::GDAL_OF_VERBOSE_ERROR;
     let (opened, complaint) = vsi::open(&name, flags, &VECTORS);
     opened.ok_or_else(|| {
-        let convert = "give a line as GeoJSON, KML, GPX or GeoPackage, perhaps made by `ogr2ogr OUT.gpkg IN`, or keys in a .toml";
+        let convert =
+            "give a line as GeoJSON, KML, GPX or GeoPackage, perhaps made by `ogr2ogr OUT.gpkg IN`, or keys in a .toml";
         if vsi::open(&name, GdalOpenFlags::GDAL_OF_RASTER, &FORMATS).0.is_some() {
             return Error::input(path, "holds a raster, not a path", convert);
         }
@@ -173,9 +169,10 @@ fn chosen<'a>(found: &'a [Found], is_gpx: bool, path: &Path) -> Result<(&'a Line
             }
         },
         ([], [found]) => Ok((&found.points, found)),
-        ([], []) if found.iter().any(|found| found.other) => {
-            wrong("holds areas or curves, no line and no points".into(), "make lines of them: `ogr2ogr -nlt LINESTRING OUT.gpkg IN`".into())
-        }
+        ([], []) if found.iter().any(|found| found.other) => wrong(
+            "holds areas or curves, no line and no points".into(),
+            "make lines of them: `ogr2ogr -nlt LINESTRING OUT.gpkg IN`".into(),
+        ),
         ([], []) => wrong("holds no line and no points".into(), "give a file with a line, or points in order".into()),
         ([], several_points) => several(several_points, "points"),
         (several_lines, _) => several(several_lines, "lines"),
@@ -187,7 +184,8 @@ impl Found {
         let crs = layer.spatial_ref().and_then(Crs::of);
         let mut found = Self { layer: layer.name(), crs, ..Self::default() };
         for feature in layer.features() {
-            let text = |name: &str| feature.field_index(name).ok().and_then(|i| feature.field_as_string(i).ok().flatten());
+            let text =
+                |name: &str| feature.field_index(name).ok().and_then(|i| feature.field_as_string(i).ok().flatten());
             let Some(geometry) = feature.geometry().filter(|geometry| !geometry.is_empty()) else { continue };
             let line = Line { fid: feature.fid(), name: name(&feature), mode: text("altitudeMode"), ..Line::default() };
             found.take(geometry, line);
@@ -228,7 +226,11 @@ fn parts(geometry: &Geometry) -> Option<Parts> {
         let points = (0..count).map(|i| DVec3::from(geometry.get_point(i))).collect();
         return Some(Parts { lines, points, has_heights });
     }
-    let several = [OGRwkbGeometryType::wkbMultiLineString, OGRwkbGeometryType::wkbMultiPoint, OGRwkbGeometryType::wkbGeometryCollection];
+    let several = [
+        OGRwkbGeometryType::wkbMultiLineString,
+        OGRwkbGeometryType::wkbMultiPoint,
+        OGRwkbGeometryType::wkbGeometryCollection,
+    ];
     if !several.contains(&kind) {
         return None;
     }

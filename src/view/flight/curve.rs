@@ -108,7 +108,8 @@ impl Spline {
             false => points[i as usize],
         };
         let pieces = if closed { count } else { count - 1 };
-        let pieces: Vec<_> = (0..pieces as isize).map(|i| Piece::through([-1, 0, 1, 2].map(|d| point(i + d)))).collect();
+        let pieces: Vec<_> =
+            (0..pieces as isize).map(|i| Piece::through([-1, 0, 1, 2].map(|d| point(i + d)))).collect();
         let (mut parts, mut knots, mut metres) = (Vec::new(), vec![0.0], 0.0);
         for (number, piece) in pieces.iter().enumerate() {
             piece.part(0.0, 1.0, piece.length(0.0, 1.0), 0, &mut |from, to, length| {
@@ -132,7 +133,11 @@ impl Spline {
             if off.abs() <= AGREED * part.length {
                 break;
             }
-            if off < 0.0 { low = at } else { high = at }
+            if off < 0.0 {
+                low = at
+            } else {
+                high = at
+            }
             let next = at - off / piece.slope(at).length();
             at = if next > low && next < high { next } else { low + (high - low) / 2.0 };
         }

@@ -65,7 +65,8 @@ impl Ground {
         };
         let below: Vec<Below> = below.concat();
         let between = below.chunks(chords as usize);
-        let peaks = between.clone().map(|chords| chords.iter().filter_map(|below| below.peak).reduce(f64::max)).collect();
+        let peaks =
+            between.clone().map(|chords| chords.iter().filter_map(|below| below.peak).reduce(f64::max)).collect();
         let starts = between.filter_map(|chords| Some(chords.first()?.start));
         let stations = starts.chain(below.last().map(|below| below.end)).collect();
         Ok(Self { stations, peaks })
@@ -101,7 +102,9 @@ impl Ways<'_> {
         let part;
         let surface = match surface.dem().is_filed() {
             true => {
-                let Some([first, size]) = window(surface, &places) else { return Ok(vec![Below::default(); chords.len()]) };
+                let Some([first, size]) = window(surface, &places) else {
+                    return Ok(vec![Below::default(); chords.len()]);
+                };
                 part = surface.part(first, size)?;
                 &part
             }

@@ -63,13 +63,15 @@ impl Base {
 
     /// The lowest it gets over a stretch of so many metres from moment to moment; `knots` are moments at which it may turn.
     fn lowest(&self, [from, to]: [f64; 2], [first, last]: [f64; 2], knots: &[f64]) -> f64 {
-        let between = knots[knots.partition_point(|knot| *knot < first)..].iter().copied().take_while(|knot| *knot <= last);
+        let between =
+            knots[knots.partition_point(|knot| *knot < first)..].iter().copied().take_while(|knot| *knot <= last);
         let moments = [first, last].into_iter().chain(between);
         match self {
             Self::Given(heights) => moments.map(|moment| heights.at(moment)).fold(f64::INFINITY, f64::min),
             Self::AboveGround(ground, heights) => {
                 let above = moments.map(|moment| heights.at(moment)).fold(f64::INFINITY, f64::min);
-                let ground_there = [from, (from + to) / 2.0, to].map(|at| ground.at(at)).into_iter().fold(f64::INFINITY, f64::min);
+                let ground_there =
+                    [from, (from + to) / 2.0, to].map(|at| ground.at(at)).into_iter().fold(f64::INFINITY, f64::min);
                 above + ground_there - ground.dip(to - from)
             }
         }
@@ -84,6 +86,8 @@ pub(super) struct Heights {
     lift: Option<(Pieces, f64)>,
     /// Metres that are missing where most are.
     pub missing: f64,
+    /// Whether there is ground anywhere below.
+    pub over_land: bool,
 }
 
 impl Heights {
@@ -120,7 +124,7 @@ impl Heights {
                 false => (Pieces::new(nodes), half),
             }
         });
-        Self { base, lift, missing: most }
+        Self { base, lift, missing: most, over_land: ground.peaks.iter().any(Option::is_some) }
     }
 
     /// Exaggerated metres at a moment, so many metres along the way.
