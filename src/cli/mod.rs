@@ -12,6 +12,7 @@ pub mod flat_earth;
 pub mod flight;
 mod flight_keys;
 mod flight_plan;
+pub mod fly;
 pub mod generate;
 pub mod info;
 pub mod journey;
@@ -67,6 +68,8 @@ enum Command {
     Styles(styles::StylesArguments),
     /// Say what a DEM holds
     Info(info::InfoArguments),
+    /// Fly along a path
+    Fly(Box<fly::FlyArguments>),
     /// Make completions, man pages, and terrain to test with
     #[command(hide = true)]
     Generate(generate::GenerateArguments),
@@ -93,6 +96,7 @@ impl Arguments {
             Command::Cache(arguments) => cache::run(arguments, talk),
             Command::Styles(arguments) => styles::run(arguments, talk),
             Command::Info(arguments) => info::run(arguments, talk),
+            Command::Fly(arguments) => arguments.flight.plan(arguments.terrain.allows_remote()).map(drop),
             Command::Generate(arguments) => generate::run(arguments, talk),
         }
     }
