@@ -12,6 +12,11 @@ mod draw_report;
 pub mod drawing;
 pub mod film;
 pub mod flat_earth;
+pub mod flight;
+mod flight_keys;
+mod flight_plan;
+pub mod fly;
+pub mod frames;
 pub mod generate;
 pub mod info;
 pub mod jobs;
@@ -77,6 +82,8 @@ enum Command {
     Styles(styles::StylesArguments),
     /// Say what a DEM holds
     Info(info::InfoArguments),
+    /// Draw the frames of a flight along a path
+    Fly(Box<fly::FlyArguments>),
     /// Make completions, man pages, and terrain to test with
     #[command(hide = true)]
     Generate(generate::GenerateArguments),
@@ -88,6 +95,7 @@ impl Arguments {
         let lines = match &self.command {
             Command::Draw(arguments) if arguments.fill_stdout() => Lines::Stderr,
             Command::Batch(arguments) if arguments.fills_stdout() => Lines::Stderr,
+            Command::Fly(arguments) if arguments.fills_stdout() => Lines::Stderr,
             _ => Lines::Stdout,
         };
         Talk::new(&self.talk, lines)
@@ -106,6 +114,7 @@ impl Arguments {
             Command::Cache(arguments) => cache::run(arguments, talk),
             Command::Styles(arguments) => styles::run(arguments, talk),
             Command::Info(arguments) => info::run(arguments, talk),
+            Command::Fly(arguments) => fly::run(arguments, talk),
             Command::Generate(arguments) => generate::run(arguments, talk),
         }
     }

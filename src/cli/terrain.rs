@@ -72,6 +72,11 @@ pub struct TerrainArguments {
 }
 
 impl TerrainArguments {
+    /// Whether files on a network may be opened.
+    pub fn allows_remote(&self) -> bool {
+        self.allow_remote
+    }
+
     /// How to read, with this exaggeration; what is found of steps is kept in `cache`.
     pub fn options(&self, exaggeration: f64, cache: Cache) -> ReadOptions {
         ReadOptions {

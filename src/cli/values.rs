@@ -62,6 +62,12 @@ const ERRORS_PX: RangeInclusive<f64> = 0.01..=100.0;
 const MOST_GAP_PX: f64 = 1000.0;
 const MOST_GAP_MM: f64 = 100.0;
 
+/// Frames of a flight that somebody draws.
+pub const MOST_FRAMES: u32 = 1_000_000;
+
+/// Frames a second that somebody shows.
+const FPS: [f64; 2] = [0.1, 240.0];
+
 /// Most distances that part layers.
 const MOST_DISTANCES: usize = 64;
 
@@ -85,7 +91,8 @@ pub fn bytes(text: &str) -> Result<u64, String> {
     bytes.map(|bytes| bytes as u64).ok_or_else(|| "want a number and B, KiB, MiB, GiB or TiB, as 512MiB".to_owned())
 }
 
-fn number(text: &str) -> Result<f64, String> {
+/// A number that a coordinate may be.
+pub fn number(text: &str) -> Result<f64, String> {
     let value: f64 = text.trim().parse().map_err(|_| format!("`{text}` is no number"))?;
     if value.is_finite() && value.abs() <= FARTHEST { Ok(value) } else { Err(format!("{text} is out of range")) }
 }
@@ -125,6 +132,40 @@ pub fn look_at(text: &str) -> Result<LookAt, String> {
     }
     let [x, y, z] = numbers(text, form)?;
     Ok(LookAt { place: DVec2::new(x, y), height: Some(z) })
+}
+
+/// `E,N`.
+pub fn place(text: &str) -> Result<DVec2, String> {
+    numbers(text, "E,N: east and north in the CRS of the DEM").map(DVec2::from_array)
+}
+
+/// `Z` or `+H`.
+pub fn height(text: &str) -> Result<Height, String> {
+    let metres = number(text)?;
+    Ok(if text.trim().starts_with('+') { Height::AboveGround(metres) } else { Height::Absolute(metres) })
+}
+
+/// Metres that are kept free.
+pub fn clearance(text: &str) -> Result<f64, String> {
+    number(text).ok().filter(|metres| *metres >= 0.0).ok_or_else(|| "want metres, 0 or more".into())
+}
+
+/// Frames of a flight.
+pub fn frames(text: &str) -> Result<u32, String> {
+    let frames = text.parse().ok().filter(|frames| (1..=MOST_FRAMES).contains(frames));
+    frames.ok_or_else(|| format!("want frames in all, 1 to {MOST_FRAMES}"))
+}
+
+/// Seconds of a flight.
+pub fn seconds(text: &str) -> Result<f64, String> {
+    number(text).ok().filter(|seconds| *seconds > 0.0).ok_or_else(|| "want seconds above 0".into())
+}
+
+/// Frames a second.
+pub fn fps(text: &str) -> Result<f64, String> {
+    let [least, most] = FPS;
+    let fps = number(text).ok().filter(|fps| (least..=most).contains(fps));
+    fps.ok_or_else(|| format!("want frames a second, from {least} to {most}"))
 }
 
 /// `EPSG:N`.

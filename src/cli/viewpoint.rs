@@ -8,6 +8,7 @@ use super::choices;
 use super::norths::Norths;
 use super::talk::Talk;
 use super::values::{self, Height, LookAt, Size, Standpoint};
+use super::words::flag;
 use crate::dem::{Crs, Dem, Georeference, North};
 use crate::error::{Error, Result, Setting};
 use crate::surface::{Level, Surface};
@@ -279,7 +280,7 @@ impl View {
 }
 
 /// World place of one given in `crs`, else in the file's own.
-fn world(dem: &Dem, crs: Option<&Crs>, place: DVec2, setting: Setting) -> Result<DVec2> {
+pub(super) fn world(dem: &Dem, crs: Option<&Crs>, place: DVec2, setting: Setting) -> Result<DVec2> {
     let georeference = dem.georeference();
     let given = crs.unwrap_or(georeference.file());
     if given != georeference.file() && georeference.globe()?.is_none() {
@@ -293,18 +294,22 @@ fn world(dem: &Dem, crs: Option<&Crs>, place: DVec2, setting: Setting) -> Result
             place.y,
             given.label()
         );
-        Error::setting(setting, what, format!("check the order, x first, or give --eye E,N without --crs {within}"))
+        Error::setting(
+            setting,
+            what,
+            format!("check the order, x first, or give {} E,N without --crs {within}", typed(setting)),
+        )
     })
 }
 
 /// The system of a DEM, and where in it the DEM lies, in words.
-struct Places {
-    named: String,
-    within: String,
+pub(super) struct Places {
+    pub named: String,
+    pub within: String,
 }
 
 impl Places {
-    fn of(dem: &Dem) -> Self {
+    pub fn of(dem: &Dem) -> Self {
         let ([west, south, east, north], georeference) = (dem.extent(), dem.georeference());
         let file = georeference.file();
         let corner = |x, y| georeference.place_in(file, DVec2::new(x, y)).unwrap_or(DVec2::new(x, y));
@@ -326,7 +331,16 @@ fn no_globe(dem: &Dem, setting: Setting) -> Error {
         true => "the DEM names no coordinate system, so other coordinates mean nothing in it".to_owned(),
         false => format!("the DEM lies in the local system {named}, which does not say where on the globe it is"),
     };
-    Error::setting(setting, what, format!("give --eye E,N in the DEM's own coordinates, without --crs, {within}"))
+    Error::setting(
+        setting,
+        what,
+        format!("give {} E,N in the DEM's own coordinates, without --crs, {within}", typed(setting)),
+    )
+}
+
+/// The flag by which a place is given in the DEM's own coordinates.
+fn typed(setting: Setting) -> &'static str {
+    flag(if setting == Setting::LonLat { Setting::Eye } else { setting })
 }
 
 /// A world place moved by less than a millimetre to where its coordinates in the file have few decimals, and these.
@@ -365,7 +379,7 @@ fn rounded(place: DVec2, decimals: i32) -> DVec2 {
 }
 
 /// A map place at a height.
-fn above(surface: &Surface, level: Level, place: DVec2, height: Height, setting: Setting) -> Result<DVec3> {
+pub(super) fn above(surface: &Surface, level: Level, place: DVec2, height: Height, setting: Setting) -> Result<DVec3> {
     match height {
         Height::Absolute(z) => Ok(place.extend(z)),
         Height::AboveGround(h) => match surface.height_below(place, level) {
@@ -388,7 +402,11 @@ fn no_ground(surface: &Surface, place: DVec2, setting: Setting) -> Error {
     let corner = |x, y| georeference.place_in(georeference.file(), DVec2::new(x, y)).unwrap_or(DVec2::new(x, y));
     let (one, other, at) = (corner(west, south), corner(east, north), corner(place.x, place.y));
     let [low, high] = [one.min(other), one.max(other)];
-    let height = if setting == Setting::LookAt { "add a height Z" } else { "give a height without +" };
+    let height = match setting {
+        Setting::LookAt => "add a height Z",
+        Setting::Orbit => "add --look-at E,N,Z",
+        _ => "give a height without +",
+    };
     Error::setting(
         setting,
         format!("there is no ground at {},{} {} of the DEM", at.x, at.y, georeference.file().units()),

@@ -51,6 +51,15 @@ impl Georeference {
         Some(self.carried(crs, &self.world, place)? * self.world.metres_per_unit()?)
     }
 
+    /// World places in metres of many places in `crs`, each `None` as for [`Self::world_place`].
+    pub fn world_places(&self, crs: &Crs, places: &[DVec2]) -> Vec<Option<DVec2>> {
+        let one_system = *crs == self.world;
+        let (Some(unit), Some(transform), false) = (self.world.metres_per_unit(), &self.transform, one_system) else {
+            return places.iter().map(|place| self.world_place(crs, *place)).collect();
+        };
+        transform.places(crs, &self.world, places).into_iter().map(|place| Some(place? * unit)).collect()
+    }
+
     /// Place in `crs` of a world place in metres; `None` as for [`Self::world_place`].
     pub fn place_in(&self, crs: &Crs, world: DVec2) -> Option<DVec2> {
         self.carried(&self.world, crs, world / self.world.metres_per_unit()?)

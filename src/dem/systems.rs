@@ -35,6 +35,11 @@ pub trait Transform: Debug + Send + Sync {
     /// or one of the two is unknown.
     fn place(&self, from: &Crs, to: &Crs, place: DVec2) -> Option<DVec2>;
 
+    /// The same of many places, `None` as for one.
+    fn places(&self, from: &Crs, to: &Crs, places: &[DVec2]) -> Vec<Option<DVec2>> {
+        places.iter().map(|place| self.place(from, to, *place)).collect()
+    }
+
     /// Longitude and latitude on the body that `of` maps: degrees of WGS 84 on Earth, elsewhere those on the system's own
     /// ellipsoid; `None` where `of` is of no globe.
     ///

@@ -52,6 +52,10 @@ settings! {
     Cell = "cell",
     /// The file whose grid is drawn.
     CellOf = "cell of",
+    /// Metres that a flight keeps above the ground.
+    Clearance = "clearance",
+    /// Frames of a flight in all.
+    Count = "count",
     /// The part that is taken.
     Crop = "crop",
     /// The coordinate system of places that are given.
@@ -60,6 +64,8 @@ settings! {
     Dpi = "dpi",
     /// The file or files of the DEM.
     Dem = "DEM",
+    /// Seconds of a flight.
+    Duration = "duration",
     /// Where the eye stands, on the map.
     Eye = "eye",
     /// What the numbers of a file stand for.
@@ -74,8 +80,12 @@ settings! {
     FillVoids = "fill voids",
     /// The grid of a map's sheets.
     Grid = "grid",
+    /// Degrees across the page.
+    Fov = "field of view",
     /// Metres of what is smoothed away.
     Generalise = "generalise",
+    /// How high a flight is.
+    Height = "height",
     /// Whether hidden lines are drawn.
     Hidden = "hidden",
     /// The file of what was done.
@@ -110,14 +120,20 @@ settings! {
     Frames = "frames",
     /// Pictures a second.
     Fps = "fps",
+    /// What a flight circles.
+    Orbit = "orbit",
     /// Which files lie on top.
     Order = "order",
     /// The file or folder that is written.
     Output = "output",
     /// The sheet of paper.
     Page = "page",
+    /// The file of the way that a flight takes.
+    Path = "path",
     /// Whether the land is drawn from straight above.
     Plan = "plan",
+    /// Metres from what a flight circles.
+    Radius = "radius",
     /// Metres of the cells that are resampled to.
     Resample = "resample",
     /// Millimetres of land for one of the sheet.

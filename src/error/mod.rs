@@ -2,7 +2,6 @@
 //! program ends is for the program to say.
 
 mod message;
-pub mod text;
 
 use std::io;
 use std::path::{Path, PathBuf};

@@ -1,9 +1,10 @@
-//! Files on the disk, whatever they hold: outputs that are whole or not there, what a signal takes away, and which names
-//! mean one file.
+//! Files on the disk, whatever they hold: outputs that are whole or not there, what a signal takes away, which names mean
+//! one file, and what is said of mistakes in those that people write.
 
 pub mod identity;
 pub mod output;
 pub mod signals;
+pub mod typed;
 
 pub use identity::{Identity, Taken};
 pub use output::Output;

@@ -2,7 +2,7 @@
 //!
 //! GDAL and PROJ are known in `gdal/` alone, behind the traits of [`dem`](crate::dem): [`Tiles`](crate::dem::Tiles) and
 //! [`Transform`](crate::dem::Transform). A build without the feature `gdal` has the same names and reads nothing: each
-//! says so. Not handled: vectors.
+//! says so. Of vectors the way of a flight is read, see [`track`].
 
 mod elevation_unit;
 mod encoding;
@@ -11,6 +11,7 @@ mod gdal;
 mod info;
 mod nodata;
 mod read;
+mod track;
 #[cfg(not(feature = "gdal"))]
 mod without;
 
@@ -19,8 +20,9 @@ pub use encoding::Encoding;
 pub use info::{Info, info};
 pub use nodata::Nodata;
 pub use read::{Order, ReadOptions, Stage, read, read_all};
+pub use track::{Track, with_layer};
 #[cfg(not(feature = "gdal"))]
-pub use without::{Reading, available, write};
+pub use without::{Reading, available, track, write};
 
 #[cfg(feature = "gdal")]
-pub use self::gdal::{Reading, available, write};
+pub use self::gdal::{Reading, available, track, write};

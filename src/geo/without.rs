@@ -4,7 +4,7 @@ use std::io;
 use std::iter::Empty;
 use std::path::{Path, PathBuf};
 
-use super::{ReadOptions, Stage};
+use super::{ReadOptions, Stage, Track};
 use crate::dem::{Crs, Dem};
 use crate::error::{Error, Result};
 
@@ -90,6 +90,14 @@ impl Crs {
 /// [`Error::Limit`], always.
 pub fn available() -> Result<()> {
     Err(without("rasters cannot be read or written"))
+}
+
+/// Reads nothing.
+///
+/// # Errors
+/// [`Error::Input`], always.
+pub fn track(path: &Path, _: bool) -> Result<Track> {
+    Err(Error::input(path, format!("cannot be read, {WITHOUT}"), REMEDY))
 }
 
 /// Writes nothing.

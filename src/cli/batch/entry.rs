@@ -1,7 +1,6 @@
 //! A file of drawings: TOML, whose keys are the flags of `hachure draw`.
 
 use std::collections::HashSet;
-use std::fs;
 use std::ops::Range;
 use std::path::{Component, Path, PathBuf};
 
@@ -14,9 +13,9 @@ use crate::cli::draw::DrawArguments;
 use crate::cli::plan;
 use crate::cli::talk::Talk;
 use crate::cli::words;
-use crate::error::text::{meant, place};
 use crate::error::{Error, Result, Setting, shown};
 use crate::files::Taken;
+use crate::files::typed::{self, meant, place};
 use crate::job::name::{self, Naming};
 use crate::job::{Job, Made};
 
@@ -59,12 +58,10 @@ struct Source<'a> {
 /// # Errors
 /// [`Error::Input`] where it cannot be read, or what stands in it is no drawing: where, what, and what was meant.
 pub fn read(path: &Path) -> Result<Vec<Entry>> {
-    let unreadable = |e: std::io::Error| Error::input(path, e.to_string(), "name a file of TOML that can be read");
-    let text = fs::read_to_string(path).map_err(unreadable)?;
+    let text = typed::text(path)?;
     let source = Source { path, text: &text, known: known() };
-    let table = DeTable::parse(&text).map_err(|e| {
-        source.wrong(e.span().unwrap_or_default(), e.message().trim(), "write it as `hachure batch --help` shows")
-    })?;
+    let table = DeTable::parse(&text)
+        .map_err(|e| typed::mistake(&text, path, &e, "write it as `hachure batch --help` shows"))?;
     let (mut defaults, mut drawings): (Keys, Vec<(Range<usize>, Keys)>) = Default::default();
     for (key, value) in table.get_ref() {
         match (&**key.get_ref(), value.get_ref()) {
@@ -112,7 +109,7 @@ fn known() -> Vec<String> {
 
 impl Source<'_> {
     fn wrong(&self, span: Range<usize>, what: impl std::fmt::Display, remedy: impl Into<String>) -> Error {
-        Error::input(self.path, format!("{}: {what}", place(self.text, span)), remedy.into())
+        Error::input(self.path, format!("{}{what}", place(self.text, &span)), remedy.into())
     }
 
     /// The keys of a table, each of which is known.

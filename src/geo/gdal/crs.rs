@@ -139,6 +139,13 @@ impl Transform for Proj {
         Way::between(from, to)?.place(place)
     }
 
+    fn places(&self, from: &Crs, to: &Crs, places: &[DVec2]) -> Vec<Option<DVec2>> {
+        let Some(way) = Way::between(from, to) else { return vec![None; places.len()] };
+        let mut places = places.to_vec();
+        way.carry(&mut places);
+        places.into_iter().map(|place| Some(place).filter(|place| place.is_finite())).collect()
+    }
+
     fn lonlat(&self, of: &Crs) -> Result<Option<Crs>> {
         match of.geographic() {
             Some(_) if of.is_of_earth() => Crs::lonlat().map(Some),

@@ -53,6 +53,7 @@ mod steps;
 mod stored;
 mod tally;
 mod target;
+mod tracks;
 mod vrt;
 mod vsi;
 mod water;
@@ -62,4 +63,5 @@ mod xml;
 mod zip;
 
 pub use reading::Reading;
+pub use tracks::track;
 pub use write::{available, write};

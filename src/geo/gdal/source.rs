@@ -262,10 +262,10 @@ fn damaged_archive(path: &Path, place: &Place) -> Error {
 }
 
 /// A regular file that is there, readable and not empty.
-fn check_file(path: &Path, file: &Path) -> Result<()> {
+pub(super) fn check_file(path: &Path, file: &Path) -> Result<()> {
     let found = fs::metadata(file).map_err(|e| unreadable_file(path, &e))?;
     if found.is_dir() {
-        return Err(Error::input(path, "is a directory", "name the raster file in it"));
+        return Err(Error::input(path, "is a directory", "name the file in it"));
     }
     if !found.is_file() {
         return Err(Error::input(path, "is not a regular file", "save the raster to a file and name that"));
@@ -276,7 +276,7 @@ fn check_file(path: &Path, file: &Path) -> Result<()> {
     File::open(file).map(drop).map_err(|e| unreadable_file(path, &e))
 }
 
-fn unreadable_file(path: &Path, error: &std::io::Error) -> Error {
+pub(super) fn unreadable_file(path: &Path, error: &std::io::Error) -> Error {
     match error.kind() {
         std::io::ErrorKind::NotFound => {
             Error::input(path, "there is no such file", "check the spelling and the folder")
@@ -348,7 +348,7 @@ fn told(path: &Path, name: &Path, place: &Place) -> Option<mistaken::Told> {
 }
 
 /// The first sentence of GDAL's words, with the file as the user named it, and no full stop.
-fn one_line(words: &str, path: &Path) -> String {
+pub(super) fn one_line(words: &str, path: &Path) -> String {
     let absolute = std::path::absolute(path).unwrap_or_default();
     // First of all: a name may hold what ends a line or a sentence. The words are text, whatever the name is.
     let words = match absolute.to_string_lossy() {

@@ -1,0 +1,243 @@
+//! `hachure fly`: the frames of a flight.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::blank;
+use super::cache::CacheArguments;
+use super::cells;
+use super::device::DeviceArguments;
+use super::drawing::DrawingArguments;
+use super::film;
+use super::flight::{FlightArguments, FlightPlan};
+use super::frames::{FrameArguments, FrameFiles};
+use super::jobs::{JobArguments, Share};
+use super::listing;
+use super::progress::{Form, Progress};
+use super::scene;
+use super::talk::Talk;
+use super::terrain::{TerrainArguments, warn_of_survey};
+use super::values::Size;
+use super::words::told;
+use super::work::Work;
+use crate::cache::Cache;
+use crate::error::{Error, Result, Setting, shown};
+use crate::files::Taken;
+use crate::geo::Reading;
+use crate::job::manifest::Sequence;
+use crate::job::name::Naming;
+use crate::job::{Content, Film, Inks, Job, Manifest};
+use crate::plan::frame::Kept;
+use crate::render::{Estimate, Illustration, Page, Renderer};
+use crate::surface::Surface;
+use crate::view::Flight;
+
+/// The end of `hachure fly --help`.
+const EXAMPLES: &str = "\
+Frames that are there, and made of the same, are not made again: a run that was cut off goes on where it ended. SIGTERM
+finishes the frame at hand; the code is 75 then, as where the device was lost. It never is where trying again would not help:
+a frame that failed, a full disk and too little memory give 1, wrong flags 2.
+
+Examples:
+  250 frames along a line of a GeoPackage, 400 m above the ground:
+  hachure fly dem/golden-gate.tif --path route.gpkg --height +400 --count 250 -o frames/%05d.png
+
+  Ten seconds around a place, as a motion picture:
+  hachure fly dem/golden-gate.tif --orbit 545000,4186000 --radius 4000 --height +800 --duration 10 -o frames/%05d.png \\
+      --video around.mp4
+
+  The first of four shares, on as many machines, and whether all are there:
+  hachure fly dem/golden-gate.tif --path route.toml --count 1000 -o /shared/frames/%05d.png --shard 0/4
+  hachure merge /shared/frames";
+
+/// Flags of `hachure fly`, as typed.
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub struct FlyArguments {
+    #[command(flatten)]
+    terrain: TerrainArguments,
+    #[command(flatten)]
+    frames: FrameArguments,
+    #[command(flatten)]
+    flight: FlightArguments,
+    #[command(flatten)]
+    drawing: DrawingArguments,
+    /// Also a motion picture of the frames: .mp4, .mov, .mkv or .webm by ffmpeg, where it is installed; .gif; .png, which is
+    /// animated
+    #[arg(long, value_name = "OUT.mp4|.gif|.png", requires = "output", conflicts_with_all = ["frames", "shard", "shard_from_env"])]
+    video: Option<PathBuf>,
+    #[command(flatten)]
+    jobs: JobArguments,
+    #[command(flatten)]
+    device: DeviceArguments,
+    #[command(flatten)]
+    cache: CacheArguments,
+}
+
+/// All that a flight's frames have in common, known without the DEM.
+struct Asked {
+    files: FrameFiles,
+    illustration: Illustration,
+    plan: FlightPlan,
+    share: Share,
+    dem: Content,
+    sequence: Sequence,
+    jobs: Vec<Job>,
+}
+
+/// A DEM on a device, and the way over it.
+struct Aloft {
+    renderer: Renderer,
+    flight: Flight,
+    adapter: String,
+}
+
+/// Draws the frames.
+///
+/// # Errors
+/// As [`Work::run`]; whatever keeps all frames from being drawn.
+pub fn run(arguments: &FlyArguments, talk: &Talk) -> Result<()> {
+    let cache = arguments.cache.cache();
+    let Asked { files, illustration, plan, share, dem, sequence, jobs } = arguments.asked(&cache, talk)?;
+    if arguments.jobs.list {
+        return arguments.list(&illustration, &plan, &jobs, &cache, talk);
+    }
+    let film = arguments.video.as_deref().map(|path| Film::new(path, plan.fps())).transpose()?;
+    let pictures = arguments.pictures(&files, &jobs)?;
+    let folder = files.folder();
+    Manifest::refuse_others(&folder, &sequence)?;
+    let is_left = jobs.iter().any(|job| !job.is_done());
+    let mut aloft = is_left.then(|| arguments.rise(&plan, &files, &jobs, &cache, talk)).transpose()?;
+    let inks = Inks::of(&illustration.style);
+    let adapter = aloft.as_ref().map(|aloft| aloft.adapter.clone()).unwrap_or_default();
+    let draw = |job: &Job, progress: &Progress| {
+        let Some(Aloft { renderer, flight, adapter }) = &mut aloft else {
+            return Err(Error::mistake("a frame went missing as it was looked at"));
+        };
+        progress.on(adapter);
+        renderer.page(&illustration.plan, &flight.camera(job.number), |_| ())
+    };
+    let finish = |job: &Job, page: Page| files.write(job, &page, &illustration, &adapter);
+    let work = Work { sequence, share, called: ["frame", "frames"], jobs, folder, dem: Some(dem) };
+    work.run(talk, arguments.jobs.progress, draw, finish)?;
+    film.map_or(Ok(()), |film| film::make(&film, &pictures, &inks, talk))
+}
+
+impl FlyArguments {
+    /// Whether standard output holds something else than lines on the work.
+    pub fn fills_stdout(&self) -> bool {
+        self.jobs.progress == Form::Json || self.jobs.list
+    }
+
+    /// Whether the flags go together, and all that is known without the DEM.
+    fn asked(&self, cache: &Cache, talk: &Talk) -> Result<Asked> {
+        let files = self.frames.files()?;
+        self.flight.check()?;
+        let size = self.flight.typed_size();
+        let illustration = self.drawing.illustration(size, files.wanted(), files.want_picture())?;
+        let [width, height] = illustration.frame;
+        let plan = self.flight.sized(Size { width, height }).plan(self.terrain.allows_remote())?;
+        let share = self.jobs.share(plan.count(), "frames")?;
+        let dem = self.content(&files.folder(), cache, talk)?;
+        let over = Naming::bare().with("dem", dem.hash()).with("read", self.terrain.read_as());
+        let over = over.with("exaggeration", self.drawing.exaggeration.to_le_bytes());
+        let of_sequence = over.with("flight", plan.hashed());
+        let of_job = Naming::new()
+            .with("sequence", of_sequence.name().to_le_bytes())
+            .with("drawing", format!("{illustration:?}"));
+        let sequence = Sequence {
+            of: format!("a flight of {} frames {}", plan.count(), plan.described()),
+            sequence: of_sequence.name(),
+            job: of_job.name(),
+            count: plan.count(),
+            fps: Some(plan.fps()),
+            inks: Some(Inks::of(&illustration.style)),
+        };
+        let job = |n: &u32| files.job(*n, of_job.clone().with("frame", n.to_le_bytes()).name());
+        let jobs = share.frames.numbers().iter().map(job).collect();
+        Ok(Asked { files, illustration, plan, share, dem, sequence, jobs })
+    }
+
+    /// The pictures of a film, where one is wanted, which may be none of them.
+    fn pictures(&self, files: &FrameFiles, jobs: &[Job]) -> Result<Vec<PathBuf>> {
+        let Some(video) = &self.video else { return Ok(Vec::new()) };
+        let Some(pattern) = files.pictures() else {
+            let what = "it is made of the pictures of the frames, which stay";
+            return Err(Error::setting(Setting::Video, what, "add --output with a .png: DIR/%05d.png"));
+        };
+        if jobs.iter().flat_map(|job| &job.files).any(|made| made.path == *video) {
+            let what = format!("{} is a frame", shown(video));
+            return Err(Error::setting(Setting::Video, what, "give it a name of its own"));
+        }
+        Ok(jobs.iter().map(|job| pattern.path(job.number)).collect())
+    }
+
+    /// What the DEM's files hold: as a manifest of the folder knows, else as the cache does, else found.
+    fn content(&self, folder: &Path, cache: &Cache, talk: &Talk) -> Result<Content> {
+        let known = Manifest::all(folder)?.into_iter().filter_map(|manifest| manifest.dem);
+        match known.into_iter().find(|content| content.holds(self.terrain.asked())) {
+            Some(known) => Ok(known),
+            None => self.terrain.content(self.drawing.exaggeration, cache, talk),
+        }
+    }
+
+    /// Lists jobs with what they may take.
+    fn list(
+        &self,
+        illustration: &Illustration,
+        plan: &FlightPlan,
+        jobs: &[Job],
+        cache: &Cache,
+        talk: &Talk,
+    ) -> Result<()> {
+        let surface = Arc::new(scene::surface(&self.terrain, self.open(cache)?, &talk.hushed())?);
+        scene::prepare(&surface, cache, talk)?;
+        let (flight, mut kept) = (self.flight(plan, &surface, &talk.hushed())?, Kept::default());
+        for job in jobs {
+            let camera = flight.camera(job.number);
+            let estimate = match job.is_done() {
+                true => Estimate::NOTHING,
+                false => listing::estimate(&illustration.plan, &surface, &camera, &mut kept)?,
+            };
+            listing::tell(job, estimate, talk)?;
+        }
+        Ok(())
+    }
+
+    /// Reads the DEM, opens the device, and lays the way over the land.
+    fn rise(&self, plan: &FlightPlan, files: &FrameFiles, jobs: &[Job], cache: &Cache, talk: &Talk) -> Result<Aloft> {
+        let (reading, beside) = (self.open(cache)?, self.flight.files());
+        files.spare(Taken::inputs(reading.files().chain(beside.iter().map(PathBuf::as_path))), jobs)?;
+        let surface = Arc::new(scene::surface(&self.terrain, reading, talk)?);
+        let gpu = scene::prepare_and_open(&surface, cache, &self.device, talk)?;
+        cells::warn(surface.dem(), self.drawing.exaggeration, talk);
+        warn_of_survey(surface.dem(), talk)?;
+        let flight = self.flight(plan, &surface, talk)?;
+        let gpu = Arc::new(gpu?);
+        DeviceArguments::tell(&gpu, talk)?;
+        let adapter = gpu.adapter_and_driver();
+        cache.discard_damaged(surface.dem(), &|message| talk.warn(&told(message)));
+        Ok(Aloft { renderer: Renderer::new(gpu, surface)?, flight, adapter })
+    }
+
+    fn open(&self, cache: &Cache) -> Result<Reading> {
+        self.terrain.open(&self.terrain.dems, self.drawing.exaggeration, cache.clone())
+    }
+
+    /// The way over the land, and what is to be said of it.
+    fn flight(&self, plan: &FlightPlan, surface: &Surface, talk: &Talk) -> Result<Flight> {
+        let flight = plan.flight(surface, self.drawing.level.near(), self.drawing.exaggeration)?;
+        plan.taken().map_or(Ok(()), |taken| talk.say(&format!("path: {taken}")))?;
+        let round = if flight.is_closed() { ", round" } else { "" };
+        let (length, frames, fps) = (blank::length(flight.length()), plan.count(), plan.fps());
+        let seconds = f64::from(frames) / fps;
+        talk.say(&format!("flight: {length}{round} in {frames} frames, {seconds:.1} s at {fps} a second"))?;
+        if flight.lifted() > 0.0 {
+            talk.say(&format!(
+                "flight: the eye is lifted by up to {} to keep clear of the ground",
+                blank::length(flight.lifted())
+            ))?;
+        }
+        Ok(flight)
+    }
+}

@@ -1,0 +1,137 @@
+//! Flags that name the numbered files of a sequence, and the writing of these.
+
+use std::fs;
+use std::path::PathBuf;
+
+use super::outputs::Format;
+use crate::error::{Error, Result, Setting, shown};
+use crate::files::{Output, Taken};
+use crate::ink::{self, Seal};
+use crate::job::{Job, Made, Pattern, name};
+use crate::message;
+use crate::render::{Illustration, Page};
+
+use super::drawing::Wanted;
+
+/// The flags, as typed.
+#[derive(Debug, clap::Args)]
+pub struct FrameArguments {
+    /// The drawings: .png, .svg or .pdf with the number of the frame in the name, each as often as wanted
+    #[arg(short, long, value_name = "DIR/%05d.png")]
+    output: Vec<String>,
+    /// Also the masks, or they alone: 1 bit a pixel, 0 ink, 255 paper, as large as the frame (--size)
+    #[arg(long, value_name = "DIR/%05d.png", required_unless_present = "output")]
+    mask: Option<String>,
+}
+
+/// Where the files of frames stand.
+pub struct FrameFiles {
+    drawings: Vec<(Format, Pattern)>,
+    mask: Option<Pattern>,
+}
+
+impl FrameArguments {
+    /// Where the files stand, if all names can be meant.
+    ///
+    /// # Errors
+    /// [`Error::Setting`].
+    pub fn files(&self) -> Result<FrameFiles> {
+        let pattern = |setting: Setting, text: &String| {
+            let named = |what: String| Error::setting(setting, format!("{text}: {what}"), "name each frame's file so");
+            Pattern::parse(text).map_err(named)
+        };
+        let drawing = |text: &String| {
+            let pattern = pattern(Setting::Output, text)?;
+            let wrong = || {
+                let what = format!("{text} does not end in .png, .svg or .pdf");
+                Error::setting(Setting::Output, what, "name it so")
+            };
+            Ok((Format::of(&pattern.path(0)).ok_or_else(wrong)?, pattern))
+        };
+        let mask = self.mask.as_ref().map(|text| pattern(Setting::Mask, text)).transpose()?;
+        if let Some(mask) = mask.as_ref().filter(|mask| Format::of(&mask.path(0)) != Some(Format::Png)) {
+            let what = format!("{} does not end in .png", shown(&mask.path(0)));
+            return Err(Error::setting(Setting::Mask, what, "name it .png"));
+        }
+        let files = FrameFiles { drawings: self.output.iter().map(drawing).collect::<Result<_>>()?, mask };
+        files.each_once()?;
+        Ok(files)
+    }
+}
+
+impl FrameFiles {
+    /// What is asked for of each view.
+    pub fn wanted(&self) -> Wanted {
+        if self.drawings.is_empty() { Wanted::Mask } else { Wanted::Drawing }
+    }
+
+    /// Whether some of the files are pictures of the drawing.
+    pub fn want_picture(&self) -> bool {
+        self.drawings.iter().any(|(format, _)| *format == Format::Png)
+    }
+
+    /// The pictures of the drawing, which a motion picture is made of.
+    pub fn pictures(&self) -> Option<&Pattern> {
+        self.drawings.iter().find(|(format, _)| *format == Format::Png).map(|(_, pattern)| pattern)
+    }
+
+    /// Where the manifest stands: beside the first files.
+    pub fn folder(&self) -> PathBuf {
+        self.patterns().next().map(Pattern::folder).unwrap_or_default()
+    }
+
+    /// The job of a frame whose drawing is made of what has this name.
+    pub fn job(&self, number: u32, name: u128) -> Job {
+        let drawings = self.drawings.iter().map(|(_, pattern)| Made { path: pattern.path(number), name });
+        let mask = self.mask.iter().map(|pattern| Made { path: pattern.path(number), name: name::of_mask(name) });
+        Job { number, files: drawings.chain(mask).collect() }
+    }
+
+    /// Writes the files of a frame; none has its name before all are whole.
+    ///
+    /// # Errors
+    /// [`Error::Output`]; as [`Illustration::drawing`].
+    pub fn write(&self, job: &Job, page: &Page, illustration: &Illustration, adapter: &str) -> Result<()> {
+        let seal = |made: &Made| Seal { job: made.name, adapter: adapter.to_owned() };
+        let mut outputs = Vec::new();
+        for made in &job.files {
+            let folder = made.path.parent().filter(|folder| !folder.as_os_str().is_empty());
+            folder.map_or(Ok(()), |folder| fs::create_dir_all(folder).map_err(|e| Error::output(folder, &e)))?;
+            outputs.push(Output::create(&made.path)?);
+        }
+        let (drawings, masks) = outputs.split_at_mut(self.drawings.len());
+        if let Some(made) = job.files.first().filter(|_| !drawings.is_empty()) {
+            let (_, mut drawing) = illustration.drawing(page)?;
+            drawing.seal = Some(seal(made));
+            for ((format, _), output) in self.drawings.iter().zip(drawings) {
+                output.write(|out| format.write(&drawing, illustration.px_per_mm, out))?;
+            }
+        }
+        if let (Some(output), Some(made)) = (masks.first_mut(), job.files.last()) {
+            let (marks, seal) = (&page.marks, seal(made));
+            output.write(|out| ink::write_mask([marks.width, marks.height], marks.places(), Some(&seal), out))?;
+        }
+        outputs.into_iter().try_for_each(Output::publish)
+    }
+
+    /// Refuses frames that would replace a file that is read.
+    ///
+    /// # Errors
+    /// [`Error::Setting`].
+    pub fn spare(&self, mut inputs: Taken, jobs: &[Job]) -> Result<()> {
+        jobs.iter().flat_map(|job| &job.files).try_for_each(|made| inputs.take(Setting::Output, &made.path))
+    }
+
+    fn patterns(&self) -> impl Iterator<Item = &Pattern> {
+        self.drawings.iter().map(|(_, pattern)| pattern).chain(&self.mask)
+    }
+
+    fn each_once(&self) -> Result<()> {
+        let paths: Vec<PathBuf> = self.patterns().map(|pattern| pattern.path(0)).collect();
+        let twice = (1..paths.len()).find(|i| paths[..*i].contains(&paths[*i]));
+        twice.map_or(Ok(()), |i| {
+            let what = format!("{} is another output already", shown(&paths[i]));
+            Err(Error::setting(Setting::Output, what, message!["give each a name of its own"]))
+        })
+    }
+}

@@ -1,0 +1,71 @@
+//! TOML that people write: its text, and what is said of a mistake in it, with its place and what was meant.
+
+use std::fs::{self, File};
+use std::io::{self, Read};
+use std::ops::Range;
+use std::path::Path;
+
+use crate::error::{Error, Result};
+
+/// Largest file, bytes: nobody writes more.
+const LARGEST: u64 = 1 << 20;
+
+/// How much of a name must agree for another to be meant (Jaro, Winkler 1990).
+const ALIKE: f64 = 0.75;
+
+/// The text of a file.
+///
+/// # Errors
+/// [`Error::Input`] where it cannot be read, is no regular file, or is larger than a mebibyte.
+pub fn text(path: &Path) -> Result<String> {
+    let unreadable = |e: io::Error| Error::input(path, e.to_string(), "name a file of TOML that can be read");
+    let wrong = |what: String| Error::input(path, what, "name a file of TOML");
+    // A pipe would be waited for.
+    if !fs::metadata(path).map_err(unreadable)?.is_file() {
+        return Err(wrong("it is no regular file".to_owned()));
+    }
+    let mut text = String::new();
+    File::open(path).and_then(|file| file.take(LARGEST + 1).read_to_string(&mut text)).map_err(unreadable)?;
+    if text.len() as u64 > LARGEST {
+        return Err(wrong(format!("over {LARGEST} bytes are more than anybody writes")));
+    }
+    Ok(text)
+}
+
+/// A mistake with its place and what was meant, `otherwise` a remedy for what is no wrong key or type.
+pub fn mistake(text: &str, path: &Path, error: &toml::de::Error, otherwise: &str) -> Error {
+    let place = error.span().map_or_else(String::new, |span| place(text, &span));
+    let message = error.message().trim().replace('\n', " ");
+    let (what, expected) = message.split_once(", expected ").unwrap_or((&message, ""));
+    let expected = match expected {
+        "f64" => "a number",
+        "u32" => "a whole number, 0 to 4294967295",
+        other => other,
+    };
+    let unknown = what.starts_with("unknown ").then(|| what.split('`').nth(1)).flatten();
+    let known: Vec<&str> = expected.split('`').skip(1).step_by(2).collect();
+    let remedy = match (unknown, &known[..]) {
+        (Some(unknown), [_, ..]) => format!("use {}", meant(unknown, &known)),
+        _ if !expected.is_empty() => format!("want {expected}"),
+        _ => otherwise.to_owned(),
+    };
+    Error::input(path, format!("{place}{}", what.replace("unknown field", "unknown key")), remedy)
+}
+
+/// Where a piece of a text begins, in words that end in a colon.
+pub fn place(text: &str, span: &Range<usize>) -> String {
+    text.get(..span.start).map_or_else(String::new, |before| {
+        let line = before.rsplit('\n').next().unwrap_or_default();
+        format!("line {}, column {}: ", before.matches('\n').count() + 1, line.chars().count() + 1)
+    })
+}
+
+/// The known name that comes nearest, else all.
+pub fn meant(name: &str, known: &[&str]) -> String {
+    let likeness = |known: &&&str| strsim::jaro_winkler(&name.to_lowercase(), known);
+    let nearest = known.iter().max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
+    match nearest.filter(|nearest| likeness(nearest) >= ALIKE) {
+        Some(nearest) => format!("`{nearest}`"),
+        None => format!("one of {}", known.iter().map(|known| format!("`{known}`")).collect::<Vec<_>>().join(", ")),
+    }
+}
