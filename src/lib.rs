@@ -40,6 +40,8 @@
 //! | page | plan and camera | [`Page`](render::Page): ink and visible chains, frame and read-back for each piece of a page of any size | [`Renderer::page`](render::Renderer::page) |
 //! | line | the page | [`Lines`](line::Lines): chains on the page and in the world, with weights; or traced from the ink | [`Page::lines`](render::Page::lines), CPU |
 //! | ink | the lines | [`Drawing`](ink::Drawing): layers of strokes | [`ink::draw`], CPU |
+//! | frames | a path, a number | the camera of each: [`Flight`](view::Flight) | CPU |
+//! | jobs | drawings to make | files that bear the names of what they are made of: [`job::run`] | CPU, beside the device |
 //! | write | the drawing | PNG, SVG, PDF | [`ink::write_png`], [`ink::write_svg`], [`ink::write_pdf`] |
 //! | truth | surface and camera | [`Truth`](truth::Truth): where the lines really are | [`Terrain::truth`](truth::Terrain::truth), CPU |
 //! | judge | ink and truth | [`Scores`](truth::metrics::Scores): how far apart they are | [`Judge`](truth::metrics::Judge) |
@@ -62,7 +64,7 @@
 //! | [`dem`] | the grid: held in memory, or read as it is asked for |
 //! | [`geo`] | rasters and systems of coordinates; alone knows GDAL, without which (`--no-default-features`) it reads nothing |
 //! | [`surface`] | vertex normals, PN patches, the lattice and its IDs, bounds of chunks; what is kept of a DEM for them |
-//! | [`view`] | the camera, how it sees, and a view where none is given |
+//! | [`view`] | the camera, how it sees, a view where none is given, cameras along a way |
 //! | [`plan`] | what a frame needs, as data: lattice, batches, passes, pieces, what is left out; the registry of methods |
 //! | [`gpu`] | device, buffers, one adapter a pass; the mathematics stands in `shaders/` |
 //! | [`mod@line`] | curves with kind and world place: ink traced to chains, smoothed; lines of the world projected |
