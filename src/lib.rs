@@ -32,6 +32,7 @@
 //! | read | raster files | [`Dem`](dem::Dem): a north-up grid of metres, voids marked | [`geo::read()`], CPU |
 //! | surface | the grid | [`Surface`](surface::Surface): one normal a sample, cubic PN triangles between them | CPU, once a DEM |
 //! | view | what is [`Fixed`](view::Fixed) of it, or nothing | [`Camera`](view::Camera): eye, directions, page | CPU |
+//! | flight | a way over the land | the camera of each: [`Flight`](view::Flight) | CPU |
 //! | plan | what is asked ([`Plan`](plan::Plan): method, level, border), a camera | [`Frame`](plan::Frame): lattice, batches, passes, what is left out | CPU |
 //! | upload | surface and frame | [`Renderer`](render::Renderer): buffers and compiled passes | what is not there yet |
 //! | frame | plan and camera | the mask, on the device: tessellate, facing, rasterize, silhouette, border | [`Renderer::frame`](render::Renderer::frame), GPU |
@@ -40,7 +41,6 @@
 //! | page | plan and camera | [`Page`](render::Page): ink and visible chains, frame and read-back for each piece of a page of any size | [`Renderer::page`](render::Renderer::page) |
 //! | line | the page | [`Lines`](line::Lines): chains on the page and in the world, with weights; or traced from the ink | [`Page::lines`](render::Page::lines), CPU |
 //! | ink | the lines | [`Drawing`](ink::Drawing): layers of strokes | [`ink::draw`], CPU |
-//! | frames | a path, a number | the camera of each: [`Flight`](view::Flight) | CPU |
 //! | jobs | drawings to make | files that bear the names of what they are made of: [`job::run`] | CPU, beside the device |
 //! | write | the drawing | PNG, SVG, PDF | [`ink::write_png`], [`ink::write_svg`], [`ink::write_pdf`] |
 //! | truth | surface and camera | [`Truth`](truth::Truth): where the lines really are | [`Terrain::truth`](truth::Terrain::truth), CPU |

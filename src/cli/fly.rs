@@ -13,6 +13,7 @@ use super::flight::{FlightArguments, FlightPlan};
 use super::frames::{FrameArguments, FrameFiles};
 use super::jobs::{JobArguments, Share};
 use super::listing;
+use super::outputs::Format;
 use super::progress::{Form, Progress};
 use super::scene;
 use super::talk::Talk;
@@ -22,8 +23,9 @@ use super::words::told;
 use super::work::Work;
 use crate::cache::Cache;
 use crate::error::{Error, Result, Setting, shown};
-use crate::files::Taken;
+use crate::files::{Output, Taken};
 use crate::geo::Reading;
+use crate::ink::Preview;
 use crate::job::manifest::Sequence;
 use crate::job::name::Naming;
 use crate::job::{Content, Film, Inks, Job, Manifest};
@@ -46,6 +48,9 @@ Examples:
   hachure fly dem/golden-gate.tif --orbit 545000,4186000 --radius 4000 --height +800 --duration 10 -o frames/%05d.png \\
       --video around.mp4
 
+  The way from above, before anything is drawn:
+  hachure fly dem/golden-gate.tif --path route.gpkg --height +400 --preview route.svg
+
   The first of four shares, on as many machines, and whether all are there:
   hachure fly dem/golden-gate.tif --path route.toml --count 1000 -o /shared/frames/%05d.png --shard 0/4
   hachure merge /shared/frames";
@@ -58,6 +63,9 @@ pub struct FlyArguments {
     terrain: TerrainArguments,
     #[command(flatten)]
     frames: FrameArguments,
+    /// Draw the way from above instead, with the cones of some views over a hillshade: is it the flight that is meant?
+    #[arg(long, value_name = "OUT.png|.svg", conflicts_with_all = ["output", "mask", "video", "list"])]
+    preview: Option<PathBuf>,
     #[command(flatten)]
     flight: FlightArguments,
     #[command(flatten)]
@@ -98,6 +106,9 @@ struct Aloft {
 /// As [`Work::run`]; whatever keeps all frames from being drawn.
 pub fn run(arguments: &FlyArguments, talk: &Talk) -> Result<()> {
     let cache = arguments.cache.cache();
+    if let Some(path) = &arguments.preview {
+        return arguments.preview(path, &cache, talk);
+    }
     let Asked { files, illustration, plan, share, dem, sequence, jobs } = arguments.asked(&cache, talk)?;
     if arguments.jobs.list {
         return arguments.list(&illustration, &plan, &jobs, &cache, talk);
@@ -179,6 +190,28 @@ impl FlyArguments {
             Some(known) => Ok(known),
             None => self.terrain.content(self.drawing.exaggeration, cache, talk),
         }
+    }
+
+    /// Draws the way from above.
+    fn preview(&self, path: &Path, cache: &Cache, talk: &Talk) -> Result<()> {
+        let format = Format::of(path).filter(|format| matches!(format, Format::Png | Format::Svg));
+        let Some(format) = format.filter(|_| path.as_os_str() != "-") else {
+            let what = format!("{} does not end in .png or .svg", shown(path));
+            return Err(Error::setting(Setting::Preview, what, "name it so"));
+        };
+        let (plan, beside) = (self.flight.plan(self.terrain.allows_remote())?, self.flight.files());
+        let reading = self.open(cache)?;
+        Taken::inputs(reading.files().chain(beside.iter().map(PathBuf::as_path))).take(Setting::Preview, path)?;
+        let mut output = Output::create(path)?;
+        let surface = scene::surface(&self.terrain, reading, talk)?;
+        scene::prepare(&surface, cache, talk)?;
+        let preview = Preview::of(surface.dem(), &self.flight(&plan, &surface, talk)?)?;
+        output.write(|out| match format {
+            Format::Svg => preview.write_svg(out),
+            Format::Png | Format::Pdf => preview.write_png(out),
+        })?;
+        surface.dem().check()?;
+        output.publish()
     }
 
     /// Lists jobs with what they may take.

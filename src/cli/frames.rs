@@ -20,7 +20,7 @@ pub struct FrameArguments {
     #[arg(short, long, value_name = "DIR/%05d.png")]
     output: Vec<String>,
     /// Also the masks, or they alone: 1 bit a pixel, 0 ink, 255 paper, as large as the frame (--size)
-    #[arg(long, value_name = "DIR/%05d.png", required_unless_present = "output")]
+    #[arg(long, value_name = "DIR/%05d.png", required_unless_present_any = ["output", "preview"])]
     mask: Option<String>,
 }
 

@@ -65,6 +65,7 @@ pub fn flag(setting: Setting) -> &'static str {
         Setting::Page => "--page",
         Setting::Path => "--path",
         Setting::Plan => "--plan",
+        Setting::Preview => "--preview",
         Setting::Radius => "--radius",
         Setting::Resample => "--resample",
         Setting::Scale => "--scale",

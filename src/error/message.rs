@@ -142,6 +142,8 @@ settings! {
     Shard = "shard",
     /// Whether the environment says which.
     ShardFromEnv = "shard from the environment",
+    /// The picture of a flight from above.
+    Preview = "preview",
     /// What neighbouring facets share.
     Share = "share",
     /// The side of a map's sheets.
