@@ -20,6 +20,7 @@ mod drawing;
 mod economy;
 mod examples;
 mod facets;
+mod flights;
 mod forms;
 mod frames;
 mod generalise;
