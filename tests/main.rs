@@ -21,6 +21,7 @@ mod economy;
 mod examples;
 mod facets;
 mod films;
+mod flights;
 mod fly;
 mod forms;
 mod frames;

@@ -183,7 +183,7 @@ impl FlightArguments {
             (Some(path), None) => {
                 let track = geo::track(path, allow_remote)?;
                 if track.heights.is_none() && self.height.is_none() {
-                    let remedy = message!["add ", Setting::Height.with_value(), ", metres above the ground"];
+                    let remedy = message!["add ", Setting::Height.at("+300"), " for 300 m above the ground"];
                     return Err(Error::input(path, "its points have no heights", remedy));
                 }
                 Origin::Track(path.clone(), track)

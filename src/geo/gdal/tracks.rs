@@ -237,6 +237,8 @@ fn parts(geometry: &Geometry) -> Option<Parts> {
     let parts = (0..geometry.geometry_count()).map(|i| parts(&geometry.get_geometry(i)));
     let parts: Vec<Parts> = parts.collect::<Option<_>>()?;
     let lines = parts.iter().any(|part| part.lines);
+    // Of GPX the whole may know nothing of the heights of its parts.
+    let has_heights = has_heights || parts.iter().any(|part| part.has_heights);
     let kept = parts.iter().filter(|part| part.lines == lines);
     let points = kept.flat_map(|part| part.points.iter().copied()).collect();
     Some(Parts { lines, points, has_heights })
