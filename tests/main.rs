@@ -1,6 +1,7 @@
 //! Every integration test in one binary: linked once, one module a subject.
 
 mod agreement;
+mod batches;
 mod borders;
 mod broken;
 mod cache;
