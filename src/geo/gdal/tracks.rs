@@ -11,7 +11,7 @@ use std::path::Path;
 use gdal::vector::{
     Feature, Geometry, Layer, LayerAccess, OGRwkbGeometryType, geometry_type_flatten, geometry_type_has_z,
 };
-use gdal::{Dataset, GdalOpenFlags};
+use gdal::{Dataset, GdalOpenFlags, config};
 use glam::DVec3;
 
 use super::formats::{self, FORMATS, VECTORS};
@@ -56,6 +56,8 @@ struct Line {
 /// [`Error::Input`] where the file cannot be read, or there is no way in it, or several are.
 pub fn track(path: &Path, allow_remote: bool) -> Result<Track> {
     formats::restrict(allow_remote);
+    // Of GPX heights stand in attributes otherwise. Every GDAL that the bindings know has the option.
+    let _ = config::set_thread_local_config_option("GPX_ELE_AS_25D", "YES");
     let (file, layer) = with_layer(path);
     let wrong = |what: Message, remedy: Message| Error::input(path, what, remedy);
     let dataset = open(&file, allow_remote)?;
@@ -237,7 +239,7 @@ fn parts(geometry: &Geometry) -> Option<Parts> {
     let parts = (0..geometry.geometry_count()).map(|i| parts(&geometry.get_geometry(i)));
     let parts: Vec<Parts> = parts.collect::<Option<_>>()?;
     let lines = parts.iter().any(|part| part.lines);
-    // Of GPX the whole may know nothing of the heights of its parts.
+    // Several parts may be flat as a whole and high by themselves.
     let has_heights = has_heights || parts.iter().any(|part| part.has_heights);
     let kept = parts.iter().filter(|part| part.lines == lines);
     let points = kept.flat_map(|part| part.points.iter().copied()).collect();
