@@ -22,6 +22,7 @@ mod economy;
 mod examples;
 mod facets;
 mod films;
+mod flight_paths;
 mod flights;
 mod fly;
 mod forms;

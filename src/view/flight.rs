@@ -2,10 +2,10 @@
 //!
 //! | what | method |
 //! |---|---|
-//! | the way | a centripetal Catmull-Rom spline through the stops, by its length ([`curve`]); or a circle |
-//! | the pace | constant ground speed, or a monotone cubic through times ([`pace`]) |
-//! | heights | given, or above the smoothed ground; lifted smoothly over a floor that holds everywhere ([`heights`]) |
-//! | directions | the way's own headings, unwrapped, their mean over the way ahead ([`mean`]): at a hairpin the camera turns at most at two half turns for each such length; or at a target; or as given |
+//! | the way | a centripetal Catmull-Rom spline through the stops, by its length (`curve`); or a circle |
+//! | the pace | constant ground speed, or a monotone cubic through times (`pace`) |
+//! | heights | given, or above the smoothed ground; lifted smoothly over a floor that holds everywhere (`heights`) |
+//! | directions | the way's own headings, unwrapped, their mean over the way ahead (`mean`): at a hairpin the camera turns by at most 360 degrees for each such length; or at a target; or as given |
 //!
 //! A way that ends where it begins goes on smoothly there, and its last frame is the one before the first. A camera depends on
 //! the flight and its frame alone, never on those asked before; it is rounded to micrometres and billionths of a degree, so

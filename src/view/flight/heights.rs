@@ -1,6 +1,6 @@
 //! How high the eye is along its way: as asked, and never below the ground and its clearance.
 //!
-//! Heights above the ground are counted from a mean of it under a triangle (see [`mean`](super::mean)), so that the eye does
+//! Heights above the ground are counted from a mean of it under a triangle (see `mean`), so that the eye does
 //! not bob over every sample. Where that, or a height that was given, is lower than the ground and the clearance, the eye is
 //! lifted by a smooth function that is nowhere less than what is missing: what is missing from each station to the next, the
 //! highest of it within a window, and of that the mean over the same window (a dilation and then a mean no wider than it).

@@ -1,7 +1,7 @@
 //! When the eye is where: at constant ground speed, or by times given.
 //!
 //! Moments run from the first to the last stop of a flight: metres of the way where no times are given, else seconds. By
-//! times the metres are a monotone cubic of the seconds ([`Monotone`]): never back, never past, the speed without jumps.
+//! times the metres are a monotone cubic of the seconds (`monotone`): never back, never past, the speed without jumps.
 
 use super::monotone::Monotone;
 
