@@ -1,6 +1,7 @@
 //! Batches: a file of drawings, each made once; sheets of a map.
 
 use std::fs;
+use std::process::Command;
 
 use serde_json::Value;
 
@@ -45,8 +46,22 @@ fn each_drawing_is_that_of_draw_and_is_made_once() {
     assert_eq!(code, 0, "{errors}");
     assert!(said.contains("3 drawings drawn, 0 were there"), "{said}");
     let flags = [
-        "draw", "hill.asc", "-o", "alone.png", "-o", "alone.svg", "--mask", "alone-mask.png", "--size", "120x60", "--style",
-        "atlas", "--eye", "500195,4000020,+30", "--azimuth", "-0.5",
+        "draw",
+        "hill.asc",
+        "-o",
+        "alone.png",
+        "-o",
+        "alone.svg",
+        "--mask",
+        "alone-mask.png",
+        "--size",
+        "120x60",
+        "--style",
+        "atlas",
+        "--eye",
+        "500195,4000020,+30",
+        "--azimuth",
+        "-0.5",
     ];
     assert_eq!(place.run(&flags).status.code(), Some(0));
     let pixels = |name: &str| image::open(place.path(name)).expect("a picture").to_rgb8().into_raw();
@@ -64,6 +79,10 @@ fn each_drawing_is_that_of_draw_and_is_made_once() {
     assert!(said.contains("1 drawings drawn, 2 were there"), "one of its files is gone: {said}");
     let (_, said, _) = batch(&place, &DRAWINGS.replace("2px", "3px"), &[]);
     assert!(said.contains("1 drawings drawn, 2 were there"), "one of them changed: {said}");
+    let with_fov = |fov: &str| DRAWINGS.replace("azimuth = -0.5", &format!("azimuth = -0.5\nfov = {fov}"));
+    assert!(batch(&place, &with_fov("50"), &[]).1.contains("2 drawings drawn"));
+    assert!(batch(&place, &with_fov("0x32"), &[]).1.contains("0 drawings drawn"), "50 in another base");
+    batch(&place, DRAWINGS, &[]);
     assert_eq!(place.run(&["merge", "out"]).status.code(), Some(0));
 }
 
@@ -73,7 +92,10 @@ fn a_drawing_that_cannot_be_made_costs_itself_alone() {
     let text = DRAWINGS.replace("output = \"out/chosen.png\"", "output = \"out/chosen.png\"\ndem = \"none.tif\"");
     let (code, said, errors) = batch(&place, &text, &["--progress", "json"]);
     assert_eq!(code, 1, "{errors}");
-    assert!(errors.contains("1 of 3 drawings failed") && errors.contains("none.tif: there is no such file"), "{errors}");
+    assert!(
+        errors.contains("1 of 3 drawings failed") && errors.contains("none.tif: there is no such file"),
+        "{errors}"
+    );
     let events: Vec<Value> = said.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
     let named: Vec<&str> = events.iter().filter_map(|event| event["event"].as_str()).collect();
     assert_eq!(named.iter().filter(|event| **event == "frame").count(), 2, "{named:?}");
@@ -125,6 +147,44 @@ scale = "1:2000"
 }
 
 #[test]
+fn lists_stand_beside_each_other_and_folders_can_be_moved() {
+    let place = Place::new();
+    assert_eq!(batch(&place, DRAWINGS, &[]).0, 0);
+    fs::write(
+        place.path("more.toml"),
+        "[[drawing]]\ndem = \"hill.asc\"\noutput = \"out/more.png\"\nsize = \"80x40\"\n",
+    )
+    .expect("a file");
+    assert_eq!(place.run(&["batch", "more.toml"]).status.code(), Some(0), "another list in the same folder");
+    fs::rename(place.path("out"), place.path("moved")).expect("it is there");
+    let output = place.run(&["merge", "moved"]);
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    assert!(said.contains("3 of 3 are whole") && said.contains("1 of 1 are whole"), "{said}");
+    fs::remove_file(place.path("moved/more.png")).expect("it is there");
+    assert_eq!(place.run(&["merge", "moved"]).status.code(), Some(1));
+}
+
+#[test]
+fn no_drawing_replaces_what_is_read() {
+    let place = Place::new();
+    let mut translate = Command::new("gdal_translate");
+    translate.args(["-q", "-ot", "UInt16", "-of", "PNG"]).arg(place.path("hill.asc")).arg(place.path("land.png"));
+    if !translate.status().is_ok_and(|status| status.success()) {
+        println!("SKIP no gdal_translate");
+        return;
+    }
+    let vrt = Command::new("gdalbuildvrt").arg("-q").arg(place.path("land.vrt")).arg(place.path("land.png")).status();
+    assert!(vrt.is_ok_and(|status| status.success()));
+    let before = fs::read(place.path("land.png")).expect("a DEM");
+    let text = "[[drawing]]\ndem = \"land.vrt\"\nband = 1\noutput = \"land.png\"\nsize = \"80x40\"\n";
+    let (code, _, errors) = batch(&place, text, &[]);
+    assert_eq!(code, 1, "{errors}");
+    assert!(errors.contains("which is read as input"), "{errors}");
+    assert_eq!(fs::read(place.path("land.png")).expect("a DEM"), before);
+}
+
+#[test]
 fn mistakes_are_told_with_their_place() {
     let place = Place::new();
     let with = |line: &str| format!("[defaults]\ndem = \"hill.asc\"\n\n[[drawing]]\n{line}\n");
@@ -133,10 +193,15 @@ fn mistakes_are_told_with_their_place() {
         (with("output = \"a.png\"\nfov = 500"), "line 6, column 7: drawing 0: invalid value '500' for '--fov <DEG>'"),
         (with("output = \"a.png\"\njson = \"a.json\""), "`json` is no key of a drawing"),
         (with("output = \"a.png\"\nfov = {}"), "it is no value of a flag"),
+        (with("output = \"a.png\"\nmask = [\"b.png\", \"c.png\"]"), "line 6, column 8: `mask` takes no list"),
+        (with("output = \"a.png\"\nscale = \"1:1000\""), "required arguments were not provided: --plan"),
         (with("output = \"-\""), "standard output takes no drawing"),
         (with("output = \"a.tif\""), "a.tif does not end in .png, .svg or .pdf"),
         (with("output = \"a.png\"\n[[drawing]]\noutput = \"./a.png\""), "another output already"),
-        (with("output = \"b/a.png\"\n[[drawing]]\noutput = \"b/../b/a.png\""), "b/../b/a.png is another drawing's output already"),
+        (
+            with("output = \"b/a.png\"\n[[drawing]]\noutput = \"b/../b/a.png\""),
+            "b/../b/a.png is another drawing's output already",
+        ),
         (with("output = \"a.png\"\n[[drawings]]"), "`drawings` is neither [defaults] nor [[drawing]]; use `drawing`"),
         ("[drawing]\noutput = \"a.png\"".to_owned(), "write [[drawing]]"),
         ("[[drawing]]\noutput = \"a.png\"".to_owned(), "required arguments were not provided: <DEM>"),

@@ -14,7 +14,7 @@ use crate::cli::{Place, stderr};
 /// Frames of the flight.
 const COUNT: u32 = 16;
 /// The flight: around a hill, small.
-const FLY: [&str; 14] = [
+const FLY: [&str; 12] = [
     "fly",
     "hill.asc",
     "--orbit",
@@ -27,8 +27,6 @@ const FLY: [&str; 14] = [
     "16",
     "--size",
     "160x90",
-    "--cell-of",
-    "hill.asc",
 ];
 
 /// A frame's file with its bytes and the time at which it was made.
@@ -104,6 +102,7 @@ fn a_flight_that_is_killed_goes_on_where_it_ended() {
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
         let all = frames(&folder);
         assert_eq!(bytes(&all), bytes(&whole), "killed at {k}");
+        assert!(half_made(&folder).len() <= 1, "at most one half-made file of a kill");
         for (name, (_, made)) in &finished {
             assert_eq!(all[name].1, *made, "{name} was finished, and made again");
         }
@@ -172,7 +171,8 @@ fn shards_in_any_order_make_the_same_frames() {
         let merged = merge();
         let said = String::from_utf8_lossy(&merged.stdout).into_owned();
         assert_eq!(merged.status.code(), Some(i32::from(done < 2)), "{said}");
-        assert_eq!(said.contains("shard 1/3 never ran"), done < 2, "{said}");
+        let absent = ["never ran: shard 0-1 of 3", "never ran: shard 1 of 3", "are whole, by 3 manifests"][done];
+        assert!(said.contains(absent), "{said}");
     }
     assert_eq!(bytes(&frames(&place.path("shards"))), bytes(&whole));
     fs::remove_file(place.path("shards/00007.png")).expect("it is there");
@@ -201,10 +201,51 @@ fn another_look_redraws_all_and_the_same_none() {
     assert!(drawn(&["--style", "woodcut", "--min-gap", "2px"]).contains("0 frames drawn"), "the same bytes, copied");
     let text = fs::read_to_string(place.path("hill.asc")).expect("a DEM").replace("59.", "58.");
     fs::write(place.path("hill.asc"), text).expect("room");
-    let output = place.run(&fly("looks/%05d.png", &["--style", "woodcut", "--min-gap", "2px"]));
+    let woodcut = ["--style", "woodcut", "--min-gap", "2px"];
+    assert!(drawn(&woodcut).contains("16 frames drawn"), "other heights");
+    fs::write(place.path("hill.prj"), "").expect("room");
+    fs::remove_file(place.path("hill.prj")).expect("it is there");
+    assert!(drawn(&woodcut).contains("0 frames drawn"), "nothing has changed");
+    assert!(drawn(&[&woodcut[..], &["--exaggeration", "2"]].concat()).contains("16 frames drawn"));
+    let output = place.run(&fly("looks/%05d.png", &["--clearance", "7"]));
     let said = stderr(&output);
-    assert_eq!(output.status.code(), Some(1), "of another DEM: {said}");
-    assert!(said.contains("hachure-0-of-1.json: it is the manifest of"), "{said}");
+    assert_eq!(output.status.code(), Some(1), "another flight: {said}");
+    assert!(said.contains("hachure-0-of-1.json: it is the manifest of a flight of 16 frames around"), "{said}");
+    assert!(said.contains("that takes another way; give another folder"), "{said}");
+}
+
+#[test]
+fn the_last_of_two_dems_on_one_grid_counts() {
+    let place = Place::new();
+    let text = fs::read_to_string(place.path("hill.asc")).expect("a DEM");
+    fs::write(place.path("mound.asc"), text.replace(" 5", " 4")).expect("room");
+    let drawn = |dems: [&str; 2]| {
+        let flags = [&["fly"], &dems[..], &FLY[2..12], &["-o", "two/%05d.png", "--frames", "0-1"]].concat();
+        let output = place.run(&flags);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        String::from_utf8_lossy(&output.stdout).lines().last().unwrap_or_default().to_owned()
+    };
+    assert!(drawn(["hill.asc", "mound.asc"]).contains("2 frames drawn"));
+    assert!(drawn(["hill.asc", "mound.asc"]).contains("2 were there"));
+    assert!(drawn(["mound.asc", "hill.asc"]).contains("2 frames drawn"), "the other one is on top now");
+}
+
+#[test]
+fn what_is_there_stays_as_it_is() {
+    let place = Place::new();
+    let run = |more: &[&str]| {
+        let output = place.run(&fly("kept/%05d.png", &[&["--frames", "0-2"], more].concat()));
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    };
+    run(&["--mask", "kept/mask-%05d.png"]);
+    let first = frames(&place.path("kept"));
+    assert_eq!(first.len(), 6);
+    run(&["--mask", "kept/mask-%05d.png", "-o", "kept/%05d.svg"]);
+    assert_eq!(frames(&place.path("kept")), first, "an SVG more leaves the pictures alone");
+    run(&["--mask", "kept/mask-%05d.png", "--style", "plotter"]);
+    let restyled = frames(&place.path("kept"));
+    let same = |name: &str| restyled[name] == first[name];
+    assert!(same("mask-00001.png") && !same("00001.png"), "a mask does not know of styles");
 }
 
 #[test]
@@ -274,7 +315,14 @@ fn what_cannot_be_flown_is_told_in_one_line() {
     wrong(&fly("%05d.png", &["--mask", "%05d.png"]), 2, "is another output already");
     wrong(&fly("%05d.svg", &["--video", "a.gif"]), 2, "add --output with a .png");
     wrong(&fly("%05d.png", &["--video", "a.avi"]), 2, "a.avi does not end in .gif, .png or .mp4");
-    wrong(&fly("%05d.png", &["--video", "00003.png"]), 2, "00003.png is a frame");
+    wrong(&fly("%05d.png", &["--video", "x/../00003.png"]), 2, "x/../00003.png is a frame");
+    wrong(&fly("%05d.png", &["--video", "none/a.gif"]), 1, "none/a.gif: cannot be written (there is no folder none)");
+    wrong(&fly("none/%d.png", &["--mask", "none/%02d.png"]), 2, "is another output already");
+    fs::copy(place.path("hill.asc"), place.path("hill.gif")).expect("room");
+    let mut as_gif = fly("%05d.png", &["--video", "hill.gif"]);
+    as_gif[1] = "hill.gif";
+    wrong(&as_gif, 2, "hill.gif is read as input");
+    fs::remove_file(place.path("hill.gif")).expect("it is there");
     assert_eq!(place.written(), Vec::<String>::new(), "nothing was written");
     fs::write(place.path("hachure-0-of-1.json"), "{}").expect("a file");
     wrong(&fly("%05d.png", &[]), 1, "hachure-0-of-1.json: it is no manifest");

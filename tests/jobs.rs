@@ -1,12 +1,15 @@
 //! Lists of frames, shards, names of files, seals, manifests: what jobs are told apart and found again by.
 
+use std::cell::Cell;
 use std::collections::HashSet;
-use std::fs;
+use std::fs::{self, File};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, SystemTime};
 
+use hachure::cache::Cache;
 use hachure::ink::Seal;
 use hachure::job::manifest::Sequence;
-use hachure::job::name::{Naming, of_mask};
+use hachure::job::name::Naming;
 use hachure::job::{Frames, Job, Made, Manifest, Merged, Pattern, Shard};
 
 #[test]
@@ -103,7 +106,6 @@ fn names_tell_parts_apart() {
         Naming::new().with("ab", "c").name(),
         Naming::new().with("a", "b").with("c", "").name(),
         Naming::new().with("a", "").with("b", "c").name(),
-        of_mask(Naming::new().name()),
     ];
     assert_eq!(HashSet::from(names).len(), names.len());
     assert_eq!(Naming::new().with("a", "b").name(), Naming::new().with("a", [b'b']).name());
@@ -115,7 +117,7 @@ fn made(folder: &Path, number: u32) -> Job {
     let name = Naming::new().with("number", number.to_le_bytes()).name();
     let seal = Seal { job: name, adapter: "none".to_owned() };
     fs::write(&path, format!("<svg><metadata>{seal}</metadata>{}</svg>\n", " ".repeat(100))).expect("a file");
-    Job { number, files: vec![Made { path, name }] }
+    Job { number, called: format!("number {number}"), files: vec![Made { path, name }] }
 }
 
 #[test]
@@ -141,14 +143,21 @@ fn a_job_is_done_where_its_files_are_whole_and_of_its_name() {
 }
 
 fn sequence(count: u32, job: u128) -> Sequence {
-    Sequence { of: format!("{count} numbers"), sequence: u128::from(count), job, count, fps: None, inks: None }
+    Sequence {
+        of: format!("{count} numbers"),
+        sequence: u128::from(count) << 100,
+        job,
+        count,
+        fps: Some(25.0),
+        inks: None,
+    }
 }
 
 #[test]
 fn manifests_together_say_what_is_missing() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
-    assert!(Merged::of(folder).expect_err("no manifest").to_string().contains("no manifest is in it"));
+    assert!(Merged::all(folder).expect_err("no manifest").to_string().contains("no manifest is in it"));
     let write = |index: u32, job: u128| {
         let shard = Shard { index, count: 3 };
         let jobs: Vec<Job> = shard.of(&Frames::first(10)).numbers().iter().map(|n| made(folder, *n)).collect();
@@ -156,19 +165,20 @@ fn manifests_together_say_what_is_missing() {
     };
     write(0, 1);
     write(2, 1);
-    let merged = Merged::of(folder).expect("two manifests");
-    assert_eq!((merged.whole.to_string(), merged.unknown.to_string()), ("0-2,6-9".to_owned(), "3-5".to_owned()));
-    assert_eq!(merged.absent, [[1, 3]]);
-    assert!(!merged.is_whole());
+    let merged = || Merged::all(folder).expect("manifests of one sequence").remove(0);
+    let two = merged();
+    assert_eq!((two.whole.to_string(), two.unknown.to_string()), ("0-2,6-9".to_owned(), "3-5".to_owned()));
+    assert_eq!((&two.absent[..], two.missing()), (&[Shard { index: 1, count: 3 }][..], 3));
     write(1, 1);
-    assert!(Merged::of(folder).expect("all").is_whole());
+    assert_eq!((merged().missing(), merged().absent), (0, vec![]));
     fs::write(folder.join("4.svg"), "<svg></svg>").expect("a file");
-    let merged = Merged::of(folder).expect("all");
-    assert_eq!((merged.broken.to_string(), merged.is_whole()), ("4".to_owned(), false));
+    assert_eq!((merged().broken.to_string(), merged().missing()), ("4".to_owned(), 1));
+    Manifest::new(&sequence(10, 1), Shard { index: 0, count: 7 }, None, &[], folder).write(folder).expect("a manifest");
+    assert_eq!(merged().absent, [], "shards that would hold nothing that is unknown are not missed");
     write(1, 2);
-    assert!(Merged::of(folder).expect_err("another look").to_string().contains("of another look"));
+    assert!(Merged::all(folder).expect_err("another look").to_string().contains("of another look"));
     fs::write(folder.join("hachure-0-of-3.json"), "{").expect("a file");
-    assert!(Merged::of(folder).expect_err("broken").to_string().contains("it is no manifest"));
+    assert!(Merged::all(folder).expect_err("broken").to_string().contains("it is no manifest"));
 }
 
 #[test]
@@ -180,6 +190,45 @@ fn a_folder_takes_one_sequence() {
     assert!(Manifest::refuse_others(folder, &sequence(10, 2)).is_ok(), "another look of the same is drawn over");
     let said = Manifest::refuse_others(folder, &sequence(12, 1)).expect_err("another sequence").to_string();
     assert!(said.contains("it is the manifest of 10 numbers, this is 12 numbers; give another folder"), "{said}");
+    let list = |count| Sequence { fps: None, ..sequence(count, 1) };
+    assert!(Manifest::refuse_others(folder, &list(12)).is_ok(), "lists of drawings stand beside others");
+    for count in [4, 5] {
+        Manifest::new(&list(count), Shard::WHOLE, None, &[], folder).write(folder).expect("a manifest");
+    }
+    let sequences = Merged::all(folder).expect("manifests");
+    assert_eq!(sequences.len(), 3, "each is held against its own files");
+    assert!(sequences.iter().all(|merged| merged.missing() > 0));
+}
+
+#[test]
+fn what_a_dem_holds_follows_its_files() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (path, cache) = (folder.path().join("a.asc"), Cache::in_folder(folder.path().join("cache")));
+    let asked = Cell::new(0);
+    let content = |files: &[&str]| {
+        let files: Vec<PathBuf> = files.iter().map(|name| folder.path().join(name)).collect();
+        let found = cache.content(7, "a", &|warning| panic!("{warning}"), || {
+            asked.set(asked.get() + 1);
+            Ok(files)
+        });
+        found.expect("content").hash().to_owned()
+    };
+    fs::write(&path, "heights").expect("a file");
+    let first = content(&["a.asc"]);
+    assert_eq!((content(&["a.asc"]), asked.get()), (first.clone(), 1), "it is known");
+    fs::write(folder.path().join("a.prj"), "a system").expect("a file");
+    let both = content(&["a.asc", "a.prj"]);
+    assert!(both != first && asked.get() == 2, "a file beside it may belong to it");
+    fs::write(folder.path().join("b.prj"), "another's").expect("a file");
+    assert_eq!((content(&["a.asc", "a.prj"]), asked.get()), (both.clone(), 2), "another's file does not");
+    fs::write(&path, "Heights").expect("a file");
+    let other = content(&["a.asc", "a.prj"]);
+    assert!(other != both && asked.get() == 3, "other bytes");
+    fs::rename(&path, folder.path().join("c.asc")).expect("it is there");
+    assert_ne!(content(&["c.asc", "a.prj"]), other, "a name may be a part of what is read");
+    let old = File::options().write(true).open(folder.path().join("c.asc")).expect("a file");
+    old.set_modified(SystemTime::UNIX_EPOCH - Duration::from_secs(3600)).expect("a time");
+    content(&["c.asc", "a.prj"]);
 }
 
 #[test]
@@ -195,5 +244,5 @@ fn a_manifest_keeps_what_an_older_one_of_the_same_jobs_told() {
     let times = |manifest: Manifest| manifest.jobs.iter().map(|entry| entry.ms).collect::<Vec<_>>();
     assert_eq!(times(manifest(1).after(folder)), [None, Some(12.5), None]);
     assert_eq!(times(manifest(2).after(folder)), [None; 3], "of another look nothing is known");
-    assert_eq!(Merged::of(folder).expect("a manifest").failed, [], "what failed once and is there is whole");
+    assert_eq!(Merged::all(folder).expect("a manifest")[0].failed, [], "what failed once and is there is whole");
 }

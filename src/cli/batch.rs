@@ -17,19 +17,19 @@ use super::progress::{Form, Progress};
 use super::scene;
 use super::talk::Talk;
 use super::words::told;
-use super::work::Work;
+use super::work::{CODES, Work};
 use crate::cache::Cache;
-use crate::error::{Error, Result};
-use crate::files::Taken;
+use crate::error::{Error, Result, shown};
+use crate::files::{Taken, relative};
 use crate::gpu::Gpu;
 use crate::ink::Seal;
-use crate::job::Job;
 use crate::job::manifest::Sequence;
 use crate::job::name::Naming;
+use crate::job::{Job, Made, Manifest};
 use crate::plan::frame::Kept;
 use crate::render::{Estimate, Illustration, Page, Renderer};
 use crate::surface::Surface;
-use entry::Entry;
+use entry::{Contents, Entry};
 use sheets::SheetArguments;
 
 /// The end of `hachure batch --help`.
@@ -48,7 +48,7 @@ command runs:
   eye = \"547500,4190300,+300\"
   azimuth = 190
 
-What is done already, and made of the same, is not made again. The manifest stands in the folder of the first drawing.
+A drawing that says false to a key leaves the default out. The manifest stands in the folder of the first drawing.
 
 Examples:
   hachure batch drawings.toml
@@ -61,7 +61,7 @@ Examples:
 
 /// Flags of `hachure batch`, as typed.
 #[derive(Debug, clap::Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = format!("{CODES}\n\n{EXAMPLES}"))]
 pub struct BatchArguments {
     /// The list of drawings
     #[arg(value_name = "FILE.toml")]
@@ -80,6 +80,8 @@ pub struct BatchArguments {
 struct Scene {
     /// What it was read of and how.
     of: String,
+    /// The files that it was read of: no drawing may replace one.
+    files: Arc<Vec<PathBuf>>,
     surface: Arc<Surface>,
     /// None where only plans were drawn of it so far.
     renderer: Option<Renderer>,
@@ -88,6 +90,7 @@ struct Scene {
 /// A drawing on its way to its files.
 struct Drawn<'a> {
     entry: &'a Entry,
+    inputs: Arc<Vec<PathBuf>>,
     what: What,
 }
 
@@ -108,27 +111,35 @@ pub fn run(arguments: &BatchArguments, talk: &Talk) -> Result<()> {
     let entries = arguments.sheets.sheets(entry::read(&arguments.file)?, &cache, talk)?;
     entry::each_output_once(&arguments.file, &entries)?;
     let share = arguments.jobs.share(entries.len() as u32, "drawings")?;
-    let names: Vec<u128> = entries.iter().map(|entry| entry.name(&cache, talk)).collect();
-    let all: Vec<Job> = (0..).zip(&entries).zip(&names).map(|((n, entry), name)| entry.job(n, *name)).collect();
+    let folder = entries.first().and_then(|entry| entry.draw.outputs.files().0.first().map(|path| folder_of(path)));
+    let folder = folder.unwrap_or_default();
+    let known = Manifest::all(&folder)?.into_iter().flat_map(|manifest| manifest.dems);
+    let mut contents = Contents { known: known.collect(), cache: &cache, talk };
+    let names: Vec<[u128; 2]> = entries.iter().map(|entry| entry.names(&mut contents)).collect();
+    let dems = contents.known;
+    let all: Vec<Job> = (0..).zip(&entries).zip(&names).map(|((n, entry), names)| entry.job(n, *names)).collect();
     let jobs: Vec<Job> = share.frames.numbers().iter().map(|n| all[*n as usize].clone()).collect();
-    let together = names.iter().fold(Naming::new(), |naming, name| naming.with("drawing", name.to_le_bytes()));
-    let file = arguments.file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let together = names.iter().fold(Naming::new(), |naming, names| naming.with("drawing", names[0].to_le_bytes()));
+    // Another list beside it makes other drawings; seen from the folder, all machines agree on its name.
+    let list = relative(&folder, &arguments.file);
     let sequence = Sequence {
-        of: format!("the {} drawings of {file}", entries.len()),
-        sequence: Naming::bare().with("batch", &file).name(),
+        of: format!("the {} drawings of {}", entries.len(), shown(&arguments.file)),
+        sequence: Naming::bare().with("batch", list.as_os_str().as_encoded_bytes()).name(),
         job: together.name(),
         count: entries.len() as u32,
         fps: None,
         inks: None,
     };
-    let mut studio = Studio { arguments, cache, gpu: None, scene: None, talk: talk.hushed() };
+    let mut studio = Studio { arguments, cache: cache.clone(), gpu: None, scene: None, talk: talk.hushed() };
     if arguments.jobs.list {
         return studio.list(&entries, &jobs, talk);
     }
-    let folder = all.first().map(|job| folder_of(&job.files[0].path)).unwrap_or_default();
-    let work = Work { sequence, share, called: ["drawing", "drawings"], jobs, folder, dem: None };
-    let draw = |job: &Job, progress: &Progress| studio.draw(&entries[job.number as usize], progress);
-    work.run(talk, arguments.jobs.progress, draw, |job, drawn: Drawn| drawn.write(job))
+    let work = Work { sequence, share, called: "drawings", jobs, folder, dems };
+    let progress = Progress::start(talk, arguments.jobs.progress, work.jobs.len());
+    let draw = |job: &Job| studio.draw(&entries[job.number as usize], &progress);
+    let made = work.run(talk, &progress, draw, |job, drawn: Drawn| drawn.write(job));
+    progress.end(made.as_ref().err());
+    made
 }
 
 impl BatchArguments {
@@ -154,18 +165,23 @@ impl Studio<'_> {
         let mut kept = Kept::default();
         for job in jobs {
             let Entry { draw, .. } = &entries[job.number as usize];
-            let estimate = match draw.scale() {
-                _ if job.is_done() => Estimate::NOTHING,
-                Some(_) => Estimate::of_plan(self.scene(draw)?.surface.dem()),
-                None => {
-                    let (illustration, surface) = (draw.check()?, self.scene(draw)?.surface.clone());
-                    let view = draw.look(&surface, &illustration, &self.talk)?;
-                    listing::estimate(&illustration.plan, &surface, &view.camera, &mut kept)?
-                }
+            let estimate = match job.is_done() {
+                true => Ok(Estimate::NOTHING),
+                false => self.estimate(draw, &mut kept),
             };
             listing::tell(job, estimate, talk)?;
         }
         Ok(())
+    }
+
+    /// What a drawing may take.
+    fn estimate(&mut self, draw: &DrawArguments, kept: &mut Kept) -> Result<Estimate> {
+        if draw.scale().is_some() {
+            return Ok(Estimate::of_plan(self.scene(draw)?.surface.dem()));
+        }
+        let (illustration, surface) = (draw.check()?, self.scene(draw)?.surface.clone());
+        let view = draw.look(&surface, &illustration, &self.talk)?;
+        listing::estimate(&illustration.plan, &surface, &view.camera, kept)
     }
 
     /// Draws what a view of an entry shows.
@@ -173,7 +189,8 @@ impl Studio<'_> {
         self.talk.say(&format!("{}:", entry.called))?;
         if let Some(scale) = entry.draw.scale() {
             let scene = self.scene(&entry.draw)?;
-            return Ok(Drawn { entry, what: What::Plan(plan::draw(&entry.draw, scale, scene.surface.dem())?) });
+            let planned = plan::draw(&entry.draw, scale, scene.surface.dem())?;
+            return Ok(Drawn { entry, inputs: scene.files.clone(), what: What::Plan(planned) });
         }
         let illustration = entry.draw.check()?;
         let gpu = match &self.gpu {
@@ -196,7 +213,8 @@ impl Studio<'_> {
         };
         let page = renderer.page(&illustration.plan, &view.camera, |_| ())?;
         entry.draw.warn_of_blank(renderer, &view, &page, talk);
-        Ok(Drawn { entry, what: What::View(Box::new(page), illustration, adapter) })
+        let inputs = scene.files.clone();
+        Ok(Drawn { entry, inputs, what: What::View(Box::new(page), illustration, adapter) })
     }
 
     /// The DEM of a drawing: the last one's, or read.
@@ -207,10 +225,11 @@ impl Studio<'_> {
             // Both together may be more than there is room for.
             self.scene = None;
             let reading = draw.open(self.cache.clone())?;
+            let files = Arc::new(reading.files().map(Path::to_owned).collect());
             let surface = Arc::new(scene::surface(&draw.terrain, reading, talk)?);
             scene::prepare(&surface, &self.cache, talk)?;
             self.cache.discard_damaged(surface.dem(), &|message| talk.warn(&told(message)));
-            self.scene = Some(Scene { of, surface, renderer: None });
+            self.scene = Some(Scene { of, files, surface, renderer: None });
         }
         self.scene.as_mut().ok_or_else(|| Error::mistake("a DEM was read and is not there"))
     }
@@ -218,7 +237,11 @@ impl Studio<'_> {
 
 impl Drawn<'_> {
     fn write(self, job: &Job) -> Result<()> {
-        let Self { entry, what } = self;
+        let Self { entry, inputs, what } = self;
+        // Another process may have made it meanwhile.
+        if job.is_done() {
+            return Ok(());
+        }
         let (page, mut drawing, px_per_mm, adapter) = match what {
             What::View(page, illustration, adapter) => {
                 let (_, drawing) = illustration.drawing(&page)?;
@@ -226,12 +249,17 @@ impl Drawn<'_> {
             }
             What::Plan(planned) => (None, planned.drawing, planned.px_per_mm, "none".to_owned()),
         };
-        drawing.seal = Some(Seal { job: job.files[0].name, adapter });
+        let seal = |made: &Made| Seal { job: made.name, adapter: adapter.clone() };
+        drawing.seal = job.files.first().map(seal);
         for made in &job.files {
             let folder = folder_of(&made.path);
             fs::create_dir_all(&folder).map_err(|error| Error::output(&folder, &error))?;
         }
-        let mut outputs = entry.draw.outputs.open(Taken::default())?;
+        let outputs = entry.draw.outputs.open(Taken::inputs(inputs.iter().map(PathBuf::as_path)))?;
+        let mut outputs = match job.files.last() {
+            Some(last) => outputs.with_mask_of(seal(last)),
+            None => outputs,
+        };
         outputs.write(&drawing, px_per_mm, page.as_deref(), None::<&()>)?;
         outputs.publish()
     }

@@ -18,12 +18,14 @@ use super::viewpoint::{View, ViewArguments};
 use super::words::told;
 use super::{blank, cells, journey, plan, scene};
 use crate::cache::Cache;
-use crate::error::Result;
+use crate::error::{Error, Result, Setting};
 use crate::files::Taken;
 use crate::geo::Reading;
 use crate::ink::{self, Drawing};
+use crate::job::Content;
 use crate::job::name::Naming;
 use crate::line::Lines;
+use crate::message;
 use crate::plan::Frame;
 use crate::plan::left_out::LeftOut;
 use crate::render::{Illustration, Page, PassTime, Renderer};
@@ -107,7 +109,7 @@ struct Stroked<'a> {
 /// # Errors
 /// Whatever went wrong; nothing stands under a final name then.
 pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
-    if let Some(scale) = arguments.scale {
+    if let Some(scale) = arguments.scale() {
         return plan::run(arguments, scale, talk);
     }
     let illustration = arguments.check()?;
@@ -156,7 +158,7 @@ impl DrawArguments {
     /// its files are `renamed`.
     ///
     /// # Errors
-    /// Those of `renamed`; [`Error::Setting`](crate::error::Error::Setting) where there is a crop already.
+    /// Those of `renamed`; [`Error::Setting`] where there is a crop already.
     pub fn of_sheet(&self, crop: [f64; 4], area: [f64; 4], renamed: impl Fn(&Path) -> Result<PathBuf>) -> Result<Self> {
         let (terrain, outputs) = (self.terrain.cropped(crop)?, self.outputs.renamed(renamed)?);
         Ok(Self { terrain, outputs, area: Some(area), ..self.clone() })
@@ -164,7 +166,7 @@ impl DrawArguments {
 
     /// The scale of a plan, where one is drawn.
     pub fn scale(&self) -> Option<f64> {
-        self.scale
+        self.scale.filter(|_| self.plan)
     }
 
     /// Opens the DEM.
@@ -180,24 +182,20 @@ impl DrawArguments {
         format!("{:?} {} {}", self.terrain.dems, self.terrain.read_as(), self.drawing.exaggeration)
     }
 
-    /// The name of all that the drawing is made of.
+    /// The names of all that the drawing and its mask are made of, of a DEM that holds this.
     ///
     /// # Errors
-    /// Where the DEM or the style cannot be read.
-    pub fn name(&self, cache: &Cache, talk: &Talk) -> Result<u128> {
-        let dem = self.terrain.content(self.drawing.exaggeration, cache, talk)?;
+    /// As [`Self::check`] and [`plan::check`].
+    pub fn names(&self, dem: &Content) -> Result<[u128; 2]> {
         let naming = Naming::new().with("dem", dem.hash()).with("read", self.terrain.read_as());
-        let naming = match self.scale {
-            Some(scale) => naming.with(
-                "plan",
-                format!("{scale} {:?} {:?} {:?}", self.area, self.drawing.page, self.drawing.style.style()?),
-            ),
-            None => {
-                let view = format!("{:?} {}", self.view, self.drawing.exaggeration);
-                naming.with("view", view).with("drawing", format!("{:?}", self.check()?))
-            }
-        };
-        Ok(naming.name())
+        if let Some(scale) = self.scale() {
+            let of = format!("{scale} {:?} {:?} {:?}", self.area, self.drawing.page, plan::check(self)?);
+            return Ok([naming.with("plan", of).name(); 2]);
+        }
+        let illustration = self.check()?;
+        let seen = naming.with("view", format!("{:?} {}", self.view, self.drawing.exaggeration));
+        let of_mask = seen.clone().with("mask", illustration.of_mask());
+        Ok([seen.with("drawing", format!("{illustration:?}")).name(), of_mask.name()])
     }
 
     /// Warns where a page of it is blank.
@@ -208,8 +206,11 @@ impl DrawArguments {
     /// How it is to be drawn, if the flags go together.
     ///
     /// # Errors
-    /// [`Error::Setting`](crate::error::Error::Setting); as [`styles::find`](crate::ink::styles::find).
+    /// [`Error::Setting`]; as [`styles::find`](crate::ink::styles::find).
     pub fn check(&self) -> Result<Illustration> {
+        if self.scale.is_some() {
+            return Err(Error::setting(Setting::Scale, "goes with a plan only", message!["add ", Setting::Plan]));
+        }
         self.drawing.plan(Wanted::Drawing)?;
         self.view.check()?;
         self.outputs.check()?;

@@ -20,7 +20,7 @@ use super::talk::Talk;
 use super::terrain::{TerrainArguments, warn_of_survey};
 use super::values::Size;
 use super::words::told;
-use super::work::Work;
+use super::work::{CODES, Work};
 use crate::cache::Cache;
 use crate::error::{Error, Result, Setting, shown};
 use crate::files::{Output, Taken};
@@ -28,7 +28,7 @@ use crate::geo::Reading;
 use crate::ink::Preview;
 use crate::job::manifest::Sequence;
 use crate::job::name::Naming;
-use crate::job::{Content, Film, Inks, Job, Manifest};
+use crate::job::{Content, Inks, Job, Manifest};
 use crate::plan::frame::Kept;
 use crate::render::{Estimate, Illustration, Page, Renderer};
 use crate::surface::Surface;
@@ -36,10 +36,6 @@ use crate::view::Flight;
 
 /// The end of `hachure fly --help`.
 const EXAMPLES: &str = "\
-Frames that are there, and made of the same, are not made again: a run that was cut off goes on where it ended. SIGTERM
-finishes the frame at hand; the code is 75 then, as where the device was lost. It never is where trying again would not help:
-a frame that failed, a full disk and too little memory give 1, wrong flags 2.
-
 Examples:
   250 frames along a line of a GeoPackage, 400 m above the ground:
   hachure fly dem/golden-gate.tif --path route.gpkg --height +400 --count 250 -o frames/%05d.png
@@ -57,7 +53,7 @@ Examples:
 
 /// Flags of `hachure fly`, as typed.
 #[derive(Debug, clap::Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = format!("{CODES}\n\n{EXAMPLES}"))]
 pub struct FlyArguments {
     #[command(flatten)]
     terrain: TerrainArguments,
@@ -113,25 +109,32 @@ pub fn run(arguments: &FlyArguments, talk: &Talk) -> Result<()> {
     if arguments.jobs.list {
         return arguments.list(&illustration, &plan, &jobs, &cache, talk);
     }
-    let film = arguments.video.as_deref().map(|path| Film::new(path, plan.fps())).transpose()?;
+    let beside = arguments.flight.files();
+    let named = || Taken::inputs(arguments.terrain.dems.iter().chain(&beside).map(PathBuf::as_path));
     let pictures = arguments.pictures(&files, &jobs)?;
+    let film = arguments.video.as_deref().map(|path| film::of(path, plan.fps(), named(), &pictures)).transpose()?;
     let folder = files.folder();
     Manifest::refuse_others(&folder, &sequence)?;
-    let is_left = jobs.iter().any(|job| !job.is_done());
-    let mut aloft = is_left.then(|| arguments.rise(&plan, &files, &jobs, &cache, talk)).transpose()?;
-    let inks = Inks::of(&illustration.style);
-    let adapter = aloft.as_ref().map(|aloft| aloft.adapter.clone()).unwrap_or_default();
-    let draw = |job: &Job, progress: &Progress| {
-        let Some(Aloft { renderer, flight, adapter }) = &mut aloft else {
-            return Err(Error::mistake("a frame went missing as it was looked at"));
+    let work = Work { sequence, share, called: "frames", jobs, folder, dems: vec![dem] };
+    let progress = Progress::start(talk, arguments.jobs.progress, work.jobs.len());
+    let fly = || {
+        let is_left = work.jobs.iter().any(|job| !job.is_done());
+        let mut aloft = is_left.then(|| arguments.rise(&plan, &files, &work.jobs, &cache, talk)).transpose()?;
+        let adapter = aloft.as_ref().map(|aloft| aloft.adapter.clone()).unwrap_or_default();
+        progress.on(&adapter);
+        let draw = |job: &Job| {
+            let Some(Aloft { renderer, flight, .. }) = &mut aloft else {
+                return Err(Error::mistake("a frame went missing as it was looked at"));
+            };
+            renderer.page(&illustration.plan, &flight.camera(job.number), |_| ())
         };
-        progress.on(adapter);
-        renderer.page(&illustration.plan, &flight.camera(job.number), |_| ())
+        work.run(talk, &progress, draw, |job, page: Page| files.write(job, &page, &illustration, &adapter))?;
+        let inks = Inks::of(&illustration.style);
+        film.as_ref().map_or(Ok(()), |film| film::make(film, &pictures, &inks, &progress, talk))
     };
-    let finish = |job: &Job, page: Page| files.write(job, &page, &illustration, &adapter);
-    let work = Work { sequence, share, called: ["frame", "frames"], jobs, folder, dem: Some(dem) };
-    work.run(talk, arguments.jobs.progress, draw, finish)?;
-    film.map_or(Ok(()), |film| film::make(&film, &pictures, &inks, talk))
+    let flown = fly();
+    progress.end(flown.as_ref().err());
+    flown
 }
 
 impl FlyArguments {
@@ -150,12 +153,14 @@ impl FlyArguments {
         let plan = self.flight.sized(Size { width, height }).plan(self.terrain.allows_remote())?;
         let share = self.jobs.share(plan.count(), "frames")?;
         let dem = self.content(&files.folder(), cache, talk)?;
-        let over = Naming::bare().with("dem", dem.hash()).with("read", self.terrain.read_as());
-        let over = over.with("exaggeration", self.drawing.exaggeration.to_le_bytes());
-        let of_sequence = over.with("flight", plan.hashed());
-        let of_job = Naming::new()
-            .with("sequence", of_sequence.name().to_le_bytes())
-            .with("drawing", format!("{illustration:?}"));
+        let of_sequence = Naming::bare().with("flight", plan.hashed());
+        let seen = Naming::new()
+            .with("dem", dem.hash())
+            .with("read", self.terrain.read_as())
+            .with("exaggeration", self.drawing.exaggeration.to_le_bytes())
+            .with("sequence", of_sequence.name().to_le_bytes());
+        let of_mask = seen.clone().with("mask", illustration.of_mask());
+        let of_job = seen.with("drawing", format!("{illustration:?}"));
         let sequence = Sequence {
             of: format!("a flight of {} frames {}", plan.count(), plan.described()),
             sequence: of_sequence.name(),
@@ -164,28 +169,27 @@ impl FlyArguments {
             fps: Some(plan.fps()),
             inks: Some(Inks::of(&illustration.style)),
         };
-        let job = |n: &u32| files.job(*n, of_job.clone().with("frame", n.to_le_bytes()).name());
+        let name = |naming: &Naming, n: &u32| naming.clone().with("frame", n.to_le_bytes()).name();
+        let job = |n: &u32| files.job(*n, [name(&of_job, n), name(&of_mask, n)]);
         let jobs = share.frames.numbers().iter().map(job).collect();
         Ok(Asked { files, illustration, plan, share, dem, sequence, jobs })
     }
 
-    /// The pictures of a film, where one is wanted, which may be none of them.
+    /// The pictures of a film, where one is wanted.
     fn pictures(&self, files: &FrameFiles, jobs: &[Job]) -> Result<Vec<PathBuf>> {
-        let Some(video) = &self.video else { return Ok(Vec::new()) };
+        if self.video.is_none() {
+            return Ok(Vec::new());
+        }
         let Some(pattern) = files.pictures() else {
             let what = "it is made of the pictures of the frames, which stay";
             return Err(Error::setting(Setting::Video, what, "add --output with a .png: DIR/%05d.png"));
         };
-        if jobs.iter().flat_map(|job| &job.files).any(|made| made.path == *video) {
-            let what = format!("{} is a frame", shown(video));
-            return Err(Error::setting(Setting::Video, what, "give it a name of its own"));
-        }
         Ok(jobs.iter().map(|job| pattern.path(job.number)).collect())
     }
 
     /// What the DEM's files hold: as a manifest of the folder knows, else as the cache does, else found.
     fn content(&self, folder: &Path, cache: &Cache, talk: &Talk) -> Result<Content> {
-        let known = Manifest::all(folder)?.into_iter().filter_map(|manifest| manifest.dem);
+        let known = Manifest::all(folder)?.into_iter().flat_map(|manifest| manifest.dems);
         match known.into_iter().find(|content| content.holds(self.terrain.asked())) {
             Some(known) => Ok(known),
             None => self.terrain.content(self.drawing.exaggeration, cache, talk),
@@ -229,8 +233,8 @@ impl FlyArguments {
         for job in jobs {
             let camera = flight.camera(job.number);
             let estimate = match job.is_done() {
-                true => Estimate::NOTHING,
-                false => listing::estimate(&illustration.plan, &surface, &camera, &mut kept)?,
+                true => Ok(Estimate::NOTHING),
+                false => listing::estimate(&illustration.plan, &surface, &camera, &mut kept),
             };
             listing::tell(job, estimate, talk)?;
         }
@@ -240,7 +244,9 @@ impl FlyArguments {
     /// Reads the DEM, opens the device, and lays the way over the land.
     fn rise(&self, plan: &FlightPlan, files: &FrameFiles, jobs: &[Job], cache: &Cache, talk: &Talk) -> Result<Aloft> {
         let (reading, beside) = (self.open(cache)?, self.flight.files());
-        files.spare(Taken::inputs(reading.files().chain(beside.iter().map(PathBuf::as_path))), jobs)?;
+        let mut inputs = Taken::inputs(reading.files().chain(beside.iter().map(PathBuf::as_path)));
+        self.video.as_deref().map_or(Ok(()), |video| inputs.take(Setting::Video, video))?;
+        files.spare(inputs, jobs)?;
         let surface = Arc::new(scene::surface(&self.terrain, reading, talk)?);
         let gpu = scene::prepare_and_open(&surface, cache, &self.device, talk)?;
         cells::warn(surface.dem(), self.drawing.exaggeration, talk);

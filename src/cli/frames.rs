@@ -1,13 +1,13 @@
 //! Flags that name the numbered files of a sequence, and the writing of these.
 
-use std::fs;
 use std::path::PathBuf;
 
 use super::outputs::Format;
+use super::work;
 use crate::error::{Error, Result, Setting, shown};
 use crate::files::{Output, Taken};
 use crate::ink::{self, Seal};
-use crate::job::{Job, Made, Pattern, name};
+use crate::job::{Job, Made, Pattern};
 use crate::message;
 use crate::render::{Illustration, Page};
 
@@ -80,36 +80,42 @@ impl FrameFiles {
         self.patterns().next().map(Pattern::folder).unwrap_or_default()
     }
 
-    /// The job of a frame whose drawing is made of what has this name.
-    pub fn job(&self, number: u32, name: u128) -> Job {
-        let drawings = self.drawings.iter().map(|(_, pattern)| Made { path: pattern.path(number), name });
-        let mask = self.mask.iter().map(|pattern| Made { path: pattern.path(number), name: name::of_mask(name) });
-        Job { number, files: drawings.chain(mask).collect() }
+    /// The job of a frame whose drawing and whose mask are made of what have these names.
+    pub fn job(&self, number: u32, [drawing, mask]: [u128; 2]) -> Job {
+        let drawings = self.drawings.iter().map(|(_, pattern)| Made { path: pattern.path(number), name: drawing });
+        let mask = self.mask.iter().map(|pattern| Made { path: pattern.path(number), name: mask });
+        Job { number, called: format!("frame {number}"), files: drawings.chain(mask).collect() }
     }
 
-    /// Writes the files of a frame; none has its name before all are whole.
+    /// Writes those files of a frame that are not there; none has its name before all are whole.
     ///
     /// # Errors
     /// [`Error::Output`]; as [`Illustration::drawing`].
     pub fn write(&self, job: &Job, page: &Page, illustration: &Illustration, adapter: &str) -> Result<()> {
         let seal = |made: &Made| Seal { job: made.name, adapter: adapter.to_owned() };
-        let mut outputs = Vec::new();
-        for made in &job.files {
-            let folder = made.path.parent().filter(|folder| !folder.as_os_str().is_empty());
-            folder.map_or(Ok(()), |folder| fs::create_dir_all(folder).map_err(|e| Error::output(folder, &e)))?;
-            outputs.push(Output::create(&made.path)?);
-        }
-        let (drawings, masks) = outputs.split_at_mut(self.drawings.len());
-        if let Some(made) = job.files.first().filter(|_| !drawings.is_empty()) {
+        let formats = self.drawings.iter().map(|(format, _)| Some(*format)).chain([None]);
+        // Another process may have made them meanwhile.
+        let missing: Vec<(Option<Format>, &Made)> =
+            formats.zip(&job.files).filter(|(_, made)| !made.is_there()).collect();
+        let mut outputs = missing.iter().map(|(_, made)| work::create(&made.path)).collect::<Result<Vec<_>>>()?;
+        let of_drawing = missing.iter().find(|(format, _)| format.is_some());
+        let drawing = of_drawing.map(|(_, made)| {
             let (_, mut drawing) = illustration.drawing(page)?;
             drawing.seal = Some(seal(made));
-            for ((format, _), output) in self.drawings.iter().zip(drawings) {
-                output.write(|out| format.write(&drawing, illustration.px_per_mm, out))?;
+            Ok(drawing)
+        });
+        let drawing = drawing.transpose()?;
+        for ((format, made), output) in missing.iter().zip(&mut outputs) {
+            match (format, &drawing) {
+                (Some(format), Some(drawing)) => {
+                    output.write(|out| format.write(drawing, illustration.px_per_mm, out))?;
+                }
+                _ => {
+                    let (marks, seal) = (&page.marks, seal(made));
+                    let size = [marks.width, marks.height];
+                    output.write(|out| ink::write_mask(size, marks.places(), Some(&seal), out))?;
+                }
             }
-        }
-        if let (Some(output), Some(made)) = (masks.first_mut(), job.files.last()) {
-            let (marks, seal) = (&page.marks, seal(made));
-            output.write(|out| ink::write_mask([marks.width, marks.height], marks.places(), Some(&seal), out))?;
         }
         outputs.into_iter().try_for_each(Output::publish)
     }
@@ -127,10 +133,10 @@ impl FrameFiles {
     }
 
     fn each_once(&self) -> Result<()> {
-        let paths: Vec<PathBuf> = self.patterns().map(|pattern| pattern.path(0)).collect();
-        let twice = (1..paths.len()).find(|i| paths[..*i].contains(&paths[*i]));
+        let patterns: Vec<&Pattern> = self.patterns().collect();
+        let twice = (1..patterns.len()).find(|i| patterns[..*i].iter().any(|other| other.meets(patterns[*i])));
         twice.map_or(Ok(()), |i| {
-            let what = format!("{} is another output already", shown(&paths[i]));
+            let what = format!("{} is another output already", shown(&patterns[i].path(0)));
             Err(Error::setting(Setting::Output, what, message!["give each a name of its own"]))
         })
     }

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::talk::Talk;
+use super::words;
 use crate::error::{Error, Result};
 use crate::job::{Job, name};
 use crate::plan::frame::Kept;
@@ -22,6 +23,9 @@ struct Line {
     seconds: f64,
     memory_bytes: u64,
     device_bytes: u64,
+    /// Why it cannot be made.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    error: Option<String>,
 }
 
 /// What a view may take.
@@ -32,12 +36,13 @@ pub fn estimate(plan: &Plan, surface: &Surface, camera: &Camera, kept: &mut Kept
     Estimate::of(&Frame::new(plan, surface, camera, true, kept)?, surface)
 }
 
-/// Prints a job and what it may take, which is nothing where it is done.
+/// Prints a job and what it may take, which is nothing where it is done, or why it cannot be made.
 ///
 /// # Errors
 /// As [`Talk::answer`].
-pub fn tell(job: &Job, estimate: Estimate, talk: &Talk) -> Result<()> {
-    let Estimate { facets, seconds, memory, device } = estimate;
+pub fn tell(job: &Job, estimate: Result<Estimate>, talk: &Talk) -> Result<()> {
+    let error = estimate.as_ref().err().map(words::line);
+    let Estimate { facets, seconds, memory, device } = estimate.unwrap_or(Estimate::NOTHING);
     let line = Line {
         n: job.number,
         files: job.files.iter().map(|made| made.path.to_string_lossy().into_owned()).collect(),
@@ -47,6 +52,7 @@ pub fn tell(job: &Job, estimate: Estimate, talk: &Talk) -> Result<()> {
         seconds: (seconds * 1e3).round() / 1e3,
         memory_bytes: memory,
         device_bytes: device,
+        error,
     };
     talk.answer(&serde_json::to_string(&line).map_err(|error| Error::mistake(error.to_string()))?)
 }

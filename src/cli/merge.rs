@@ -1,11 +1,14 @@
 //! `hachure merge`: whether all that the processes of a sequence were to make is there.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use super::film;
+use super::progress::{Form, Progress};
 use super::talk::Talk;
 use crate::error::{Error, Result, Setting, shown};
-use crate::job::{Film, Frames, Merged};
+use crate::files::Taken;
+use crate::job::{Frames, Merged};
 
 /// The end of `hachure merge --help`.
 const EXAMPLES: &str = "\
@@ -34,14 +37,25 @@ pub struct MergeArguments {
 /// Looks, and says what is missing.
 ///
 /// # Errors
-/// As [`Merged::of`]; [`Error::Incomplete`] where something is missing.
+/// As [`Merged::all`]; [`Error::Incomplete`] where something is missing.
 pub fn run(arguments: &MergeArguments, talk: &Talk) -> Result<()> {
-    let merged = Merged::of(&arguments.folder)?;
+    let all = Merged::all(&arguments.folder)?;
+    all.iter().try_for_each(|merged| tell(merged, &arguments.folder, talk))?;
+    let missing: usize = all.iter().map(Merged::missing).sum();
+    if missing > 0 {
+        let what = format!("{}: {missing} are missing", shown(&arguments.folder));
+        return Err(Error::incomplete(what, "run the command that made the others again: it makes what is missing"));
+    }
+    arguments.video.as_deref().map_or(Ok(()), |video| make(video, &all, &arguments.folder, talk))
+}
+
+/// Says what is there of a sequence, and what is missing.
+fn tell(merged: &Merged, folder: &Path, talk: &Talk) -> Result<()> {
     let (count, whole) = (merged.manifest.count, merged.whole.numbers().len());
     let s = if merged.manifests == 1 { "" } else { "s" };
     talk.answer(&format!(
         "{}: {whole} of {count} are whole, by {} manifest{s} of {}",
-        shown(&arguments.folder),
+        shown(folder),
         merged.manifests,
         merged.manifest.of
     ))?;
@@ -51,25 +65,26 @@ pub fn run(arguments: &MergeArguments, talk: &Talk) -> Result<()> {
     };
     list("missing or not whole", &merged.broken)?;
     list("in no manifest", &merged.unknown)?;
-    if merged.is_whole() {
-        return arguments.video.as_deref().map_or(Ok(()), |video| make(video, &merged, &arguments.folder, talk));
+    let counts: BTreeSet<u32> = merged.absent.iter().map(|shard| shard.count).collect();
+    for count in counts {
+        let shards: Frames =
+            merged.absent.iter().filter(|shard| shard.count == count).map(|shard| shard.index).collect();
+        talk.answer(&format!("never ran: shard {shards} of {count}"))?;
     }
-    merged.absent.iter().try_for_each(|[index, count]| talk.answer(&format!("shard {index}/{count} never ran")))?;
-    merged.failed.iter().try_for_each(|(n, why)| talk.answer(&format!("{n} failed: {why}")))?;
-    let what = format!("{}: {} of {count} are missing", shown(&arguments.folder), count as usize - whole);
-    Err(Error::incomplete(what, "run the command that made the others again: it makes what is missing"))
+    merged.failed.iter().try_for_each(|(n, why)| talk.answer(&format!("{n} failed: {why}")))
 }
 
 /// Makes a motion picture of what is there.
-fn make(video: &Path, merged: &Merged, folder: &Path, talk: &Talk) -> Result<()> {
-    let (Some(fps), Some(inks)) = (merged.manifest.fps, &merged.manifest.inks) else {
-        let what = format!("{} do not move", merged.manifest.of);
-        return Err(Error::setting(Setting::Video, what, "make it of the frames of a flight"));
+fn make(video: &Path, all: &[Merged], folder: &Path, talk: &Talk) -> Result<()> {
+    let flights = all.iter().filter_map(|merged| Some((merged, merged.manifest.fps?, merged.manifest.inks.as_ref()?)));
+    let Some((merged, fps, inks)) = flights.last() else {
+        return Err(Error::setting(Setting::Video, "no flight is in the folder", "make it of the frames of a flight"));
     };
     let Some(pictures) = &merged.pictures else {
         return Err(Error::setting(Setting::Video, "the frames have no pictures", "draw them as .png too"));
     };
-    let film = Film::new(video, fps)?;
     let pictures: Vec<PathBuf> = pictures.iter().map(|path| folder.join(path)).collect();
-    film::make(&film, &pictures, inks, talk)
+    let film = film::of(video, fps, Taken::inputs(pictures.iter().map(PathBuf::as_path)), &pictures)?;
+    let progress = Progress::start(talk, Form::Bar, 0);
+    film::make(&film, &pictures, inks, &progress, talk)
 }

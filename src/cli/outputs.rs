@@ -8,7 +8,6 @@ use serde::Serialize;
 use crate::error::{Error, Result, Setting, shown};
 use crate::files::{Output, Taken};
 use crate::ink::{self, Seal};
-use crate::job::name;
 use crate::render::Page;
 
 /// Flags that name files; `-` is standard output, for one of them.
@@ -40,6 +39,8 @@ pub enum Format {
 pub struct Outputs {
     drawings: Vec<(Format, Output)>,
     mask: Option<Output>,
+    /// What made the mask, where it is to tell.
+    of_mask: Option<Seal>,
     json: Option<Output>,
 }
 
@@ -142,12 +143,18 @@ impl OutputArguments {
                 .map(|path| Ok((Format::of(path).unwrap_or(Format::Png), open(path)?)))
                 .collect::<Result<_>>()?,
             mask: self.mask.as_deref().map(open).transpose()?,
+            of_mask: None,
             json: self.json.as_deref().map(open).transpose()?,
         })
     }
 }
 
 impl Outputs {
+    /// The same, the mask of which tells what made it.
+    pub fn with_mask_of(self, seal: Seal) -> Self {
+        Self { of_mask: Some(seal), ..self }
+    }
+
     /// Whether the report is asked for.
     pub fn want_report(&self) -> bool {
         self.json.is_some()
@@ -170,9 +177,8 @@ impl Outputs {
         }
         if let (Some(mask), Some(page)) = (&mut self.mask, page) {
             let marks = &page.marks;
-            let of_mask = |seal: &Seal| Seal { job: name::of_mask(seal.job), ..seal.clone() };
-            let seal = drawing.seal.as_ref().map(of_mask);
-            mask.write(|out| ink::write_mask([marks.width, marks.height], marks.places(), seal.as_ref(), out))?;
+            let seal = self.of_mask.as_ref();
+            mask.write(|out| ink::write_mask([marks.width, marks.height], marks.places(), seal, out))?;
         }
         if let (Some(json), Some(report)) = (&mut self.json, report) {
             json.write(|out| {

@@ -1,7 +1,7 @@
 //! How far a sequence has come: a bar on a terminal, or lines of JSON for programs.
 //!
-//! Lines go to standard output, one object each: `start`, `frame`, `skip` and `fail` for each job, `done`; `wait` where nothing
-//! else was to be said for a while.
+//! Lines go to standard output, one object each: `start`, `frame`, `skip` and `fail` for each job, `done` at the end, with what
+//! is left and the error that ended it; `wait` where nothing else was to be said for a while.
 
 use std::io::{Write, stdout};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
@@ -13,6 +13,7 @@ use serde_json::{Value, json};
 
 use super::talk::Talk;
 use super::words;
+use crate::error::Error;
 use crate::job::Event;
 
 /// Longest silence.
@@ -79,6 +80,18 @@ impl<'a> Progress<'a> {
         progress
     }
 
+    /// The end: all was done, or an error ended it.
+    pub fn end(&self, error: Option<&Error>) {
+        let counts = self.counts();
+        let Counts { made, skipped, failed } = counts;
+        let (left, s) = (self.jobs.saturating_sub(counts.all()), rounded(self.began.elapsed().as_secs_f64()));
+        let error = error.map(words::line);
+        self.line(|| {
+            json!({"event": "done", "made": made, "skipped": skipped, "failed": failed, "left": left, "s": s, "error": error})
+        });
+        self.talk.progress("", 1.0);
+    }
+
     /// From here on jobs are made on this adapter.
     pub fn on(&self, adapter: &str) {
         *lock(&self.adapter) = Some(adapter.to_owned());
@@ -110,7 +123,7 @@ impl<'a> Progress<'a> {
                 json!({"event": "frame", "n": job.number, "ms": rounded(*ms), "eta_s": rounded(eta), "adapter": adapter})
             }
             Event::Skipped(job) => json!({"event": "skip", "n": job.number}),
-            Event::Failed(job, error) => json!({"event": "fail", "n": job.number, "error": words::line(error)}),
+            Event::Failed(job, error) => json!({"event": "fail", "n": job.number, "name": job.called, "error": words::line(error)}),
         });
         if self.form == Form::Bar {
             let stage = format!("{} of {}, {} left", counts.all(), self.jobs, duration(eta));
@@ -119,14 +132,16 @@ impl<'a> Progress<'a> {
         }
     }
 
-    /// No job is left; what became of them.
-    pub fn done(&self) -> Counts {
-        let counts = *lock(&self.counts);
-        let Counts { made, skipped, failed } = counts;
-        let s = rounded(self.began.elapsed().as_secs_f64());
-        self.line(|| json!({"event": "done", "made": made, "skipped": skipped, "failed": failed, "s": s}));
-        self.talk.progress("", 1.0);
-        counts
+    /// What became of the jobs so far.
+    pub fn counts(&self) -> Counts {
+        *lock(&self.counts)
+    }
+
+    /// A motion picture is made of the frames, of which a share is done.
+    pub fn film(&self, share: f64) {
+        if self.form == Form::Bar {
+            self.talk.progress("making the motion picture", share.min(0.999));
+        }
     }
 
     fn line(&self, line: impl FnOnce() -> Value) {

@@ -69,6 +69,9 @@ pub struct TerrainArguments {
     /// Memory for samples and normals, in B, KiB, MiB, GiB or TiB; of a larger DEM samples are read as they are needed
     #[arg(long, value_name = "SIZE", value_parser = values::bytes, default_value = "1GiB", help_heading = "Surface")]
     memory: u64,
+    /// Whether the crop is a sheet of a map.
+    #[arg(skip)]
+    is_sheet: bool,
 }
 
 impl TerrainArguments {
@@ -105,14 +108,20 @@ impl TerrainArguments {
         let Self { crop, band, cell, order, cell_of, resample, no_warp, fill_voids, .. } = self;
         let Self { elevation_unit, nodata, encoding, keep_steps, generalise, .. } = self;
         let grid = (crop, band, cell, order, cell_of, resample, no_warp, fill_voids);
-        format!("{grid:?} {:?}", (elevation_unit, nodata, encoding, keep_steps, generalise))
+        // Files by their places in the list: on one grid the last one is on top.
+        let names: Vec<_> = self.dems.iter().map(|dem| dem.file_name().unwrap_or_default()).collect();
+        // Of several the finest whose samples fit gives the cells.
+        let memory = (self.dems.len() > 1 && cell_of.is_none()).then_some(self.memory);
+        format!("{grid:?} {:?}", (names, memory, elevation_unit, nodata, encoding, keep_steps, generalise))
     }
 
-    /// Which files are read, and how, wherever from they are named.
+    /// Which files are read, wherever from they are named; of which some may lie outside a crop, but not of sheets, which
+    /// share them.
     pub fn asked(&self) -> u128 {
         let absolute = |path: &PathBuf| std::path::absolute(path).unwrap_or_else(|_| path.clone());
         let dems: Vec<PathBuf> = self.dems.iter().map(absolute).collect();
-        Naming::bare().with("files", format!("{dems:?}")).with("read", self.read_as()).name()
+        let crop = self.crop.filter(|_| !self.is_sheet);
+        Naming::bare().with("files", format!("{dems:?} {crop:?} {:?} {:?}", self.cell_of, self.band)).name()
     }
 
     /// What the DEM's files hold, known or found.
@@ -122,7 +131,8 @@ impl TerrainArguments {
     pub fn content(&self, exaggeration: f64, cache: &Cache, talk: &Talk) -> Result<Content> {
         let of = self.dems.iter().map(|dem| dem.display().to_string()).collect::<Vec<_>>().join(", ");
         let files = || {
-            let reading = self.open(&self.dems, exaggeration, cache.clone())?;
+            let whole = Self { crop: self.crop.filter(|_| !self.is_sheet), ..self.clone() };
+            let reading = whole.open(&self.dems, exaggeration, cache.clone())?;
             Ok(reading.files().map(Path::to_owned).collect::<Vec<_>>())
         };
         cache.content(self.asked(), &of, &|message| talk.warn(&told(message)), files)
@@ -134,7 +144,7 @@ impl TerrainArguments {
     /// [`Error::Setting`] where it is a part already.
     pub fn cropped(&self, crop: [f64; 4]) -> Result<Self> {
         match self.crop {
-            None => Ok(Self { crop: Some(crop), ..self.clone() }),
+            None => Ok(Self { crop: Some(crop), is_sheet: true, ..self.clone() }),
             Some(_) => Err(Error::setting(Setting::Crop, "each sheet is a part by itself", "leave it out")),
         }
     }

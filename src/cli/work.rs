@@ -1,16 +1,17 @@
 //! What every subcommand that makes many drawings does about them: manifest, progress, what is said at the end.
 
-use std::fs;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
+use std::{fs, io};
 
 use super::jobs::Share;
-use super::progress::{Counts, Form, Progress, duration};
+use super::progress::{Counts, Progress, duration};
 use super::talk::Talk;
 use super::words;
 use crate::error::{Error, Result, shown};
-use crate::files::signals;
+use crate::files::{Output, output, signals};
 use crate::job::manifest::Sequence;
 use crate::job::{self, Content, Event, Job, Manifest};
 
@@ -23,14 +24,32 @@ pub struct Work<'a> {
     pub sequence: Sequence,
     /// Which of them.
     pub share: Share,
-    /// One of them, and several, in words.
-    pub called: [&'a str; 2],
+    /// They, in words.
+    pub called: &'a str,
     /// They.
     pub jobs: Vec<Job>,
     /// Where the manifest stands.
     pub folder: PathBuf,
-    /// What the files of the one DEM hold.
-    pub dem: Option<Content>,
+    /// What the files of DEMs hold.
+    pub dems: Vec<Content>,
+}
+
+/// Temporary files that nobody has written to for so long are of a process that was killed.
+const LEFT: Duration = Duration::from_secs(600);
+/// The end of help texts, on codes.
+pub const CODES: &str = "\
+What is there, and made of the same, is not made again: a run that was cut off goes on where it ended. SIGTERM and Ctrl-C
+finish what is at hand; the code is 75 then, as where the device was lost: try again. It never is where trying again would not
+help: what failed by itself, a full disk and too little memory give 1, wrong flags 2.";
+
+/// Opens an output, whose folder is made where it is not there.
+///
+/// # Errors
+/// [`Error::Output`].
+pub fn create(path: &Path) -> Result<Output> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    folder.map_or(Ok(()), |folder| fs::create_dir_all(folder).map_err(|error| Error::output(folder, &error)))?;
+    Output::create(path)
 }
 
 /// A manifest that is written from time to time.
@@ -48,52 +67,61 @@ impl Work<'_> {
     pub fn run<'j, P: Send>(
         &'j self,
         talk: &Talk,
-        form: Form,
-        draw: impl FnMut(&'j Job, &Progress) -> Result<P>,
+        progress: &Progress,
+        draw: impl FnMut(&'j Job) -> Result<P>,
         finish: impl Fn(&'j Job, P) -> Result<()> + Sync,
     ) -> Result<()> {
         let began = Instant::now();
         Manifest::refuse_others(&self.folder, &self.sequence)?;
-        fs::create_dir_all(&self.folder).map_err(|error| Error::output(&self.folder, &error))?;
+        self.prepare()?;
         let noted = self.noted()?;
-        signals::finish_first();
-        let progress = Progress::start(talk, form, self.jobs.len());
+        let finishing = signals::finish_first();
         let first = Mutex::new(None);
         let hear = |event: Event<'_>| {
             progress.hear(&event);
             if let Event::Failed(job, error) = event {
                 let line = words::line(error);
-                talk.warn(&format!("{} {} failed: {line}", self.called[0], job.number));
+                talk.warn(&format!("{} failed: {line}", job.called));
                 first.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(line);
             }
-            noted.note(&event, &progress);
+            noted.note(&event, progress);
         };
-        let mut draw = draw;
-        let done = job::run(&self.jobs, |job| draw(job, &progress), finish, &hear);
-        let written = noted.write(&progress);
-        let counts = progress.done();
+        let done = job::run(&self.jobs, draw, finish, &hear);
+        drop(finishing);
+        let written = noted.write(progress);
+        let counts = progress.counts();
         done.and(written)?;
         self.tell(counts, began, talk)?;
         let first = first.into_inner().unwrap_or_else(PoisonError::into_inner);
         match first {
             None => Ok(()),
             Some(first) => {
-                let of = format!(
-                    "{} of {} {} failed, the first with: {first}",
-                    counts.failed,
-                    self.jobs.len(),
-                    self.called[1]
-                );
+                let of =
+                    format!("{} of {} {} failed, the first with: {first}", counts.failed, self.jobs.len(), self.called);
                 Err(Error::incomplete(of, "mend that; the same command makes what is missing"))
             }
         }
+    }
+
+    /// Makes the folders, sees whether they can be written to, and removes what a process that was killed has left there.
+    fn prepare(&self) -> Result<()> {
+        let files = self.jobs.iter().flat_map(|job| &job.files);
+        let folders: BTreeSet<&Path> = files.filter_map(|made| made.path.parent()).collect();
+        for folder in folders.into_iter().chain([self.folder.as_path()]) {
+            let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+            let failed = |error: io::Error| Error::output(folder, &error);
+            fs::create_dir_all(folder).map_err(failed)?;
+            tempfile::tempfile_in(folder).map_err(failed)?;
+            output::remove_left(folder, LEFT);
+        }
+        Ok(())
     }
 
     fn noted(&self) -> Result<Noted<'_>> {
         let Share { part, shard, .. } = &self.share;
         let mut manifest = Manifest::new(&self.sequence, *shard, part.as_ref(), &self.jobs, &self.folder);
         manifest = manifest.after(&self.folder);
-        manifest.dem = self.dem.clone();
+        manifest.dems = self.dems.clone();
         manifest.write(&self.folder)?;
         Ok(Noted { manifest: Mutex::new((manifest, Instant::now())), folder: &self.folder })
     }
@@ -103,7 +131,7 @@ impl Work<'_> {
         talk.say(&format!(
             "{}: {made} {} drawn, {skipped} were there{failed}, {}",
             shown(&self.folder),
-            self.called[1],
+            self.called,
             duration(began.elapsed().as_secs_f64())
         ))
     }

@@ -2,9 +2,11 @@
 //! one file, and what is said of mistakes in those that people write.
 
 pub mod identity;
+mod names;
 pub mod output;
 pub mod signals;
 pub mod typed;
 
 pub use identity::{Identity, Taken};
+pub use names::{relative, straight};
 pub use output::Output;

@@ -11,10 +11,14 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
 
 use tempfile::TempPath;
 
 use crate::error::{Error, Result, shown};
+
+/// What names of temporary files begin with.
+const TEMPORARY: &str = ".hachure-";
 
 /// A file being made, or bytes for standard output.
 #[derive(Debug)]
@@ -41,7 +45,7 @@ impl Output {
     ///
     /// [`Error::Output`] where the folder is missing or cannot be written, or `path` is there and no regular file.
     pub fn create(path: &Path) -> Result<Self> {
-        Self::create_as(path, ".hachure-")
+        Self::create_as(path, TEMPORARY)
     }
 
     /// The same with a temporary name that begins so.
@@ -150,6 +154,18 @@ impl Output {
             Place::Stdout(bytes) => print(&bytes),
         };
         published.map_err(|why| Error::output(&self.path, &why))
+    }
+}
+
+/// Removes temporary files of outputs in a folder that nobody has written to for so long: of processes that were killed.
+pub fn remove_left(folder: &Path, age: Duration) {
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let is_ours = entry.file_name().as_encoded_bytes().starts_with(TEMPORARY.as_bytes());
+        let modified = entry.metadata().and_then(|about| about.modified());
+        if is_ours && modified.is_ok_and(|at| at.elapsed().is_ok_and(|elapsed| elapsed > age)) {
+            // What cannot be removed stays.
+            let _ = fs::remove_file(entry.path());
+        }
     }
 }
 

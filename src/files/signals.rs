@@ -33,9 +33,21 @@ pub fn end_when_asked(code: i32) -> io::Result<()> {
     .map_err(io::Error::other)
 }
 
-/// From here on the work looks by itself whether the process [is asked](is_asked) to end; asked again, it ends at once.
-pub fn finish_first() {
+/// Work that comes to an end by itself, as long as this is there.
+pub struct Finishing(());
+
+/// As long as what it gives is there, the work looks by itself whether the process [is asked](is_asked) to end; asked again, it
+/// ends at once.
+#[must_use]
+pub fn finish_first() -> Finishing {
     FINISHES.store(true, Ordering::SeqCst);
+    Finishing(())
+}
+
+impl Drop for Finishing {
+    fn drop(&mut self) {
+        FINISHES.store(false, Ordering::SeqCst);
+    }
 }
 
 /// Whether the process was asked to end.

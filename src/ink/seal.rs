@@ -5,7 +5,7 @@
 //! asked.
 
 use std::fmt::{self, Display, Formatter};
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
 
@@ -45,6 +45,10 @@ impl Seal {
     /// # Errors
     /// The system's, above all where there is no such file.
     pub fn job_of(path: &Path) -> io::Result<Option<u128>> {
+        // A pipe would be waited for.
+        if !fs::metadata(path)?.is_file() {
+            return Ok(None);
+        }
         let (mut file, mut head, mut tail) = (File::open(path)?, Vec::new(), Vec::new());
         (&mut file).take(HEAD).read_to_end(&mut head)?;
         file.seek(SeekFrom::Start(file.metadata()?.len().saturating_sub(TAIL)))?;

@@ -1,9 +1,12 @@
 //! What a DEM's files hold, as one hash, so that a frame is known to be of the same DEM wherever that lies.
 //!
-//! All bytes are hashed once; the outcome is kept by path, size and time of each file, in the cache and in the manifest of a
-//! folder. Cost: a read of the files; a look at each of them where it is kept. Not handled: files on a network, which count by
-//! their names alone, and files changed within the resolution of their times.
+//! All bytes are hashed once, with the name of each file, which some formats take for a part of it; the outcome is kept by path,
+//! size and time of each file, in the cache and in the manifest of a folder. A file that appears beside them under one of their
+//! names may belong to them: then all are looked for anew. Cost: a read of the files; a look at each of them and at their
+//! folders where it is kept. Not handled: files on a network, which count by their names alone, and files changed within the
+//! resolution of their times.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -18,7 +21,7 @@ use crate::cache::{Cache, Hearing, Key, Kind};
 use crate::error::{Error, Message, Result};
 
 const KIND: Kind =
-    Kind { name: "content", format: 1, words: ["what the DEM's files hold", "what is known of the DEM's files"] };
+    Kind { name: "content", format: 2, words: ["what the DEM's files hold", "what is known of the DEM's files"] };
 /// Bytes read at a time.
 const BUFFER: usize = 1 << 20;
 
@@ -28,6 +31,8 @@ pub struct Content {
     /// What was asked for, files and ways of reading: 32 digits.
     asked: String,
     files: Vec<Stamp>,
+    /// Names beside them that begin as theirs do: 32 digits.
+    beside: String,
     /// Of all their bytes: 32 digits.
     hash: String,
 }
@@ -38,14 +43,17 @@ struct Stamp {
     path: PathBuf,
     bytes: u64,
     /// Nanoseconds since 1970.
-    modified: u64,
+    modified: i64,
 }
 
 impl Stamp {
     fn of(path: &Path) -> io::Result<Self> {
         let about = fs::metadata(path)?;
-        let since = about.modified()?.duration_since(SystemTime::UNIX_EPOCH).map_err(io::Error::other)?;
-        Ok(Self { path: path.to_owned(), bytes: about.len(), modified: since.as_nanos() as u64 })
+        let modified = match about.modified()?.duration_since(SystemTime::UNIX_EPOCH) {
+            Ok(since) => since.as_nanos() as i64,
+            Err(before) => -(before.duration().as_nanos() as i64),
+        };
+        Ok(Self { path: path.to_owned(), bytes: about.len(), modified })
     }
 }
 
@@ -55,10 +63,16 @@ impl Content {
         &self.hash
     }
 
+    /// Whether it is what was asked for, whatever became of the files.
+    pub fn is_of(&self, asked: u128) -> bool {
+        self.asked == name::text(asked)
+    }
+
     /// Whether it is what was asked for, and no file has changed since.
     pub fn holds(&self, asked: u128) -> bool {
         let same = |stamp: &Stamp| Stamp::of(&stamp.path).is_ok_and(|now| now == *stamp);
-        self.asked == name::text(asked) && self.files.iter().all(same)
+        let paths = || self.files.iter().map(|stamp| stamp.path.as_path());
+        self.asked == name::text(asked) && self.files.iter().all(same) && self.beside == beside(paths())
     }
 
     /// Reads all files.
@@ -75,19 +89,47 @@ impl Content {
             Ok((Some(stamp), digest(path).map_err(failed)?))
         };
         let read = files.par_iter().map(read).collect::<Result<Vec<_>>>()?;
-        // Names of files play no part: a DEM that was moved is the same, in whatever order its files are listed then.
-        let mut hashes: Vec<u128> = read.iter().map(|(_, hash)| *hash).collect();
-        hashes.sort_unstable();
-        let naming = hashes.iter().fold(Naming::bare(), |naming, hash| naming.with("file", hash.to_le_bytes()));
+        // Folders play no part: a DEM that was moved is the same.
+        let naming = files.iter().zip(&read).fold(Naming::bare(), |naming, (path, (_, hash))| {
+            let name = path.file_name().unwrap_or_default().as_encoded_bytes();
+            naming.with("name", name).with("bytes", hash.to_le_bytes())
+        });
+        let beside = beside(files.iter().map(PathBuf::as_path));
         let files = read.into_iter().filter_map(|(stamp, _)| stamp).collect();
-        Ok(Self { asked: name::text(asked), files, hash: name::text(naming.name()) })
+        Ok(Self { asked: name::text(asked), files, beside, hash: name::text(naming.name()) })
     }
 }
 
-/// Of a file's bytes; of a folder, which some formats are, those of nothing.
+/// Of the names in the folders of files that begin as one of the files there does, up to its first dot.
+fn beside<'a>(files: impl Iterator<Item = &'a Path>) -> String {
+    let mut folders: BTreeMap<&Path, BTreeSet<Vec<u8>>> = BTreeMap::new();
+    for file in files {
+        let name = file.file_name().unwrap_or_default().as_encoded_bytes();
+        let stem = name.split(|byte| *byte == b'.').next().unwrap_or_default();
+        folders.entry(file.parent().unwrap_or(Path::new(""))).or_default().insert(stem.to_ascii_lowercase());
+    }
+    let mut naming = Naming::bare();
+    for (folder, stems) in folders {
+        let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+        let names = entries.map(|entry| entry.file_name().as_encoded_bytes().to_ascii_lowercase());
+        let stem = |name: &[u8]| name.split(|byte| *byte == b'.').next().unwrap_or_default().to_vec();
+        let mut names: Vec<Vec<u8>> = names.filter(|name| stems.contains(&stem(name))).collect();
+        names.sort_unstable();
+        naming = names.iter().fold(naming.with("folder", []), |naming, name| naming.with("beside", name));
+    }
+    name::text(naming.name())
+}
+
+/// Of a file's bytes; of a folder, which some formats are, of all in it.
 fn digest(path: &Path) -> io::Result<u128> {
     let mut hash = Xxh3::new();
     if path.is_dir() {
+        let mut entries = fs::read_dir(path)?.map(|entry| Ok(entry?.path())).collect::<io::Result<Vec<_>>>()?;
+        entries.sort();
+        for entry in entries {
+            hash.update(entry.file_name().unwrap_or_default().as_encoded_bytes());
+            hash.update(&digest(&entry)?.to_le_bytes());
+        }
         return Ok(hash.digest128());
     }
     let (mut file, mut buffer) = (File::open(path)?, vec![0; BUFFER]);

@@ -1,7 +1,7 @@
 //! Does jobs one after the other: the caller's thread draws, a second one writes, so that the device works while files are
 //! made.
 //!
-//! A job that is done is skipped; before each the files are looked at anew, so that two processes at the same jobs share them.
+//! A job that is done is skipped; its files are looked at right before, so that two processes at the same jobs do no harm.
 //! One that fails costs itself alone, but for what would fail all others too: a lost device, a disk that is full. Asked to
 //! end, the jobs under way are finished. At most three drawings are in memory at a time.
 
@@ -30,7 +30,7 @@ pub enum Event<'a> {
 /// thread.
 ///
 /// # Errors
-/// What would fail all other jobs too: [`Error::DeviceLost`], [`Error::Output`] for a disk without room;
+/// What would fail all other jobs too: [`Error::DeviceLost`], [`Error::NoAdapter`], [`Error::Output`] for a disk without room;
 /// [`Error::Ended`] where the process was asked to end.
 pub fn run<'a, P: Send>(
     jobs: &'a [Job],
@@ -99,7 +99,7 @@ pub fn run<'a, P: Send>(
 /// Whether all other jobs would fail for the same reason.
 fn is_fatal(error: &Error) -> bool {
     match error {
-        Error::DeviceLost { .. } => true,
+        Error::DeviceLost { .. } | Error::NoAdapter { .. } => true,
         Error::Output { why, .. } => {
             matches!(why, ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::ReadOnlyFilesystem)
         }

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Content, Frames, Inks, Job, Shard, name};
 use crate::error::{Error, Result};
-use crate::files::Output;
+use crate::files::{Output, relative};
 
 /// Number of what a manifest holds: raised when that changes.
 const FORMAT: u32 = 1;
@@ -42,8 +42,8 @@ pub struct Manifest {
     pub fps: Option<f64>,
     /// What its pictures are drawn with.
     pub inks: Option<Inks>,
-    /// The DEM's files and what they hold; none where there are several DEMs.
-    pub dem: Option<Content>,
+    /// The files of each DEM and what they hold.
+    pub dems: Vec<Content>,
     /// Adapter and driver, once they are known.
     pub adapter: Option<String>,
     /// Its jobs.
@@ -94,11 +94,9 @@ pub struct Sequence {
 impl Manifest {
     /// Of what is to be done in `folder`.
     pub fn new(sequence: &Sequence, shard: Shard, part: Option<&Frames>, jobs: &[Job], folder: &Path) -> Self {
-        let absolute = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-        let from_here = |path: &Path| path.strip_prefix(folder).map_or_else(|_| absolute(path), Path::to_owned);
         let entry = |job: &Job| Entry {
             n: job.number,
-            files: job.files.iter().map(|made| (from_here(&made.path), name::text(made.name))).collect(),
+            files: job.files.iter().map(|made| (relative(folder, &made.path), name::text(made.name))).collect(),
             ms: None,
             failed: None,
         };
@@ -113,17 +111,19 @@ impl Manifest {
             part: part.map(Frames::to_string),
             fps: sequence.fps,
             inks: sequence.inks.clone(),
-            dem: None,
+            dems: Vec::new(),
             adapter: None,
             jobs: jobs.iter().map(entry).collect(),
         }
     }
 
-    /// What it is called: after its shard, and after the jobs of which it is one where those are not all.
+    /// What it is called: after its sequence where a folder may hold several, after its shard, and after the jobs of which
+    /// it is one where those are not all.
     pub fn file_name(&self) -> String {
         let [index, count] = self.shard;
+        let sequence = self.fps.is_none().then(|| format!("{:.8}-", self.sequence)).unwrap_or_default();
         let part = self.part.as_ref().map(|part| format!("-{:08x}", xxhash_rust::xxh3::xxh3_64(part.as_bytes()) >> 32));
-        format!("{PREFIX}{index}-of-{count}{}{SUFFIX}", part.unwrap_or_default())
+        format!("{PREFIX}{sequence}{index}-of-{count}{}{SUFFIX}", part.unwrap_or_default())
     }
 
     /// With what an older one of the same jobs, if there is one, tells of how they went.
@@ -189,17 +189,19 @@ impl Manifest {
         }
     }
 
-    /// Refuses a folder that holds another sequence, whose files would be mixed with ours.
+    /// Refuses a folder that holds another flight, whose frames would be mixed with ours.
     ///
     /// # Errors
     /// [`Error::Input`].
     pub fn refuse_others(folder: &Path, sequence: &Sequence) -> Result<()> {
         let ours = name::text(sequence.sequence);
-        match Self::all(folder)?.into_iter().find(|other| other.sequence != ours) {
+        let moves = |other: &Self| other.fps.is_some() && sequence.fps.is_some();
+        match Self::all(folder)?.into_iter().find(|other| other.sequence != ours && moves(other)) {
             None => Ok(()),
             Some(other) => {
                 let file = folder.join(other.file_name());
-                let what = format!("it is the manifest of {}, this is {}", other.of, sequence.of);
+                let differs = if other.of == sequence.of { " that takes another way" } else { "" };
+                let what = format!("it is the manifest of {}, this is {}{differs}", other.of, sequence.of);
                 Err(Error::input(&file, what, "give another folder, or remove the manifest to draw over what is there"))
             }
         }

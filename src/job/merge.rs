@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use super::manifest::Entry;
-use super::{Frames, Made, Manifest, name};
+use super::{Frames, Made, Manifest, Shard, name};
 use crate::error::{Error, Result};
 
 /// What the manifests of a folder say together, and what of it is there.
@@ -20,8 +20,8 @@ pub struct Merged {
     pub broken: Frames,
     /// Jobs that no manifest names.
     pub unknown: Frames,
-    /// Shards without a manifest, where the folder knows of some of as many.
-    pub absent: Vec<[u32; 2]>,
+    /// Shards without a manifest that would hold some of those, where the folder knows of some of as many.
+    pub absent: Vec<Shard>,
     /// Of each job the first picture of its drawing, from the folder; `None` where one has none.
     pub pictures: Option<Vec<PathBuf>>,
     /// Why jobs failed that are not whole.
@@ -29,23 +29,29 @@ pub struct Merged {
 }
 
 impl Merged {
-    /// Of a folder.
+    /// Of each sequence in a folder, in the order of their manifests.
     ///
     /// # Errors
-    /// [`Error::Input`] where there is no manifest, one cannot be read, or they are not of one sequence in one look.
-    pub fn of(folder: &Path) -> Result<Self> {
-        let manifests = Manifest::all(folder)?;
-        let Some(first) = manifests.first().cloned() else {
+    /// [`Error::Input`] where there is no manifest, one cannot be read, or those of a sequence are not of one look.
+    pub fn all(folder: &Path) -> Result<Vec<Self>> {
+        let mut sequences: Vec<Vec<Manifest>> = Vec::new();
+        for manifest in Manifest::all(folder)? {
+            match sequences.iter_mut().find(|others| others[0].sequence == manifest.sequence) {
+                Some(others) => others.push(manifest),
+                None => sequences.push(vec![manifest]),
+            }
+        }
+        if sequences.is_empty() {
             return Err(Error::input(folder, "no manifest is in it", "give a folder into which frames were drawn"));
-        };
-        if let Some(other) =
-            manifests.iter().find(|other| (&other.sequence, &other.job) != (&first.sequence, &first.job))
-        {
-            let what = match other.sequence == first.sequence {
-                true => format!("{} is of another look than {}", other.file_name(), first.file_name()),
-                false => format!("{} is of {}, {} of {}", other.file_name(), other.of, first.file_name(), first.of),
-            };
-            return Err(Error::input(folder, what, "remove the manifest of what is not wanted"));
+        }
+        sequences.iter().map(|manifests| Self::of(folder, manifests)).collect()
+    }
+
+    fn of(folder: &Path, manifests: &[Manifest]) -> Result<Self> {
+        let first = manifests[0].clone();
+        if let Some(other) = manifests.iter().find(|other| other.job != first.job) {
+            let what = format!("{} is of another look than {}", other.file_name(), first.file_name());
+            return Err(Error::input(folder, what, "remove the manifest of the look that is not wanted"));
         }
         let mut entries: BTreeMap<u32, &Entry> = BTreeMap::new();
         for entry in manifests.iter().flat_map(|manifest| &manifest.jobs) {
@@ -64,7 +70,7 @@ impl Merged {
         Ok(Self {
             manifests: manifests.len(),
             unknown: (0..first.count).filter(|n| !entries.contains_key(n)).collect(),
-            absent: absent(&manifests),
+            absent: absent(manifests, first.count, &entries),
             failed: broken.iter().filter_map(|entry| Some((entry.n, entry.failed.clone()?))).collect(),
             whole: whole.iter().map(|entry| entry.n).collect(),
             broken: broken.iter().map(|entry| entry.n).collect(),
@@ -73,16 +79,27 @@ impl Merged {
         })
     }
 
-    /// Whether nothing is missing.
-    pub fn is_whole(&self) -> bool {
-        self.whole.numbers().len() == self.manifest.count as usize
+    /// How many jobs are not whole.
+    pub fn missing(&self) -> usize {
+        (self.manifest.count as usize).saturating_sub(self.whole.numbers().len())
     }
 }
 
-/// Of each number of shards that some manifest has, the shards without one.
-fn absent(manifests: &[Manifest]) -> Vec<[u32; 2]> {
-    let shards: BTreeSet<[u32; 2]> = manifests.iter().map(|manifest| manifest.shard).collect();
-    let counts: BTreeSet<u32> = shards.iter().map(|[_, count]| *count).collect();
-    let all = counts.iter().flat_map(|count| (0..*count).map(move |index| [index, *count]));
-    all.filter(|shard| !shards.contains(shard)).collect()
+/// Shards without a manifest that would hold a job of which no manifest knows, where one of as many shards of the same jobs has
+/// one.
+fn absent(manifests: &[Manifest], count: u32, known: &BTreeMap<u32, &Entry>) -> Vec<Shard> {
+    let mut absent = BTreeSet::new();
+    for manifest in manifests {
+        let of = manifest.shard[1];
+        let all = manifest.part.as_ref().and_then(|part| part.parse().ok()).unwrap_or_else(|| Frames::first(count));
+        let is_there = |shard: Shard| {
+            let same = |other: &&Manifest| other.part == manifest.part && other.shard == [shard.index, shard.count];
+            manifests.iter().find(same).is_some()
+        };
+        let lacks = |shard: Shard| shard.of(&all).numbers().iter().any(|n| !known.contains_key(n));
+        let shards = (0..of).map(|index| Shard { index, count: of });
+        absent
+            .extend(shards.filter(|shard| !is_there(*shard) && lacks(*shard)).map(|shard| [shard.count, shard.index]));
+    }
+    absent.into_iter().map(|[count, index]| Shard { index, count }).collect()
 }

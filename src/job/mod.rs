@@ -34,6 +34,8 @@ pub use shard::Shard;
 pub struct Job {
     /// Its place among all jobs, from 0 on.
     pub number: u32,
+    /// In words.
+    pub called: String,
     /// The files it makes.
     pub files: Vec<Made>,
 }

@@ -48,11 +48,6 @@ impl Default for Naming {
     }
 }
 
-/// The name of a mask, which goes with drawings of that name: both are pictures.
-pub fn of_mask(drawing: u128) -> u128 {
-    Naming::bare().with("mask", drawing.to_le_bytes()).name()
-}
-
 /// The name as text: 32 digits.
 pub fn text(name: u128) -> String {
     format!("{name:032x}")

@@ -3,6 +3,8 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::files::straight;
+
 /// Most digits.
 const MOST: usize = 12;
 
@@ -52,6 +54,15 @@ impl Pattern {
     pub fn path(&self, number: u32) -> PathBuf {
         let Self { before, digits, after } = self;
         PathBuf::from(format!("{before}{number:0digits$}{after}"))
+    }
+
+    /// Whether both may name one file, if only of other numbers.
+    pub fn meets(&self, other: &Self) -> bool {
+        let plain = |pattern: &Self| {
+            let path = Self { digits: MOST, ..pattern.clone() }.path(0);
+            straight(&std::path::absolute(&path).unwrap_or(path))
+        };
+        plain(self) == plain(other)
     }
 
     /// The folder in which its files stand.

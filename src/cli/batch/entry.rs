@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 use std::ops::Range;
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
 use clap::{CommandFactory, Parser};
 use toml::Spanned;
@@ -14,10 +14,10 @@ use crate::cli::plan;
 use crate::cli::talk::Talk;
 use crate::cli::words;
 use crate::error::{Error, Result, Setting, shown};
-use crate::files::Taken;
 use crate::files::typed::{self, meant, place};
-use crate::job::name::{self, Naming};
-use crate::job::{Job, Made};
+use crate::files::{Taken, straight};
+use crate::job::name::Naming;
+use crate::job::{Content, Job, Made};
 
 /// Keys of a drawing that are no flags of it.
 const OWN: [&str; 2] = ["name", "dem"];
@@ -33,6 +33,30 @@ pub struct Entry {
     pub called: String,
     /// As if typed.
     pub draw: DrawArguments,
+}
+
+/// What the files of DEMs hold, as far as it is known.
+pub struct Contents<'a> {
+    /// So far.
+    pub known: Vec<Content>,
+    /// Where it is kept.
+    pub cache: &'a Cache,
+    /// Hears of what is wrong with that.
+    pub talk: &'a Talk,
+}
+
+impl Contents<'_> {
+    /// Of a drawing's DEM.
+    fn of(&mut self, draw: &DrawArguments) -> Result<Content> {
+        let asked = draw.terrain.asked();
+        if let Some(known) = self.known.iter().find(|content| content.holds(asked)) {
+            return Ok(known.clone());
+        }
+        let found = draw.terrain.content(draw.drawing.exaggeration, self.cache, self.talk)?;
+        self.known.retain(|content| !content.is_of(asked));
+        self.known.push(found.clone());
+        Ok(found)
+    }
 }
 
 /// Reads flags as `hachure draw` does.
@@ -134,18 +158,26 @@ impl Source<'_> {
     fn entry(&self, n: u32, span: &Range<usize>, defaults: &Keys, own: &Keys) -> Result<Entry> {
         let is_own = |flag: &String| own.iter().any(|(other, ..)| other == flag);
         let keys = own.iter().chain(defaults.iter().filter(|(flag, ..)| !is_own(flag)));
-        let (mut called, mut words) = (format!("drawing {n}"), Vec::new());
+        let (mut called, mut words, mut dems) = (format!("drawing {n}"), Vec::new(), Vec::new());
         for (flag, span, value) in keys {
             let texts = self.texts(span, value)?;
             match (flag.as_str(), *value) {
                 ("name", _) => called = texts.join(" "),
-                ("dem", _) => words.extend(texts),
+                ("dem", _) => dems = texts,
                 (_, DeValue::Boolean(true)) => words.push(format!("--{flag}")),
                 (_, DeValue::Boolean(false)) => {}
                 ("output", _) => words.extend(texts.into_iter().map(|text| format!("--{flag}={text}"))),
+                (_, DeValue::Array(_))
+                    if texts.iter().any(|text| text.parse::<f64>().is_err() && !text.starts_with('+')) =>
+                {
+                    return Err(self.wrong(span.clone(), format!("`{flag}` takes no list"), "give one value"));
+                }
                 _ => words.push(format!("--{flag}={}", texts.join(","))),
             }
         }
+        // Whatever they are called, they are no flags.
+        words.push("--".to_owned());
+        words.append(&mut dems);
         // The key that is spoken of, where it can be told; it may be one of the defaults.
         let spoken = |text: &str| {
             let keys = own.iter().chain(defaults);
@@ -161,13 +193,11 @@ impl Source<'_> {
             Some(_) => plan::check(&entry.draw).map(drop),
             None => entry.draw.check().map(drop),
         };
-        checked.map_err(|e| match &e {
-            Error::Setting { .. } => {
-                let what = format!("{}: {}", entry.called, words::line(&e));
-                self.wrong(spoken(&what), what, AS_DRAWN)
-            }
-            _ => e,
-        })?;
+        // What cannot be read fails as the drawing is made.
+        if let Err(e @ Error::Setting { .. }) = checked {
+            let what = format!("{}: {}", entry.called, words::line(&e));
+            return Err(self.wrong(spoken(&what), what, AS_DRAWN));
+        }
         if entry.draw.fill_stdout() {
             return Err(self.wrong(
                 span.clone(),
@@ -182,7 +212,9 @@ impl Source<'_> {
     fn texts(&self, span: &Range<usize>, value: &DeValue) -> Result<Vec<String>> {
         Ok(vec![match value {
             DeValue::String(text) => text.to_string(),
-            DeValue::Integer(number) => number.as_str().replace('_', ""),
+            DeValue::Integer(number) => i64::from_str_radix(&number.as_str().replace('_', ""), number.radix())
+                .map_err(|_| self.wrong(span.clone(), "it is out of range", "want a smaller number"))?
+                .to_string(),
             DeValue::Float(number) => number.as_str().replace('_', ""),
             DeValue::Boolean(flag) => flag.to_string(),
             DeValue::Array(list) => {
@@ -225,18 +257,6 @@ pub fn each_output_once(file: &Path, entries: &[Entry]) -> Result<()> {
     Ok(())
 }
 
-/// A path without `.` and `..`.
-fn straight(path: &Path) -> PathBuf {
-    path.components().fold(PathBuf::new(), |mut path, part| {
-        match part {
-            Component::ParentDir => drop(path.pop()),
-            Component::CurDir => {}
-            part => path.push(part),
-        }
-        path
-    })
-}
-
 /// The first line of what the reader of flags says.
 fn in_words(called: &str, error: &clap::Error) -> String {
     let text = error.to_string();
@@ -247,16 +267,17 @@ fn in_words(called: &str, error: &clap::Error) -> String {
 }
 
 impl Entry {
-    /// The name of all that it is made of; of what cannot be made, why.
-    pub fn name(&self, cache: &Cache, talk: &Talk) -> u128 {
-        self.draw.name(cache, talk).unwrap_or_else(|error| Naming::new().with("failed", words::line(&error)).name())
+    /// The names of all that its drawing and its mask are made of; of what cannot be made, why.
+    pub fn names(&self, contents: &mut Contents) -> [u128; 2] {
+        let names = contents.of(&self.draw).and_then(|dem| self.draw.names(&dem));
+        names.unwrap_or_else(|error| [Naming::new().with("failed", words::line(&error)).name(); 2])
     }
 
     /// The job that makes it.
-    pub fn job(&self, number: u32, name: u128) -> Job {
+    pub fn job(&self, number: u32, [drawing, of_mask]: [u128; 2]) -> Job {
         let (drawings, mask) = self.draw.outputs.files();
-        let drawings = drawings.iter().map(|path| Made { path: path.clone(), name });
-        let mask = mask.map(|path| Made { path: path.to_owned(), name: name::of_mask(name) });
-        Job { number, files: drawings.chain(mask).collect() }
+        let drawings = drawings.iter().map(|path| Made { path: path.clone(), name: drawing });
+        let mask = mask.map(|path| Made { path: path.to_owned(), name: of_mask });
+        Job { number, called: self.called.clone(), files: drawings.chain(mask).collect() }
     }
 }

@@ -1,5 +1,6 @@
 //! The sheets of a map: squares of a grid, each a drawing of its own with some land around it.
 
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use glam::DVec2;
@@ -14,8 +15,10 @@ use crate::message;
 
 /// Most sheets of a map.
 const MOST: u64 = 100_000;
-/// Places along a side of a sheet at which is looked whether there is land, and where the side runs.
+/// Places along a side of a rectangle at which is looked where it runs in another system.
 const LOOKS: u32 = 16;
+/// Samples across and down that are looked at together.
+const BLOCK: usize = 16;
 /// What stands for the name of a sheet in the names of files.
 const MARK: &str = "{sheet}";
 
@@ -24,7 +27,8 @@ const MARK: &str = "{sheet}";
 #[command(next_help_heading = "Sheets")]
 pub struct SheetArguments {
     /// Make each drawing once for each sheet of a map, squares of this system of coordinates in which there is land of the DEM;
-    /// names of outputs hold {sheet}, which becomes the sheet's south-western corner
+    /// names of outputs hold {sheet}, which becomes the sheet's south-western corner. In a system that is turned against that
+    /// of the DEM plans show the least upright rectangle around the sheet
     #[arg(long, value_name = "EPSG:N", value_parser = values::epsg, requires = "sheet")]
     grid: Option<u32>,
     /// The side of a sheet
@@ -64,10 +68,18 @@ impl SheetArguments {
         for entry in entries {
             let of = entry.draw.scene();
             if last.as_ref().is_none_or(|(other, _)| *other != of) {
-                let reading = entry.draw.open(cache.clone())?;
-                last = Some((of, entry.draw.terrain.read(reading, talk)?));
+                last = entry
+                    .draw
+                    .open(cache.clone())
+                    .and_then(|reading| entry.draw.terrain.read(reading, talk))
+                    .ok()
+                    .map(|dem| (of, dem));
             }
-            let Some((_, dem)) = &last else { continue };
+            // What cannot be read fails as the drawing is made.
+            let Some((_, dem)) = &last else {
+                sheets.push(entry);
+                continue;
+            };
             for corner in grid.corners(dem)? {
                 sheets.push(grid.sheet(&entry, dem, corner)?);
             }
@@ -117,22 +129,33 @@ impl Grid {
             return Err(Error::setting(Setting::Sheet, what, message!["use a larger ", Setting::Sheet]));
         }
         let thinned = dem.thinned()?;
-        let all = (bottom..top).flat_map(|row| (left..right).map(move |column| [column, row]));
-        Ok(all.filter(|corner| self.has_land(&thinned, dem, *corner)).collect())
+        let mut corners: Vec<[i64; 2]> = self.with_land(&thinned, dem).into_iter().collect();
+        corners.sort_unstable_by_key(|[column, row]| [*row, *column]);
+        Ok(corners)
     }
 
-    /// Whether a look at places spread over a sheet finds land.
-    fn has_land(&self, thinned: &Dem, dem: &Dem, corner: [i64; 2]) -> bool {
-        let low = DVec2::new(corner[0] as f64, corner[1] as f64) * self.side;
-        let looks = (0..LOOKS * LOOKS).map(|i| {
-            let share = DVec2::new(f64::from(i % LOOKS), f64::from(i / LOOKS)) + 0.5;
-            low + share / f64::from(LOOKS) * self.side
-        });
-        looks.filter_map(|place| dem.georeference().world_place(&self.crs, place)).any(|world| {
-            let at = thinned.grid_place(world).round();
-            let inside = at.x >= 0.0 && at.y >= 0.0 && at.x < thinned.columns() as f64 && at.y < thinned.rows() as f64;
-            inside && thinned.height(at.x as usize, at.y as usize).is_some()
-        })
+    /// The sheets in which samples fall, block by block: where all corners of one fall in a sheet, so does it.
+    fn with_land(&self, thinned: &Dem, dem: &Dem) -> BTreeSet<[i64; 2]> {
+        let sheet_of = |column: usize, row: usize| {
+            let world = thinned.position(column, row).truncate();
+            let place = dem.georeference().place_in(&self.crs, world)? / self.side;
+            Some([place.x.floor() as i64, place.y.floor() as i64])
+        };
+        let (columns, rows) = (thinned.columns(), thinned.rows());
+        let blocks =
+            (0..rows).step_by(BLOCK).flat_map(|row| (0..columns).step_by(BLOCK).map(move |column| [column, row]));
+        let mut sheets = BTreeSet::new();
+        for [left, top] in blocks {
+            let (right, bottom) = ((left + BLOCK).min(columns) - 1, (top + BLOCK).min(rows) - 1);
+            let inside = || (top..=bottom).flat_map(move |row| (left..=right).map(move |column| [column, row]));
+            let land = || inside().filter(|[column, row]| thinned.height(*column, *row).is_some());
+            let at_corners = [[left, top], [right, top], [left, bottom], [right, bottom]].map(|[c, r]| sheet_of(c, r));
+            match at_corners[0].filter(|first| at_corners.iter().all(|sheet| *sheet == Some(*first))) {
+                Some(sheet) => sheets.extend(land().next().map(|_| sheet)),
+                None => sheets.extend(land().filter_map(|[column, row]| sheet_of(column, row))),
+            }
+        }
+        sheets
     }
 
     /// The drawing of a sheet.
@@ -171,7 +194,8 @@ impl Grid {
     /// A sheet is called after its corner: in kilometres where these are whole, else in metres.
     fn name(&self, low: DVec2) -> String {
         let metres = low * self.metres;
-        let unit = if (self.side * self.metres) % 1000.0 == 0.0 { 1000.0 } else { 1.0 };
+        let kilometres = self.side * self.metres / 1000.0;
+        let unit = if (kilometres - kilometres.round()).abs() < 1e-9 { 1000.0 } else { 1.0 };
         let [east, north] = (metres / unit).to_array().map(|n| n.round() as i64);
         format!("E{east}_N{north}")
     }

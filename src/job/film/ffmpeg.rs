@@ -78,6 +78,9 @@ fn start(path: &Path, format: &str, fps: f64, inks: &Inks) -> io::Result<Child> 
         command.args(["-movflags", "+faststart"]);
     }
     command.args(["-f", format]).arg(path);
+    // What a terminal sends to all that runs in it is not for ffmpeg.
+    #[cfg(unix)]
+    std::os::unix::process::CommandExt::process_group(&mut command, 0);
     command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped()).spawn()
 }
 

@@ -74,7 +74,7 @@ impl Film {
     ///
     /// # Errors
     /// [`Error::Setting`] for a name that no format has, more pictures a second than a format takes, and where ffmpeg is
-    /// wanted and not installed.
+    /// wanted and not installed; [`Error::Output`] where the file cannot be written.
     pub fn new(path: &Path, fps: f64) -> Result<Self> {
         let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
         let by_ffmpeg = BY_FFMPEG.into_iter().find(|(known, _)| *known == ending);
@@ -99,6 +99,8 @@ impl Film {
         if matches!(format, Format::Ffmpeg(_)) {
             ffmpeg::look()?;
         }
+        // Whether it can be written is known before there is a picture.
+        drop(Output::create(path)?);
         Ok(Self { path: path.to_owned(), format, fps })
     }
 
