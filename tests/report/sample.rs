@@ -56,6 +56,7 @@ pub fn results(width: u32, height: u32) -> Results {
         truth: TruthSummary { level: 32, self_f: 0.9991 },
         scenes,
         runs,
+        sequences: Vec::new(),
     }
 }
 
