@@ -1,10 +1,11 @@
 //! Methods at levels over a run of frames: what of their ink and of their strokes pops from each frame to the next.
 //!
-//! A frame is drawn by its camera alone, as `hachure draw` draws it in the default style; nothing is kept from one to the next.
+//! A frame is drawn by its camera alone, as a still picture in the default style; nothing is kept from one to the next.
 //! Masks pop by pixels ([`Mask::pop`], less the same of truth drawn one pixel wide), strokes by darkness ([`popped`](super::popped)),
 //! chains by their ids ([`ids_kept`]). Recall stands beside: a blank page never pops.
 //!
-//! Cost: a truth a frame, all of one level, unless kept; then a frame with its strokes for each method, level and camera, and about as
+//! Cost: a truth a frame, all of one level, unless kept: 20 of 640 x 360 px .1 s each of a DEM of 33 000 patches, 2 s of 1.4
+//! million; then a frame with its strokes for each method, level and camera, and about as
 //! long to judge it.
 
 use std::sync::Arc;
@@ -21,13 +22,16 @@ use crate::ink::{self, Sheet, Style};
 use crate::line::{Chain, Lines};
 use crate::plan::{Border, Curves, Method, Plan};
 use crate::render::Renderer;
-use crate::surface::Surface;
+use crate::surface::{Level, Surface};
 use crate::truth::metrics::Judge;
 use crate::truth::{Mask, Terrain, Truth};
 use crate::view::Camera;
 
 /// Share of the work that is given to truth on a progress bar.
 const TRUTH_SHARE: f64 = 0.5;
+
+/// Longest edge of a visible cell of truth, px.
+const EDGE_PX: u32 = 4;
 
 /// Cameras one after the other.
 #[derive(Debug, Clone, Copy)]
@@ -107,10 +111,9 @@ impl Comparison {
 
     fn truths_of(&self, terrain: &Terrain<'_>, sequence: Sequence<'_>, to: &Hearing<'_>) -> Result<Truths> {
         let start = Instant::now();
-        let level = || sequence.cameras.iter().find_map(|camera| terrain.level_for(camera));
         let level = match self.truth_level {
             Some(level) => level,
-            None => level().ok_or_else(|| nothing_in_view(sequence.name))?.max(LEAST_TRUTH_LEVEL),
+            None => level_of(terrain, sequence)?,
         };
         let count = sequence.cameras.len();
         let of_camera = |(i, camera): (usize, &Camera)| {
@@ -186,7 +189,15 @@ impl Sequence<'_> {
     }
 }
 
-/// Draws a frame as `hachure draw` does.
+/// The least level at which no visible cell's edge is longer than 4 px, nor below that of any truth: a quarter of what a still
+/// picture is judged by, in a fraction of its time. What pops is the same to a thousandth of a percent.
+fn level_of(terrain: &Terrain<'_>, sequence: Sequence<'_>) -> Result<Level> {
+    let finest = sequence.cameras.iter().find_map(|camera| terrain.level_for(camera));
+    let finest = finest.ok_or_else(|| nothing_in_view(sequence.name))?;
+    Ok(Level::new(finest.subdivisions() / EDGE_PX).unwrap_or(LEAST_TRUTH_LEVEL).max(LEAST_TRUTH_LEVEL))
+}
+
+/// Draws a frame as a still picture is drawn, in the default style.
 fn drawn(renderer: &mut Renderer, plan: &Plan, camera: &Camera) -> Result<Drawn> {
     let curves = if plan.method == Method::Walk { Curves::On } else { plan.curves };
     let page = renderer.page(&Plan { curves, ..*plan }, camera, |_| ())?;
