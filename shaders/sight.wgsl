@@ -9,8 +9,9 @@ const NUDGE: f32 = 0.25;
 const MOST_NUDGE: f32 = 0.5;
 // Facets so near to the segment may face away without hiding it, in steps of its lattice: it does not run along their edges.
 const BESIDE_LINE: f32 = 2.0;
-// What lies behind is looked for this far outwards, px.
-const OUTWARD: f32 = 1.2;
+// What lies behind is looked for this far outwards, px: with the nudge and the half pixel of what lies about it, 2 px are drawn
+// around every piece of a page.
+const OUTWARD: f32 = 1.0;
 
 // Whether the surface in a pixel lies nearer than a depth.
 fn is_nearer(at: vec2<i32>, depth: f32) -> bool {
@@ -42,13 +43,29 @@ fn hides(at: vec2<i32>, place: vec2<i32>, reach: f32) -> bool {
     return max(to_line.x, to_line.y) > reach;
 }
 
-// Depth of what lies behind a line at a page place: of the surface outwards, or of the farthest beside it.
+// Depth of what lies behind a line at a page place: of the surface outwards, or of the farthest beside it. Outwards it is what
+// the four pixels say that show what is farther than the line, each the more the nearer it is: a line that moves a little
+// has a little more or less behind it, where the depth of one pixel would leap with every row that it passes.
 fn depth_behind(px: vec2<f32>, outward: vec2<f32>, depth: f32) -> f32 {
     let end = vec2<i32>(camera.size) - 1;
-    let beyond = clamp(vec2<i32>(floor(px + outward * OUTWARD)) - camera.origin, vec2<i32>(0), end);
-    let there = bitcast<f32>(pixel_depth(pixels[pixel_index(beyond)]));
-    if there < depth {
-        return there;
+    let beyond = px + outward * OUTWARD - 0.5;
+    let corner = vec2<i32>(floor(beyond)) - camera.origin;
+    let share = fract(beyond);
+    var land = 0.0;
+    var sky = 0.0;
+    var sum = 0.0;
+    for (var k = 0; k < 4; k++) {
+        let turn = vec2<i32>(k & 1, k >> 1u);
+        let at = clamp(corner + turn, vec2<i32>(0), end);
+        let there = bitcast<f32>(pixel_depth(pixels[pixel_index(at)]));
+        let shares = select(1.0 - share, share, turn == vec2<i32>(1));
+        let weight = select(0.0, shares.x * shares.y, there < depth);
+        sky += select(0.0, weight, there == 0.0);
+        land += select(weight, 0.0, there == 0.0);
+        sum += weight * there;
+    }
+    if sky + land > 0.0 {
+        return select(sum / max(land, 1e-30), 0.0, sky > land);
     }
     var farthest = depth;
     let first = vec2<i32>(floor(px - 0.5)) - camera.origin;

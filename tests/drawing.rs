@@ -90,7 +90,7 @@ fn lines(chains: Vec<Chain>, raster: &InkRaster, seen: &Perspective) -> Lines {
         eye,
         hidden,
         chains: crowded(&chains, &marks, seen),
-        recession: Recession::of(marks.depths()),
+        recession: Recession::of(marks.depths().map(|depth| (depth, 1.0))),
     }
 }
 
@@ -128,7 +128,8 @@ fn strokes_of(points: &[(f32, f32)], closed: bool) -> Vec<Vec<f64>> {
     let points = (0..).map(f64::from).zip(points).map(point).collect();
     let chains = vec![Chain { id: None, points, closed }];
     let (eye, hidden) = (seen.eye(), Vec::new());
-    let lines = Lines { width: 100, height: 80, eye, hidden, chains, recession: Recession::of([0.01].into_iter()) };
+    let lines =
+        Lines { width: 100, height: 80, eye, hidden, chains, recession: Recession::of([(0.01, 1.0)].into_iter()) };
     let layers = drawn(&lines).layers;
     let strokes = layers.iter().flat_map(|layer| &layer.strokes);
     strokes.map(|stroke| stroke.points.iter().map(|point| point.width).collect()).collect()

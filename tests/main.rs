@@ -70,6 +70,7 @@ mod same_bytes;
 mod scenes;
 mod seams;
 mod seen;
+mod sequences;
 mod sheets;
 mod shell;
 mod silhouettes;

@@ -30,7 +30,7 @@ fn plain(id: u64, ends: [i32; 2], y: f64) -> Chain {
 }
 
 fn lines(chains: Vec<Chain>, hidden: Vec<Chain>) -> Lines {
-    let recession = Recession::of(chains.iter().flat_map(|chain| &chain.points).map(|point| point.depth));
+    let recession = Recession::of(chains.iter().flat_map(|chain| &chain.points).map(|point| (point.depth, 1.0)));
     let [width, height] = FRAME;
     Lines { width, height, eye: DVec3::ZERO, chains, hidden, recession }
 }

@@ -190,6 +190,7 @@ fn results(gpu: &Gpu, scenes: Vec<Scene>, runs: Vec<Run>) -> Results {
         truth: least_sure(&scenes),
         scenes,
         runs,
+        sequences: Vec::new(),
     }
 }
 

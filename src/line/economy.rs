@@ -34,14 +34,17 @@ const SKYLINE_SHARE: f64 = 0.01;
 /// Where its jump or the sky ends, a line runs on whole for the first of these and fades until the second, gaps.
 const RUN_OUT: [f64; 2] = [1.0, 3.0];
 /// Along a chain, directions are averaged over about the first of these to either side, jumps over the second, gaps.
-const SOFT: [f64; 2] = [1.0, 0.5];
+const SOFT: [f64; 2] = [1.0, 1.0];
 /// Averages of 0 and 1 up to which all is 0, and from which all is 1.
 const TAILS: [f64; 2] = [0.05, 0.95];
-/// Least length of either, px.
-const LEAST_SOFT: f64 = 1.5;
-/// Longest piece of a chain between two points with weights: gaps, and px where the gap is small.
-const STEP: f64 = 0.75;
-const LEAST_STEP: f64 = 2.0;
+/// Least length of either, px: what lies behind is known by pixels, and trembles by as much.
+const LEAST_SOFT: [f64; 2] = [1.5, 3.0];
+/// Least length to run on, px.
+const LEAST_RUN: f64 = 1.5;
+/// Longest piece of a chain between two points with weights: gaps, and px where the gap is small. Longer ones miss where a line
+/// has room beside it or none: it would be drawn as points happen to lie.
+const STEP: f64 = 0.5;
+const LEAST_STEP: f64 = 1.0;
 /// Least unit of lengths, px.
 const LEAST_GAP: f64 = 0.1;
 
@@ -71,8 +74,8 @@ pub fn economised(chains: &[Chain], economy: &Economy) -> Vec<Chain> {
 fn samples(chain: &Chain, index: u32, economy: &Economy) -> Vec<Sample> {
     let Economy { min_jump, min_gap } = *economy;
     let along = Along::new(chain);
-    let soft = SOFT.map(|gaps| (gaps * min_gap).max(LEAST_SOFT));
-    let runs_out = RUN_OUT.map(|gaps| (gaps * min_gap).max(LEAST_SOFT));
+    let soft = [0, 1].map(|what| (SOFT[what] * min_gap).max(LEAST_SOFT[what]));
+    let runs_out = RUN_OUT.map(|gaps| (gaps * min_gap).max(LEAST_RUN));
     let direction = |i: usize| along.direction(i).to_array();
     let directions: Vec<_> = (0..chain.points.len()).map(direction).collect();
     let directions = along.averaged(&directions, soft[0]);

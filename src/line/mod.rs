@@ -29,6 +29,7 @@ pub mod overlay;
 pub mod raster;
 pub mod recession;
 mod rest;
+mod shown;
 mod simplify;
 pub mod smooth;
 pub mod strays;
@@ -83,7 +84,7 @@ impl Lines {
             eye: perspective.eye(),
             hidden: Vec::new(),
             chains: crowded(&chains, marks, perspective),
-            recession: Recession::of(marks.depths()),
+            recession: Recession::of(marks.depths().map(|depth| (depth, 1.0))),
         }
     }
 
@@ -92,9 +93,11 @@ impl Lines {
     pub fn sparing(chains: &[Chain], hidden: &[Chain], perspective: &Perspective, economy: &Economy) -> Self {
         let chains = economised(chains, economy);
         let hidden = economised(hidden, &Economy { min_jump: 0.0, ..*economy });
-        let depths = chains.iter().flat_map(|chain| &chain.points).map(|point| point.depth);
+        // A line that fades in or out takes its share along.
+        let inked = |[a, b]: [&ChainPoint; 2]| (a.depth, a.place.distance(b.place) * f64::from(a.weight + b.weight));
+        let inked = chains.iter().flat_map(Chain::pairs).map(inked);
         let [width, height] = perspective.size().to_array().map(|px| px as u32);
-        let recession = Recession::of(depths);
+        let recession = Recession::of(inked);
         Self { width, height, eye: perspective.eye(), chains, hidden, recession }
     }
 }

@@ -48,7 +48,7 @@ pub fn overhead(dem: &Dem, area: [f64; 4], [width, height]: [u32; 2], px_per_met
         eye: middle.extend(f64::INFINITY),
         chains: rings(&rim(dem)?).into_iter().map(chain).collect(),
         hidden: Vec::new(),
-        recession: Recession::of(std::iter::once(1.0)),
+        recession: Recession::of(std::iter::once((1.0, 1.0))),
     })
 }
 

@@ -12,7 +12,7 @@
 use std::cmp::Ordering;
 use std::ops::Range;
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 use rayon::prelude::*;
 
 use super::crossing::Crossings;
@@ -20,7 +20,7 @@ use super::doubt::{Span, doubtful, join, seen};
 use super::folds::convex;
 use super::identity::{Held, key, names};
 use super::labels::{Labelled, cheapest};
-use super::simplify::needed;
+use super::shown::shown;
 use super::{Bound, Chain, ChainPoint, Curve, CurvePoint, Id, Line, Sight, Stretch};
 use crate::view::cut::share_within;
 
@@ -30,10 +30,6 @@ const LEAST: f64 = 2.0;
 const GOES_ON: f64 = 0.05;
 /// What a change of what is drawn costs, px of stretches that draw another: runs under twice that are flicker.
 const FLICKER: f64 = 1.5;
-/// Points that lie within this of the rest are left out, px; a hundredth in ln depth weighs as much as a hundredth of a px.
-const SHOWN: f64 = 0.03;
-/// Longest piece of a chain without a point, px: what varies along it is still told.
-const APART: f64 = 4.0;
 
 /// What is drawn, in the order of labels.
 const LINES: [Line; 3] = [Line::Occluding, Line::Skyline, Line::Border];
@@ -226,7 +222,8 @@ fn chain(curve: &Curve, span: Span) -> (Chain, Vec<Held>) {
     };
     let mut points: Vec<ChainPoint> = (0..pieces.len()).map(|i| point(pieces[i][0], i)).collect();
     points.push(point(span[1], pieces.len() - 1));
-    let mut points = shown(&points);
+    let lengths: Vec<f64> = pieces.iter().map(|piece| length(*piece)).collect();
+    let mut points = shown(&points, &lengths);
     if closed {
         points.pop();
     }
@@ -244,28 +241,6 @@ fn line_of(stretch: &Stretch) -> Line {
         Bound::Contour if stretch.behind == 0.0 => Line::Skyline,
         Bound::Contour => Line::Occluding,
     }
-}
-
-/// The points that a pen shows: both ends, those where what is drawn changes, one at least every [`APART`] px.
-fn shown(points: &[ChainPoint]) -> Vec<ChainPoint> {
-    let places: Vec<DVec3> = points.iter().map(|point| point.place.extend(point.log_depth())).collect();
-    let (mut kept, mut start) = (vec![points[0]], 0);
-    for part in points.chunk_by(|a, b| a.line == b.line) {
-        let end = (start + part.len()).min(points.len() - 1);
-        for span in needed(&places[start..=end], SHOWN).windows(2) {
-            let mut length = 0.0;
-            for i in start + span[0] + 1..start + span[1] {
-                length += points[i].place.distance(points[i - 1].place);
-                if length + points[i + 1].place.distance(points[i].place) > APART {
-                    kept.push(points[i]);
-                    length = 0.0;
-                }
-            }
-            kept.push(points[start + span[1]]);
-        }
-        start = end;
-    }
-    kept
 }
 
 /// The order of chains: by places of their points on the page, the first that differs.

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use glam::DVec2;
 
 use super::chains::short_of_drawing;
-use super::figures::{Convergence, DrawnLevel, LevelOffset, Run, TruthReport};
+use super::figures::{Convergence, DrawnLevel, LevelOffset, Run, SequenceRun, TruthReport};
 use super::rendered::try_plan;
 use super::trial::{Trial, moved, picture_names};
 use super::truths::Kept;
@@ -68,6 +68,8 @@ pub enum Found<'a> {
     Truth(&'a str, &'a TruthReport, Option<&'a Convergence>),
     /// What a method drew at a level, measured.
     Run(&'a Run),
+    /// What a method drew at a level over a run of frames, measured.
+    Sequence(&'a SequenceRun),
     /// What a picture of this file name shows.
     Picture(&'a str, Shown<'a>),
 }
@@ -235,7 +237,7 @@ fn mark_front(runs: &mut [Run]) {
     }
 }
 
-fn nothing_in_view(name: &str) -> Error {
+pub(super) fn nothing_in_view(name: &str) -> Error {
     Error::Scene {
         what: format!("{name}: nothing of the DEM is in view").into(),
         remedy: message![
@@ -249,7 +251,7 @@ fn nothing_in_view(name: &str) -> Error {
     }
 }
 
-fn no_line(name: &str) -> Error {
+pub(super) fn no_line(name: &str) -> Error {
     Error::Scene {
         what: format!("{name}: no silhouette is in view, so there is nothing to compare").into(),
         remedy: "choose a view of hills against hills or sky".into(),

@@ -171,6 +171,50 @@ pub struct Run {
     pub difference: String,
 }
 
+/// A method at a level over a run of frames, each one step farther on.
+#[derive(Debug, Clone, Serialize)]
+pub struct SequenceRun {
+    /// Name of the sequence.
+    pub scene: String,
+    /// Its name in the registry of methods.
+    pub method: &'static str,
+    /// Subdivisions of a cell's edge, or `auto`.
+    pub level: DrawnLevel,
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// From one eye to the next.
+    pub step_m: f64,
+    /// Frames.
+    pub frames: usize,
+    /// Subdivisions of a cell's edge of truth.
+    pub truth_level: u32,
+    /// Share of ink without ink of the next frame within 1 px, mean over the frames.
+    pub pop: f64,
+    /// The same of truth, drawn one pixel wide.
+    pub truth_pop: f64,
+    /// The one less the other.
+    pub excess_pop: f64,
+    /// Share of truth within 1 px of ink, mean over the frames.
+    pub recall: f64,
+    /// In the frame where it is least.
+    pub least_recall: f64,
+    /// Share of the darkness of strokes that the frame before or the one after has not, where the land is that they draw.
+    pub strokes_lost: f64,
+    /// What of that share truth has in both frames.
+    pub strokes_excess_pop: f64,
+    /// Share of the length of chains over 12 px that is called the same in the next frame, mean over the frames; `None` of
+    /// chains without names.
+    pub ids_kept: Option<f64>,
+    /// Inked pixels, mean over the frames.
+    pub inked: usize,
+    /// From the camera to the drawing, mean over the frames.
+    pub frame_ms: f64,
+    /// What all truths took, to make or to read where they were kept.
+    pub truth_ms: f64,
+}
+
 /// The chains of a run on the page: the curves that it yields, or what its ink is traced to, before any is smoothed or left
 /// out. Between lines, so without the half pixel that is added for the centres of pixels.
 #[derive(Debug, Clone, Serialize)]

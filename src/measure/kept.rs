@@ -9,13 +9,13 @@
 
 use std::collections::HashMap;
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 use rayon::prelude::*;
 use rstar::RTree;
 use rstar::primitives::GeomWithData;
 
-use crate::line::{Chain, ChainPoint, Id};
-use crate::view::cut::steps;
+use super::looks::{Look, along, on_page};
+use crate::line::{Chain, Id};
 use crate::view::{Camera, Perspective};
 
 /// Only chains longer than this on the page count, px.
@@ -32,15 +32,8 @@ pub struct Seen<'a> {
     pub chains: &'a [Chain],
 }
 
-/// A look at a chain.
-#[derive(Clone, Copy)]
-struct Look {
-    world: DVec3,
-    /// Of the page that it stands for, px.
-    length: f64,
-    /// What its chain is called; `None` where another one is called so, too.
-    id: Option<Id>,
-}
+/// A look at a chain, and what that is called; `None` where another one of its frame is called so, too.
+type Called = (Look, Option<Id>);
 
 /// Share of the length of chains over 12 px whose id the next frame keeps; `None` where no chain has an id, and where
 /// none is so long.
@@ -49,17 +42,16 @@ pub fn ids_kept(frame: Seen<'_>, next: Seen<'_>) -> Option<f64> {
         return None;
     }
     let [here, there] = [&frame, &next].map(|seen| Perspective::new(seen.camera, 1.0));
-    let page = |look: &Look| on_page(&here, look.world);
-    let indexed = |look: Look| page(&look).map(|place| GeomWithData::new(place.to_array(), look));
+    let indexed = |called: Called| Some(GeomWithData::new(on_page(&here, called.0.world)?.to_array(), called));
     let found = RTree::bulk_load(looks(next, &there, 0.0).into_iter().filter_map(indexed).collect());
-    let counted: Vec<Look> = looks(frame, &here, LEAST);
-    let weigh = |look: &Look| {
+    let counted: Vec<Called> = looks(frame, &here, LEAST);
+    let weigh = |(look, id): &Called| {
         on_page(&there, look.world)?;
         let place = on_page(&here, look.world)?.to_array();
         let near = found.locate_within_distance(place, NEAR * NEAR).map(|near| near.data);
-        let away = |other: &Look| other.world.distance_squared(look.world);
+        let away = |other: &Called| other.0.world.distance_squared(look.world);
         let same = near.min_by(|a, b| away(a).total_cmp(&away(b)));
-        let kept = look.id.is_some() && same.is_some_and(|same| same.id == look.id);
+        let kept = id.is_some() && same.is_some_and(|same| same.1 == *id);
         Some(DVec2::new(if kept { look.length } else { 0.0 }, look.length))
     };
     let weights: Vec<DVec2> = counted.par_iter().filter_map(weigh).collect();
@@ -68,37 +60,14 @@ pub fn ids_kept(frame: Seen<'_>, next: Seen<'_>) -> Option<f64> {
 }
 
 /// Looks at the chains that are longer than `least` px on the page.
-fn looks(seen: Seen<'_>, perspective: &Perspective, least: f64) -> Vec<Look> {
+fn looks(seen: Seen<'_>, perspective: &Perspective, least: f64) -> Vec<Called> {
     let mut called: HashMap<Id, usize> = HashMap::new();
     seen.chains.iter().filter_map(|chain| chain.id).for_each(|id| *called.entry(id).or_default() += 1);
-    let size = [seen.camera.width, seen.camera.height];
     let of_chain = |chain: &Chain| {
         let id = chain.id.filter(|id| called[id] == 1);
-        let looks: Vec<Look> = chain.pairs().flat_map(|pair| along(pair, size, perspective, id)).collect();
-        if looks.iter().map(|look| look.length).sum::<f64>() > least { looks } else { Vec::new() }
+        let looks: Vec<Called> =
+            chain.pairs().flat_map(|pair| along(pair, perspective)).map(|look| (look, id)).collect();
+        if looks.iter().map(|(look, _)| look.length).sum::<f64>() > least { looks } else { Vec::new() }
     };
     seen.chains.iter().flat_map(of_chain).collect()
-}
-
-/// Looks between two points of a chain, which is a straight line in the world.
-fn along(
-    [a, b]: [&ChainPoint; 2],
-    size: [u32; 2],
-    perspective: &Perspective,
-    id: Option<Id>,
-) -> impl Iterator<Item = Look> {
-    let (a, b) = (*a, *b);
-    let [near, far] = [a, b].map(|point| perspective.distance(point.world));
-    steps(size, a.place, b.place).map(move |step| {
-        // Depth turns steps on the page into steps in the world.
-        let share = step.middle * near / (far * (1.0 - step.middle) + step.middle * near);
-        Look { world: a.world.lerp(b.world, share), length: step.length, id }
-    })
-}
-
-/// Where a place of the world is seen on the page; `None` beside it and behind the eye.
-fn on_page(perspective: &Perspective, world: DVec3) -> Option<DVec2> {
-    let (place, depth) = perspective.project(world);
-    let inside = place.cmpge(DVec2::ZERO).all() && place.cmplt(perspective.size()).all();
-    (depth > 0.0 && inside).then_some(place)
 }

@@ -16,8 +16,11 @@ pub mod floor;
 mod floors;
 pub mod growth;
 pub mod kept;
+mod looks;
 pub mod memory;
+pub mod popped;
 mod rendered;
+pub mod sequence;
 pub mod trial;
 pub mod truths;
 
@@ -26,3 +29,4 @@ pub use copy::BareCopy;
 pub use depth_draw::DepthDraw;
 pub use floor::{Floor, costs};
 pub use growth::{Growth, Promise};
+pub use sequence::Sequence;

@@ -2,7 +2,7 @@
 
 use super::words::milliseconds;
 use crate::measure::compare::Found;
-use crate::measure::figures::{ChainFigures, Convergence, FloorFigures, Run, TruthReport};
+use crate::measure::figures::{ChainFigures, Convergence, FloorFigures, Run, SequenceRun, TruthReport};
 
 /// Lines on what was found: those for everyone, and those for who wants to know more. Pictures speak for themselves.
 pub fn lines(found: &Found<'_>) -> [Vec<String>; 2] {
@@ -16,6 +16,7 @@ pub fn lines(found: &Found<'_>) -> [Vec<String>; 2] {
             vec![run_line(run), chains_line(&run.of_chains)],
             vec![format!("  masks of the warm frames: {}", run.mask_hashes.join(" "))],
         ],
+        Found::Sequence(run) => [vec![sequence_line(run)], Vec::new()],
         Found::Picture(..) => [Vec::new(), Vec::new()],
     }
 }
@@ -62,6 +63,23 @@ fn chains_line(chains: &ChainFigures) -> String {
     format!(
         "  {count} chains, {chains_px:.0} px: {offsets}P {chain_precision:.4} R {chain_recall:.4}{removed}; {:.1} % under 6 px{kept}",
         100.0 * short_chains
+    )
+}
+
+/// A sequence in a line: what pops, beside how much of truth is drawn and what that took.
+fn sequence_line(run: &SequenceRun) -> String {
+    let SequenceRun { scene, method, level, frames, step_m, pop, truth_pop, excess_pop, recall, .. } = run;
+    let SequenceRun { least_recall, strokes_lost, strokes_excess_pop, ids_kept, inked, frame_ms, .. } = run;
+    let percent = |share: f64| format!("{:.3} %", 100.0 * share);
+    let kept = ids_kept.map_or(String::new(), |kept| format!("; {:.1} % of ids kept", 100.0 * kept));
+    format!(
+        "{scene} {method} level {level}, {frames} frames {step_m} m apart: excess pop {} (ink {}, truth {}), R {recall:.4} (least \
+         {least_recall:.4}); of strokes {} (of {} lost){kept}; {frame_ms:.0} ms a frame, {inked} px of ink",
+        percent(*excess_pop),
+        percent(*pop),
+        percent(*truth_pop),
+        percent(*strokes_excess_pop),
+        percent(*strokes_lost),
     )
 }
 

@@ -5,7 +5,7 @@
 
 use serde::Serialize;
 
-use crate::measure::figures::{Convergence, Run, TruthReport};
+use crate::measure::figures::{Convergence, Run, SequenceRun, TruthReport};
 
 /// Version of the schema: raised when a key changes its meaning or goes.
 pub const SCHEMA: u32 = 2;
@@ -27,6 +27,8 @@ pub struct Results {
     pub scenes: Vec<Scene>,
     /// Methods times levels, scene by scene.
     pub runs: Vec<Run>,
+    /// Methods times levels over runs of frames; none unless they were asked for.
+    pub sequences: Vec<SequenceRun>,
 }
 
 /// Processor, adapter and driver.

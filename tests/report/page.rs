@@ -11,6 +11,8 @@ use serde_json::Value;
 
 use super::browser::{Browser, Visit};
 use super::{SIZE, sample, sample_with_floors};
+use hachure::measure::compare::Found;
+use hachure::report::lines::lines;
 
 /// What is looked for in the browser.
 const PROBE: &str = include_str!("probe.js");
@@ -46,6 +48,24 @@ fn one_scene() -> Results {
     results.scenes.truncate(1);
     results.runs.retain(|run| run.scene == results.scenes[0].name);
     results
+}
+
+#[test]
+fn sequences_have_a_table_where_there_are_any() {
+    let results = crate::report::sample::with_sequences(SIZE[0], SIZE[1]);
+    let (page, without) = (page_of(&results), page_of(&sample()));
+    let rows = between(&page, "<section id=\"sequences\"", "</section>");
+    assert_eq!(rows.matches("<tr><td>").count(), 2);
+    for cell in [">0.034<", ">1.234<", ">0.9967<", ">0.078<", ">2.130<", ">0.972<", ">10.0<"] {
+        assert!(rows.contains(cell), "{cell}");
+    }
+    assert!(page.contains("href=\"#sequences\"") && !without.contains("sequences"));
+    let line = lines(&Found::Sequence(&results.sequences[0])).concat().join("\n");
+    let wanted = "walk level auto, 20 frames 10 m apart: excess pop 0.034 % (ink 1.234 %, truth 1.200 %), R 0.9967 (least \
+                  0.9951); of strokes 0.078 % (of 2.130 % lost); 97.2 % of ids kept; 105 ms a frame, 5465 px of ink";
+    assert!(line.ends_with(wanted), "{line}");
+    let json: Value = serde_json::to_value(&results).expect("JSON");
+    assert_eq!((&json["sequences"][0]["level"], &json["sequences"][1]["ids_kept"]), (&"auto".into(), &Value::Null));
 }
 
 #[test]

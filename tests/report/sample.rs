@@ -2,7 +2,7 @@
 
 use hachure::measure::figures::{
     AtDistance, Band, ChainFigures, Convergence, DrawnLevel, FloorFigures, LevelOffset, PassFigures, Place, Run,
-    TruthReport,
+    SequenceRun, TruthReport,
 };
 use hachure::report::results::{Machine, Results, SCHEMA, Scene, TruthSummary};
 
@@ -56,7 +56,35 @@ pub fn results(width: u32, height: u32) -> Results {
         truth: TruthSummary { level: 32, self_f: 0.9991 },
         scenes,
         runs,
+        sequences: Vec::new(),
     }
+}
+
+/// The same with two sequences, of which one has no ids.
+pub fn with_sequences(width: u32, height: u32) -> Results {
+    let run = |method, ids_kept| SequenceRun {
+        scene: AWKWARD.into(),
+        method,
+        level: DrawnLevel::Auto,
+        width,
+        height,
+        step_m: 10.0,
+        frames: 20,
+        truth_level: 16,
+        pop: 0.01234,
+        truth_pop: 0.012,
+        excess_pop: 0.00034,
+        recall: 0.9967,
+        least_recall: 0.9951,
+        strokes_lost: 0.0213,
+        strokes_excess_pop: 0.00078,
+        ids_kept,
+        inked: 5465,
+        frame_ms: 105.25,
+        truth_ms: 20_500.0,
+    };
+    let sequences = vec![run("walk", Some(0.972)), run("adjacency", None)];
+    Results { sequences, ..results(width, height) }
 }
 
 /// The same with what `--floor` adds; the first run lacks a depth draw.
