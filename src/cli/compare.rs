@@ -9,9 +9,10 @@ use std::thread::available_parallelism;
 
 use super::cache::CacheArguments;
 use super::device::DeviceArguments;
+use super::flight::{FlightArguments, FlightPlan};
 use super::talk::Talk;
 use super::terrain::TerrainArguments;
-use super::values::{self, LevelChoice, Size};
+use super::values::{self, Height, LevelChoice, Size};
 use super::viewpoint::{View, ViewArguments};
 use super::views::{self, NamedView};
 use super::words::{flag, told};
@@ -24,7 +25,8 @@ use crate::gpu::Gpu;
 use crate::gpu::sizes::page_fits;
 use crate::measure::compare::{Compared, Comparison, Found, Hearing};
 use crate::measure::depth_draw;
-use crate::measure::figures::Run;
+use crate::measure::figures::{Run, SequenceRun};
+use crate::measure::sequence::Sequence;
 use crate::plan::detail::ERROR_PX;
 use crate::plan::{Border, Method};
 use crate::report::folder::{Contents, Folder};
@@ -34,6 +36,7 @@ use crate::report::results::{Machine, Results, SCHEMA, Scene, TruthSummary};
 use crate::report::{error_time_svg, report_html, write_csv};
 use crate::surface::{Level, Surface};
 use crate::truth::Terrain;
+use crate::view::{Camera, Flight};
 
 /// The end of `hachure compare --help`, below the names of the methods.
 const EXAMPLES: &str = "\
@@ -50,6 +53,9 @@ Examples:
 
   Two methods at three levels, without border lines:
   hachure compare dem/golden-gate.tif -o report --methods walk,toward-away --levels 2,4,8 --border off
+
+  What pops from frame to frame along a path, 200 m above the ground:
+  hachure compare dem/golden-gate.tif -o report --path route.gpx --height +200 --levels auto
 
   Every view of two DEMs that a file holds, on pages of two sizes:
   hachure compare west-temple.tif st-helens.tif -o report --views views.json --sizes 640x360,1280x720";
@@ -73,6 +79,14 @@ pub struct CompareArguments {
     /// A file of views, drawn instead of the one that flags give
     #[arg(long, value_name = "FILE", help_heading = "View")]
     views: Option<PathBuf>,
+
+    /// Follow a path instead, as hachure fly does: what of masks and strokes pops from frame to frame, over 20 frames from its
+    /// middle, 1 m and 10 m apart
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["views", "sizes", "standpoint", "azimuth", "altitude", "look_at", "crs", "north", "floor"], help_heading = "View")]
+    path: Option<PathBuf>,
+    /// With --path: +H, metres above the ground, instead of the path's own heights
+    #[arg(long, value_name = "+H|Z", value_parser = values::height, allow_hyphen_values = true, requires = "path", help_heading = "View")]
+    height: Option<Height>,
 
     /// Factor on every elevation
     #[arg(long, value_name = "X", value_parser = values::exaggeration, allow_hyphen_values = true, default_value = "1", help_heading = "Surface")]
@@ -110,6 +124,13 @@ pub struct CompareArguments {
     cache: CacheArguments,
 }
 
+/// Metres between frames that follow a path.
+const STEPS_M: [f64; 2] = [1.0, 10.0];
+/// Pixels of frames that follow a path unless told otherwise.
+const PATH_SIZE: Size = Size { width: 640, height: 360 };
+/// How many frames follow it.
+const FRAMES: u32 = 20;
+
 /// Views of one DEM.
 struct Job {
     files: Vec<PathBuf>,
@@ -124,6 +145,7 @@ pub fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
     let sizes = arguments.sizes();
     arguments.check(&sizes)?;
     let jobs = arguments.jobs(talk)?;
+    let plan = arguments.path.as_deref().map(|path| arguments.flight(path)).transpose()?;
     let comparison = arguments.comparison();
     let views = || jobs.iter().flat_map(|job| &job.views);
     let names = views().flat_map(|view| sizes.iter().map(|size| scene_name(&view.name, *size, &sizes)));
@@ -132,15 +154,15 @@ pub fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
     let readings = jobs.iter().map(open).collect::<Result<Vec<_>>>()?;
     // Truth looks at every sample again and again.
     readings.iter().try_for_each(Reading::check_held)?;
-    let inputs = readings.iter().flat_map(Reading::files).chain(arguments.views.as_deref());
+    let inputs = readings.iter().flat_map(Reading::files).chain(arguments.views.as_deref()).chain(arguments.path.as_deref());
     let pictures = names.flat_map(|name| comparison.picture_names(&name));
     let folder = Folder::open(&arguments.output, pictures, Taken::inputs(inputs))?;
-    let scenes_asked = (views().count() * sizes.len()) as f64;
+    let asked = if plan.is_some() { STEPS_M.len() } else { views().count() * sizes.len() } as f64;
     let extra = if arguments.floor { depth_draw::FEATURE } else { wgpu::Features::empty() };
     let (done, gpu) = (Cell::new(0.0), Arc::new(arguments.device.open_with(extra, talk)?));
     let drawn = RefCell::new(Vec::new());
     let hearing = Hearing {
-        stage: &|stage, share| talk.progress(stage, (done.get() + share) / scenes_asked),
+        stage: &|stage, share| talk.progress(stage, (done.get() + share) / asked),
         warn: &|message| talk.warn(&told(message)),
         found: &|found| {
             let [said, detail] = lines(&found);
@@ -152,10 +174,21 @@ pub fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
             Ok(())
         },
     };
-    let (mut scenes, mut runs) = (Vec::new(), Vec::new());
+    let (mut scenes, mut runs, mut sequences) = (Vec::new(), Vec::new(), Vec::new());
     for (job, reading) in jobs.iter().zip(readings) {
         let surface = Arc::new(arguments.surface(reading, talk)?);
         let terrain = Terrain::new(&surface);
+        if let Some(plan) = &plan {
+            let flight = plan.flight(&surface, LevelChoice::Auto.near(), arguments.exaggeration)?;
+            for step_m in STEPS_M {
+                let cameras = middle(&flight, step_m)?;
+                let name = format!("{}, {step_m} m", plan.described());
+                let sequence = Sequence { name: &name, step_m, cameras: &cameras };
+                sequences.extend(comparison.sequence(&gpu, &surface, &terrain, sequence, &hearing)?);
+                done.set(done.get() + 1.0);
+            }
+            continue;
+        }
         for (named, size) in job.views.iter().flat_map(|view| sizes.iter().map(move |size| (view, *size))) {
             let (name, view) = (scene_name(&named.name, size, &sizes), view_of(named, size, &surface, talk)?);
             let found = comparison.scene(&gpu, &surface, &name, &terrain, &view.camera, &hearing);
@@ -168,8 +201,19 @@ pub fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
     }
     talk.progress("writing", 1.0);
     let (page, pictures) = (folder.page(), drawn.into_inner());
-    folder.publish(&contents(&results(&gpu, scenes, runs), &pictures)?, &pictures)?;
+    folder.publish(&contents(&results(&gpu, scenes, runs, sequences), &pictures)?, &pictures)?;
     talk.say(&format!("report: {}", shown(&page)))
+}
+
+/// Cameras around the middle of a flight, so many metres apart.
+fn middle(flight: &Flight, step_m: f64) -> Result<Vec<Camera>> {
+    let way = step_m * f64::from(FRAMES - 1);
+    if flight.length() < way {
+        let what = format!("{:.1} m long, {way} m of it are followed", flight.length());
+        return Err(Error::setting(Setting::Path, what, "give a longer one"));
+    }
+    let start = (flight.length() - way) / 2.0;
+    Ok((0..FRAMES).map(|i| flight.camera_at(start + step_m * f64::from(i))).collect())
 }
 
 /// The view of a file, or of flags, on a page of this size.
@@ -181,7 +225,7 @@ fn view_of(named: &NamedView, size: Size, surface: &Surface, talk: &Talk) -> Res
     Ok(view)
 }
 
-fn results(gpu: &Gpu, scenes: Vec<Scene>, runs: Vec<Run>) -> Results {
+fn results(gpu: &Gpu, scenes: Vec<Scene>, runs: Vec<Run>, sequences: Vec<SequenceRun>) -> Results {
     Results {
         version: SCHEMA,
         hachure: env!("CARGO_PKG_VERSION"),
@@ -190,7 +234,7 @@ fn results(gpu: &Gpu, scenes: Vec<Scene>, runs: Vec<Run>) -> Results {
         truth: least_sure(&scenes),
         scenes,
         runs,
-        sequences: Vec::new(),
+        sequences,
     }
 }
 
@@ -209,6 +253,12 @@ impl CompareArguments {
         dem.check_patches()?;
         cells::warn(&dem, self.exaggeration, talk);
         Ok(Surface::new(dem))
+    }
+
+    /// The flight along a path, whose pages are small unless their size is given.
+    fn flight(&self, path: &Path) -> Result<FlightPlan> {
+        let size = self.view.typed_size().unwrap_or(PATH_SIZE);
+        FlightArguments::along(path, self.height, self.view.fov(), size).plan(self.terrain.allows_remote())
     }
 
     fn sizes(&self) -> Vec<Size> {
@@ -230,6 +280,9 @@ impl CompareArguments {
     /// The view that flags give, of all files as one DEM; or the views of a file, of each DEM by itself.
     fn jobs(&self, talk: &Talk) -> Result<Vec<Job>> {
         let dems = &self.terrain.dems;
+        if self.path.is_some() {
+            return Ok(vec![Job { files: dems.clone(), views: Vec::new() }]);
+        }
         let Some(path) = &self.views else {
             let name = dems.first().and_then(|dem| dem.file_stem()).unwrap_or_default();
             let name = views::file_name(&name.to_string_lossy());

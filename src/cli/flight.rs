@@ -1,6 +1,6 @@
 //! Flags of a flight: its way, its frames, its heights and where the camera looks.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use glam::DVec2;
 
@@ -82,6 +82,26 @@ pub struct FlightArguments {
 }
 
 impl FlightArguments {
+    /// The flags of a path that is followed at these heights, on pages of this size.
+    pub fn along(path: &Path, height: Option<Height>, fov: f64, size: Size) -> Self {
+        Self {
+            path: Some(path.to_owned()),
+            orbit: None,
+            radius: None,
+            count: Some(1),
+            duration: None,
+            fps: FPS,
+            height,
+            clearance: None,
+            look_at: None,
+            look_ahead: None,
+            altitude: None,
+            fov: Some(fov),
+            size: Some(size),
+            crs: None,
+        }
+    }
+
     /// Pixels across and down, as typed.
     pub fn typed_size(&self) -> Option<Size> {
         self.size

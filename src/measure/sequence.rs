@@ -19,7 +19,7 @@ use super::popped::{Looked, Popped};
 use crate::error::Result;
 use crate::gpu::Gpu;
 use crate::ink::{self, Sheet, Style};
-use crate::line::{Chain, Lines};
+use crate::line::Chain;
 use crate::plan::{Border, Curves, Method, Plan};
 use crate::render::Renderer;
 use crate::surface::{Level, Surface};
@@ -205,10 +205,7 @@ fn drawn(renderer: &mut Renderer, plan: &Plan, camera: &Camera) -> Result<Drawn>
     let (style, sheet) = (Style::default(), Sheet::for_frame(size));
     let px_per_mm = sheet.placement(size).px_per_mm;
     let tolerance = style.tolerance * px_per_mm;
-    let lines = match page.frame.plan.has_curves() {
-        true => renderer.lines(&page, &style.economy(px_per_mm), tolerance),
-        false => Lines::of(&page.marks, &renderer.perspective(&page.frame), tolerance),
-    };
+    let lines = page.lines(&style.economy(px_per_mm), tolerance);
     let drawing = ink::draw(&lines, &sheet, &style, &[])?;
     let strokes = Looked::of_strokes(camera, &lines, &drawing);
     Ok(Drawn { mask: mask_of(&page.marks, renderer.near()), chains: page.chains, strokes })
