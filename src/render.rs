@@ -25,7 +25,7 @@ use crate::view::{Camera, Perspective};
 pub use crate::gpu::clock::{FrameTime, PassTime};
 pub use estimate::Estimate;
 pub use illustration::Illustration;
-pub use page::Page;
+pub use page::{Found, Page};
 
 /// A surface on a device, ready to be seen from any eye by any plan on a page of any size.
 ///

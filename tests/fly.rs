@@ -359,3 +359,27 @@ fn a_mask_alone_is_the_mask_of_the_drawing() {
     assert_eq!(pixels("a/mask-00003.png"), pixels("b/00003.png"));
     assert!(pixels("b/00003.png").contains(&0), "some of it is ink");
 }
+
+#[test]
+fn a_path_is_followed_frame_by_frame_by_compare() {
+    let place = Place::new();
+    let keys = |east: f64| format!("[[key]]\nplace = [{east}, 4000080, \"+40\"]\nazimuth = 20\naltitude = -10\n");
+    fs::write(place.path("path.toml"), keys(500090.0) + &keys(500300.0)).expect("a file");
+    let flags =
+        ["compare", "hill.asc", "-o", "report", "--path", "path.toml", "--size", "160x90", "--methods", "walk,contour"];
+    let output = place.run(&[&flags[..], &["--levels", "4", "--truth-level", "8", "--no-cache"]].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let text = fs::read_to_string(place.path("report/results.json")).expect("results");
+    let results: Value = serde_json::from_str(&text).expect("JSON");
+    let sequences = results["sequences"].as_array().expect("sequences");
+    let told: Vec<_> = sequences.iter().map(|run| (run["method"].as_str(), run["step_m"].as_f64())).collect();
+    let both = [1.0, 10.0].map(|step| [(Some("walk"), Some(step)), (Some("contour"), Some(step))]).concat();
+    assert_eq!(told, both);
+    assert!(sequences.iter().all(|run| run["frames"] == 20 && run["recall"].as_f64() > Some(0.9)), "{sequences:?}");
+    assert!(fs::read_to_string(place.path("report/report.html")).expect("a page").contains("From frame to frame"));
+    fs::write(place.path("short.toml"), keys(500190.0) + &keys(500200.0)).expect("a file");
+    let output = place.run(&["compare", "hill.asc", "-o", "other", "--path", "short.toml", "--levels", "4"]);
+    let said = stderr(&output);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("--path: 10.0 m long, 19 m of it are followed; give a longer one"), "{said}");
+}

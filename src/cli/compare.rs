@@ -154,7 +154,8 @@ pub fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
     let readings = jobs.iter().map(open).collect::<Result<Vec<_>>>()?;
     // Truth looks at every sample again and again.
     readings.iter().try_for_each(Reading::check_held)?;
-    let inputs = readings.iter().flat_map(Reading::files).chain(arguments.views.as_deref()).chain(arguments.path.as_deref());
+    let inputs =
+        readings.iter().flat_map(Reading::files).chain(arguments.views.as_deref()).chain(arguments.path.as_deref());
     let pictures = names.flat_map(|name| comparison.picture_names(&name));
     let folder = Folder::open(&arguments.output, pictures, Taken::inputs(inputs))?;
     let asked = if plan.is_some() { STEPS_M.len() } else { views().count() * sizes.len() } as f64;

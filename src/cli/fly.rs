@@ -30,7 +30,7 @@ use crate::job::manifest::Sequence;
 use crate::job::name::Naming;
 use crate::job::{Content, Inks, Job, Manifest};
 use crate::plan::frame::Kept;
-use crate::render::{Estimate, Illustration, Page, Renderer};
+use crate::render::{Estimate, Found, Illustration, Renderer};
 use crate::surface::Surface;
 use crate::view::Flight;
 
@@ -126,9 +126,9 @@ pub fn run(arguments: &FlyArguments, talk: &Talk) -> Result<()> {
             let Some(Aloft { renderer, flight, .. }) = &mut aloft else {
                 return Err(Error::mistake("a frame went missing as it was looked at"));
             };
-            renderer.page(&illustration.plan, &flight.camera(job.number), |_| ())
+            renderer.find(&illustration.plan, &flight.camera(job.number), |_| ())
         };
-        work.run(talk, &progress, draw, |job, page: Page| files.write(job, &page, &illustration, &adapter))?;
+        work.run(talk, &progress, draw, |job, found: Found| files.write(job, &found.page(), &illustration, &adapter))?;
         let inks = Inks::of(&illustration.style);
         film.as_ref().map_or(Ok(()), |film| film::make(film, &pictures, &inks, &progress, talk))
     };

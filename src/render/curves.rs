@@ -17,7 +17,7 @@ impl Renderer {
     pub fn curves(&mut self) -> Result<Vec<Curve>> {
         let (frame, piece) = self.last_whole()?;
         let segments = self.segments(&frame, piece)?;
-        Ok(self.linked(&frame, segments))
+        Ok(link(segments, &frame.lattice, &self.perspective(&frame)))
     }
 
     /// What the eye sees of the curves of the last frame.
@@ -28,11 +28,6 @@ impl Renderer {
         let curves = self.curves()?;
         let size = self.last().map_or([0; 2], |frame| frame.pieces.page());
         Ok(visible::chains(curves, size))
-    }
-
-    /// The curves of all segments of a frame.
-    pub(super) fn linked(&self, frame: &Frame, segments: Vec<Segment>) -> Vec<Curve> {
-        link(segments, &frame.lattice, &self.perspective(frame))
     }
 
     /// The segments of curves whose middles lie in a piece that was drawn.

@@ -2,7 +2,8 @@
 
 use super::{Drawn, Renderer};
 use crate::error::Result;
-use crate::line::{Chain, Economy, Lines, Marks, marks, one_pixel_wide, rest, visible};
+use crate::gpu::uniforms::Segment;
+use crate::line::{Chain, Economy, Lines, Mark, Marks, link, marks, one_pixel_wide, rest, visible};
 use crate::plan::{Curves, Frame, Piece, Plan, Yields};
 use crate::view::{Camera, Perspective};
 
@@ -38,6 +39,49 @@ impl Page {
     }
 }
 
+/// What the device has found of a page: all that is left is done without it, by whatever thread.
+pub struct Found {
+    seen: Listed,
+    /// With hidden curves.
+    all: Option<Listed>,
+}
+
+/// What passes listed of a frame.
+struct Listed {
+    marks: Vec<Mark>,
+    segments: Vec<Segment>,
+    covered: u64,
+    longest_walk: u32,
+    frame: Frame,
+    perspective: Perspective,
+}
+
+impl Found {
+    /// The page: curves linked, and what of them is seen.
+    pub fn page(self) -> Page {
+        let hidden = self.all.map(|all| all.page().hidden);
+        let page = self.seen.page();
+        Page { hidden: hidden.unwrap_or(page.hidden), ..page }
+    }
+}
+
+impl Listed {
+    fn page(self) -> Page {
+        let Self { marks, segments, covered, longest_walk, frame, perspective } = self;
+        let size = frame.pieces.page();
+        let curves = link(segments, &frame.lattice, &perspective);
+        let (chains, hidden) = match frame.plan.curves {
+            Curves::All => visible::seen_and_hidden(curves, size),
+            Curves::On | Curves::Off => (visible::chains(curves, size), Vec::new()),
+        };
+        let marks = match frame.plan.method.entry().yields {
+            Yields::Ink => Marks::new(size, marks),
+            Yields::Curves => one_pixel_wide(&chains, size),
+        };
+        Page { marks, chains, hidden, covered, longest_walk, frame, perspective }
+    }
+}
+
 impl Renderer {
     /// Draws a frame and brings back its ink, piece by piece; tells `progress` what share is done. Hidden curves take a frame
     /// of their own.
@@ -45,23 +89,35 @@ impl Renderer {
     /// # Errors
     /// As [`Self::frame`] and [`Self::read`].
     pub fn page(&mut self, plan: &Plan, camera: &Camera, progress: impl Fn(f64)) -> Result<Page> {
+        self.find(plan, camera, progress).map(Found::page)
+    }
+
+    /// The part of it that needs the device.
+    ///
+    /// # Errors
+    /// As [`Self::page`].
+    pub fn find(&mut self, plan: &Plan, camera: &Camera, progress: impl Fn(f64)) -> Result<Found> {
         if plan.curves != Curves::All {
             let frame = self.plan(plan, camera)?;
-            return self.page_of(frame, progress);
+            return Ok(Found { seen: self.list(frame, progress)?, all: None });
         }
         // Land behind the horizon is as fine as before it, which may make that finer too: what is seen is not to change.
         let all = self.plan(plan, camera)?;
-        let hidden = self.page_of(all, |share| progress(share / 2.0))?.hidden;
+        let all = self.list(all, |share| progress(share / 2.0))?;
         let seen = self.plan(&Plan { curves: Curves::On, ..*plan }, camera)?;
-        let page = self.page_of(seen, |share| progress(0.5 + share / 2.0))?;
-        Ok(Page { hidden, ..page })
+        let seen = self.list(seen, |share| progress(0.5 + share / 2.0))?;
+        Ok(Found { seen, all: Some(all) })
     }
 
-    /// The same of a frame that is planned, on a page that may be [cut](Frame::cut) in a way of its own.
+    /// A page of a frame that is planned, which may be [cut](Frame::cut) in a way of its own.
     ///
     /// # Errors
     /// As [`Self::page`].
     pub fn page_of(&mut self, frame: Frame, progress: impl Fn(f64)) -> Result<Page> {
+        self.list(frame, progress).map(Listed::page)
+    }
+
+    fn list(&mut self, frame: Frame, progress: impl Fn(f64)) -> Result<Listed> {
         let (mut list, mut segments, mut covered, mut longest_walk) = (Vec::new(), Vec::new(), 0, 0);
         let (count, yields) = (frame.pieces.iter().len() as f64, frame.plan.method.entry().yields);
         self.upload(&frame)?;
@@ -78,18 +134,8 @@ impl Renderer {
             }
             progress(f64::from(done) / count);
         }
-        let size = frame.pieces.page();
-        let curves = self.linked(&frame, segments);
-        let (chains, hidden) = match frame.plan.curves {
-            Curves::All => visible::seen_and_hidden(curves, size),
-            Curves::On | Curves::Off => (visible::chains(curves, size), Vec::new()),
-        };
-        let marks = match yields {
-            Yields::Ink => Marks::new(size, list),
-            Yields::Curves => one_pixel_wide(&chains, size),
-        };
         let perspective = self.perspective(&frame);
-        Ok(Page { marks, chains, hidden, covered, longest_walk, frame, perspective })
+        Ok(Listed { marks: list, segments, covered, longest_walk, frame, perspective })
     }
 
     /// Draws a piece of a frame and brings it back, halo and all: `piece.drawn` of the page.
