@@ -76,8 +76,9 @@ fn tell(merged: &Merged, folder: &Path, talk: &Talk) -> Result<()> {
 
 /// Makes a motion picture of what is there.
 fn make(video: &Path, all: &[Merged], folder: &Path, talk: &Talk) -> Result<()> {
-    let flights = all.iter().filter_map(|merged| Some((merged, merged.manifest.fps?, merged.manifest.inks.as_ref()?)));
-    let Some((merged, fps, inks)) = flights.last() else {
+    let mut flights =
+        all.iter().filter_map(|merged| Some((merged, merged.manifest.fps?, merged.manifest.inks.as_ref()?)));
+    let Some((merged, fps, inks)) = flights.next_back() else {
         return Err(Error::setting(Setting::Video, "no flight is in the folder", "make it of the frames of a flight"));
     };
     let Some(pictures) = &merged.pictures else {

@@ -121,7 +121,7 @@ impl Manifest {
     /// it is one where those are not all.
     pub fn file_name(&self) -> String {
         let [index, count] = self.shard;
-        let sequence = self.fps.is_none().then(|| format!("{:.8}-", self.sequence)).unwrap_or_default();
+        let sequence = if self.fps.is_none() { format!("{:.8}-", self.sequence) } else { String::new() };
         let part = self.part.as_ref().map(|part| format!("-{:08x}", xxhash_rust::xxh3::xxh3_64(part.as_bytes()) >> 32));
         format!("{PREFIX}{sequence}{index}-of-{count}{}{SUFFIX}", part.unwrap_or_default())
     }

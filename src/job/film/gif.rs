@@ -35,8 +35,7 @@ pub fn write(
     let mut encoder = Encoder::new(out, width, height, &palette.colours.concat()).map_err(io_error)?;
     encoder.set_repeat(Repeat::Infinite).map_err(io_error)?;
     let mut last: Option<Picture> = None;
-    let mut number = 0;
-    for picture in std::iter::once(Ok(first)).chain(pictures) {
+    for (number, picture) in (0..).zip(std::iter::once(Ok(first)).chain(pictures)) {
         let picture = picture?;
         let part = last.as_ref().map_or(picture.whole(), |last| picture.changed(last));
         let same = last.as_ref().map(|last| last.part(part));
@@ -53,7 +52,6 @@ pub fn write(
         frame.make_lzw_pre_encoded();
         encoder.write_lzw_pre_encoded_frame(&frame).map_err(io_error)?;
         last = Some(picture);
-        number += 1;
     }
     Ok(())
 }
