@@ -21,13 +21,13 @@ pub mod generate;
 pub mod info;
 pub mod jobs;
 pub mod journey;
-mod listing;
+pub mod listing;
 pub mod memory;
 pub mod merge;
 pub mod norths;
 pub mod outputs;
 pub mod page;
-mod plan;
+pub mod plan;
 pub mod progress;
 pub mod scene;
 pub mod style;
@@ -40,7 +40,7 @@ pub mod view_report;
 pub mod viewpoint;
 pub mod views;
 pub mod words;
-mod work;
+pub mod work;
 
 use clap::{Parser, Subcommand};
 

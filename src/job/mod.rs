@@ -2,7 +2,7 @@
 //! where it fails.
 //!
 //! A [`Job`] is the files of one drawing and the [names](name) of all that they are made of. Files bear these names
-//! ([`Seal`](crate::ink::Seal)), so that a run that is taken up again knows what is done by the files alone, without the DEM.
+//! ([`Seal`]), so that a run that is taken up again knows what is done by the files alone, without the DEM.
 //! [`run`] draws on one thread and writes on another; [`Frames`] and [`Shard`] say which jobs are whose; a [`Manifest`] beside
 //! the files says what was to be made by which process, and [`Merged`] whether all of it is there.
 
