@@ -61,7 +61,7 @@ fn files_that_are_no_raster() {
     let dir = folder();
     let at = |name: &str| dir.path().join(name);
     refused(&at("missing.tif"), &["no such file", "spelling"]);
-    refused(dir.path(), &["directory", "name the raster file"]);
+    refused(dir.path(), &["directory", "name the file"]);
     fs::write(at("empty.tif"), "").unwrap();
     refused(&at("empty.tif"), &["empty", "copy or download"]);
     fs::write(at("notes.txt"), "Went up at dawn.\nCame down at dusk.\n").unwrap();
