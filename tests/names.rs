@@ -7,8 +7,8 @@ use std::path::Path;
 use clap::CommandFactory;
 use hachure::cli::Arguments;
 use hachure::cli::choices::default_share;
-use hachure::cli::page;
-use hachure::cli::viewpoint::SIZE;
+use hachure::cli::viewpoint::{FOV, SIZE};
+use hachure::cli::{flight, page};
 use hachure::ink::{Sheet, Style};
 use hachure::plan::detail::ERROR_PX;
 
@@ -139,8 +139,7 @@ fn help_says_the_defaults_that_the_code_has() {
     let share = default_share().to_owned();
     let style = Style::default();
     let size = format!("{}x{}", SIZE.width, SIZE.height);
-    let expected = [
-        ("size", size.clone()),
+    let drawing = [
         ("error_px", ERROR_PX.to_string()),
         ("share", share),
         ("page", format!("{} mm across, as --size is shaped", Sheet::WIDTH)),
@@ -148,9 +147,13 @@ fn help_says_the_defaults_that_the_code_has() {
         ("dpi", format!("{} with --page, else as --size has it", page::DPI)),
         ("min_jump", format!("as the style has it, {}", style.min_jump)),
         ("min_gap", format!("as the style has it, {}mm", style.min_gap)),
-        ("size", size),
     ];
-    assert_eq!(defaults(&Arguments::command()), expected.map(|(flag, value)| (flag.to_owned(), value)));
+    let size = || ("size", size.clone());
+    let draw = [&[size()], &drawing[..]].concat();
+    let seconds = ("duration", format!("those times, else {}", flight::DURATION));
+    let fly = [&[seconds, ("fov", FOV.to_string()), size()], &drawing[..]].concat();
+    let expected = [draw, fly, vec![size()]].concat().into_iter().map(|(flag, value)| (flag.to_owned(), value));
+    assert_eq!(defaults(&Arguments::command()), expected.collect::<Vec<_>>());
     let arg = clap::Arg::new("x").long("x").help("Metres [default: 7]");
     assert_eq!(defaults(&clap::Command::new("c").arg(arg)), [("x".to_owned(), "7".to_owned())], "one is found");
     let mut open = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join("src/cli")];

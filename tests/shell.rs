@@ -133,10 +133,16 @@ fn completions_and_man_pages_hold_every_flag() {
     let generate = |arguments: &[&str]| stdout(&succeeds(place.run(&[&["generate"], arguments].concat())));
     let completions = ["bash", "zsh", "fish", "elvish", "powershell"].map(|shell| generate(&["completions", shell]));
     let pages = generate(&["man"]).replace("\\-", "-");
-    assert_eq!(pages.matches("\n.TH hachure").count(), 6, "one page a subcommand: {pages}");
+    assert_eq!(pages.matches("\n.TH hachure").count(), 9, "one page a subcommand: {pages}");
     let command = Arguments::command();
     let of = |name| command.find_subcommand(name).expect("a subcommand").get_arguments();
-    let shown = of("draw").chain(of("compare")).chain(of("styles")).filter(|a| !a.is_hide_set());
+    let shown = of("draw")
+        .chain(of("fly"))
+        .chain(of("batch"))
+        .chain(of("merge"))
+        .chain(of("compare"))
+        .chain(of("styles"))
+        .filter(|a| !a.is_hide_set());
     let shown = shown.filter_map(|a| a.get_long()).collect::<Vec<_>>();
     assert!(["azimuth", "output", "truth-level"].iter().all(|flag| shown.contains(flag)));
     for flag in shown {
@@ -147,11 +153,15 @@ fn completions_and_man_pages_hold_every_flag() {
     generate(&["man", "-o", "."]);
     assert_eq!(
         place.written(),
-        ["hachure-cache.1", "hachure-compare.1", "hachure-draw.1", "hachure-info.1", "hachure-styles.1", "hachure.1"]
+        ["batch", "cache", "compare", "draw", "fly", "info", "merge", "styles"]
+            .map(|name| format!("hachure-{name}.1"))
+            .into_iter()
+            .chain(["hachure.1".to_owned()])
+            .collect::<Vec<_>>()
     );
-    let names = ["hachure", "hachure-draw", "hachure-compare", "hachure-cache", "hachure-styles", "hachure-info"];
-    let files = names.map(|name| format!("{name}.1"));
-    let files = files.map(|name| fs::read_to_string(place.path(&name)).expect("a page")).concat();
+    let names = ["draw", "fly", "batch", "merge", "compare", "cache", "styles", "info"].map(|name| format!("-{name}"));
+    let files = [""].into_iter().chain(names.iter().map(String::as_str)).map(|name| format!("hachure{name}.1"));
+    let files = files.map(|name| fs::read_to_string(place.path(&name)).expect("a page")).collect::<String>();
     assert_eq!(files.replace("\\-", "-"), pages);
     assert!(!stdout(&place.run(&["--help"])).contains("generate"), "it is for packagers, so hidden");
 }

@@ -17,7 +17,7 @@ use crate::message;
 /// Frames a second unless told otherwise.
 const FPS: f64 = 25.0;
 /// Seconds of a flight that nobody says.
-const DURATION: f64 = 10.0;
+pub const DURATION: f64 = 10.0;
 
 /// The flags, as typed.
 #[derive(Debug, Clone, clap::Args)]

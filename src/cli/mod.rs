@@ -70,6 +70,8 @@ pub struct Arguments {
 enum Command {
     /// Draw a DEM as seen from an eye
     Draw(Box<draw::DrawArguments>),
+    /// Draw the frames of a flight along a path
+    Fly(Box<fly::FlyArguments>),
     /// Make many drawings, as a file lists them
     Batch(Box<batch::BatchArguments>),
     /// Say whether all frames or drawings of a folder are there
@@ -82,8 +84,6 @@ enum Command {
     Styles(styles::StylesArguments),
     /// Say what a DEM holds
     Info(info::InfoArguments),
-    /// Draw the frames of a flight along a path
-    Fly(Box<fly::FlyArguments>),
     /// Make completions, man pages, and terrain to test with
     #[command(hide = true)]
     Generate(generate::GenerateArguments),

@@ -7,7 +7,7 @@ use super::values;
 use super::words::told;
 use crate::cache::Cache;
 use crate::dem::Dem;
-use crate::error::{Error, Result, Setting};
+use crate::error::{Error, Result, Setting, shown};
 use crate::geo::{ElevationUnit, Encoding, Nodata, Order, ReadOptions, Reading, Stage};
 use crate::job::Content;
 use crate::job::name::Naming;
@@ -129,7 +129,7 @@ impl TerrainArguments {
     /// # Errors
     /// As [`Self::open`] where it is not known, and [`Cache::content`].
     pub fn content(&self, exaggeration: f64, cache: &Cache, talk: &Talk) -> Result<Content> {
-        let of = self.dems.iter().map(|dem| dem.display().to_string()).collect::<Vec<_>>().join(", ");
+        let of = self.dems.iter().map(|dem| shown(dem)).collect::<Vec<_>>().join(", ");
         let files = || {
             let whole = Self { crop: self.crop.filter(|_| !self.is_sheet), ..self.clone() };
             let reading = whole.open(&self.dems, exaggeration, cache.clone())?;
