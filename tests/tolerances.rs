@@ -531,6 +531,6 @@ pub const LEAP: f64 = 0.12;
 
 /// How far a line may move between near and far where half a line of a hundred comes to the page.
 ///
-/// Example: .04 where it is the nearest, beyond a ridge of only five lines; the depth of the nearest twentieth would go from one
-/// ridge to the next, .4 and more.
-pub const RECESSION_STEP: f64 = 0.05;
+/// Example: .055 where it is twice as far as all others; the depth of the nearest twentieth would go from one ridge to the next,
+/// .4 and more.
+pub const RECESSION_STEP: f64 = 0.08;
