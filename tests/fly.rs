@@ -175,7 +175,21 @@ fn shards_in_any_order_make_the_same_frames() {
         assert!(said.contains(absent), "{said}");
     }
     assert_eq!(bytes(&frames(&place.path("shards"))), bytes(&whole));
+    let film = |name: &str| place.run(&["merge", "shards", "--video", name]);
+    assert_eq!(film("film.gif").status.code(), Some(0));
+    let mut decoder =
+        gif::DecodeOptions::new().read_info(fs::File::open(place.path("film.gif")).expect("a film")).expect("a GIF");
+    let mut shown = 0;
+    while decoder.read_next_frame().expect("a frame").is_some() {
+        shown += 1;
+    }
+    assert_eq!(shown, COUNT, "all shards' frames");
+    let output = film("shards/00003.png");
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("--video: shards/00003.png is a frame"), "{}", stderr(&output));
     fs::remove_file(place.path("shards/00007.png")).expect("it is there");
+    assert_eq!(film("half.gif").status.code(), Some(1), "no film of what is not whole");
+    assert!(!place.path("half.gif").exists());
     let merged = merge();
     assert_eq!(merged.status.code(), Some(1));
     assert!(String::from_utf8_lossy(&merged.stdout).contains("missing or not whole: 7"));
@@ -324,6 +338,9 @@ fn what_cannot_be_flown_is_told_in_one_line() {
     wrong(&as_gif, 2, "hill.gif is read as input");
     fs::remove_file(place.path("hill.gif")).expect("it is there");
     assert_eq!(place.written(), Vec::<String>::new(), "nothing was written");
+    fs::write(place.path("plain"), "").expect("a file");
+    wrong(&fly("a/%05d.png", &["--mask", "plain/%05d.png"]), 1, "plain: cannot be written");
+    assert!(frames(&place.path("a")).is_empty(), "before a frame is drawn");
     fs::write(place.path("hachure-0-of-1.json"), "{}").expect("a file");
     wrong(&fly("%05d.png", &[]), 1, "hachure-0-of-1.json: it is no manifest");
     wrong(&["merge", "."], 1, "hachure-0-of-1.json: it is no manifest");

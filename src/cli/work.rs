@@ -1,10 +1,10 @@
 //! What every subcommand that makes many drawings does about them: manifest, progress, what is said at the end.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
-use std::{fs, io};
 
 use super::jobs::Share;
 use super::progress::{Counts, Progress, duration};
@@ -13,7 +13,7 @@ use super::words;
 use crate::error::{Error, Result, shown};
 use crate::files::{Output, output, signals};
 use crate::job::manifest::Sequence;
-use crate::job::{self, Content, Event, Job, Manifest};
+use crate::job::{self, Content, Event, Job, Made, Manifest};
 
 /// How often the manifest is written while the work goes on.
 const OFTEN: Duration = Duration::from_secs(10);
@@ -103,18 +103,26 @@ impl Work<'_> {
         }
     }
 
-    /// Makes the folders, sees whether they can be written to, and removes what a process that was killed has left there.
+    /// Makes the folders, and removes what a process that was killed has left there. Fails where no job can write all its
+    /// files: else those fail that cannot.
     fn prepare(&self) -> Result<()> {
-        let files = self.jobs.iter().flat_map(|job| &job.files);
-        let folders: BTreeSet<&Path> = files.filter_map(|made| made.path.parent()).collect();
-        for folder in folders.into_iter().chain([self.folder.as_path()]) {
-            let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-            let failed = |error: io::Error| Error::output(folder, &error);
-            fs::create_dir_all(folder).map_err(failed)?;
-            tempfile::tempfile_in(folder).map_err(failed)?;
-            output::remove_left(folder, LEFT);
+        fn folder_of(made: &Made) -> &Path {
+            made.path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
         }
-        Ok(())
+        let ready = |folder: &Path| {
+            fs::create_dir_all(folder)
+                .and_then(|()| tempfile::tempfile_in(folder))
+                .map_err(|error| Error::output(folder, &error))?;
+            output::remove_left(folder, LEFT);
+            Ok(())
+        };
+        ready(&self.folder)?;
+        let folders: BTreeSet<&Path> = self.jobs.iter().flat_map(|job| &job.files).map(folder_of).collect();
+        let failed: BTreeMap<&Path, Error> =
+            folders.into_iter().filter_map(|folder| Some((folder, ready(folder).err()?))).collect();
+        let fails = |job: &Job| job.files.iter().any(|made| failed.contains_key(folder_of(made)));
+        let all_fail = self.jobs.iter().all(fails);
+        failed.into_values().next().filter(|_| all_fail).map_or(Ok(()), Err)
     }
 
     fn noted(&self) -> Result<Noted<'_>> {
