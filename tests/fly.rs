@@ -378,6 +378,16 @@ fn a_mask_alone_is_the_mask_of_the_drawing() {
 }
 
 #[test]
+fn frames_without_a_line_are_told() {
+    let place = Place::new();
+    let output = place.run(&fly("up/%05d.png", &["--frames", "0-2", "--altitude", "80"]));
+    assert_eq!(output.status.code(), Some(0));
+    let said = stderr(&output);
+    assert!(said.contains("3 of the frames drawn hold no line; see where they look with --preview"), "{said}");
+    assert!(!stderr(&place.run(&fly("on/%05d.png", &["--frames", "0"]))).contains("hold no line"));
+}
+
+#[test]
 fn a_path_is_followed_frame_by_frame_by_compare() {
     let place = Place::new();
     let keys = |east: f64| format!("[[key]]\nplace = [{east}, 4000080, \"+40\"]\nazimuth = 20\naltitude = -10\n");

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::blank;
 use super::cache::CacheArguments;
@@ -128,7 +129,19 @@ pub fn run(arguments: &FlyArguments, talk: &Talk) -> Result<()> {
             };
             renderer.find(&illustration.plan, &flight.camera(job.number), |_| ())
         };
-        work.run(talk, &progress, draw, |job, found: Found| files.write(job, &found.page(), &illustration, &adapter))?;
+        let blank = AtomicUsize::new(0);
+        let finish = |job: &Job, found: Found| {
+            let page = found.page();
+            blank.fetch_add(usize::from(page.marks.inked() == 0), Ordering::Relaxed);
+            files.write(job, &page, &illustration, &adapter)
+        };
+        work.run(talk, &progress, draw, finish)?;
+        match blank.into_inner() {
+            0 => {}
+            count => {
+                talk.warn(&format!("{count} of the frames drawn hold no line; see where they look with --preview"))
+            }
+        }
         let inks = Inks::of(&illustration.style);
         film.as_ref().map_or(Ok(()), |film| film::make(film, &pictures, &inks, &progress, talk))
     };

@@ -72,11 +72,6 @@ impl OutputArguments {
         })
     }
 
-    /// Whether a report is asked for.
-    pub fn want_report(&self) -> bool {
-        self.json.is_some()
-    }
-
     /// Whether the mask is asked for.
     pub fn want_mask(&self) -> bool {
         self.mask.is_some()
