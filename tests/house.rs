@@ -7,9 +7,9 @@ use clap::CommandFactory;
 use hachure::cli::Arguments;
 
 /// Folders and files of `src` in the order in which the data flows; errors are everyone's.
-const ORDER: [&str; 17] = [
-    "error", "files", "cache", "dem", "geo", "surface", "view", "plan", "gpu", "line", "ink", "truth", "render",
-    "measure", "job", "report", "cli",
+const ORDER: [&str; 18] = [
+    "error", "files", "cache", "dem", "geo", "surface", "relief", "view", "plan", "gpu", "line", "ink", "truth",
+    "render", "measure", "job", "report", "cli",
 ];
 
 /// What truth may know.
