@@ -14,11 +14,11 @@ use crate::gpu::clock::Timer;
 use crate::gpu::uniforms::{Counts, near_plane};
 use crate::gpu::work::Work;
 use crate::gpu::{CurveBuffers, Gpu, OnDevice, PageBuffers, Scene, Stages};
-use crate::line::InkRaster;
+use crate::line::{InkRaster, Land};
 use crate::message;
 use crate::plan::PassName::Compose;
 use crate::plan::frame::Kept;
-use crate::plan::{Frame, Piece, Plan};
+use crate::plan::{Frame, LandLines, Piece, Plan};
 use crate::surface::Surface;
 use crate::view::{Camera, Perspective};
 
@@ -35,6 +35,7 @@ pub use page::{Found, Page};
 pub struct Renderer {
     gpu: Arc<Gpu>,
     surface: Arc<Surface>,
+    land: Option<Arc<Land>>,
     kept: Kept,
     scene: Scene,
     page: PageBuffers,
@@ -69,7 +70,13 @@ impl Renderer {
         surface.dem().check_patches()?;
         let scene = Scene::new(&gpu)?;
         let (kept, page, curves, stages) = Default::default();
-        Ok(Self { gpu, surface, kept, scene, page, curves, stages, last: None })
+        Ok(Self { gpu, surface, land: None, kept, scene, page, curves, stages, last: None })
+    }
+
+    /// The same with lines on the land, for plans that ask for them.
+    #[must_use]
+    pub fn with_land(self, land: Arc<Land>) -> Self {
+        Self { land: Some(land), ..self }
     }
 
     /// Decides what a frame needs, without a word to the device.
@@ -108,6 +115,9 @@ impl Renderer {
         scene.load(gpu, surface, frame)?;
         page.fit(gpu, frame.pieces.largest())?;
         curves.fit(gpu, frame)?;
+        if frame.plan.land == LandLines::On && curves.buffers().find("laid").is_none() {
+            curves.lay(gpu, &[])?;
+        }
         stages.fit(gpu, frame, scene, page, curves)
     }
 

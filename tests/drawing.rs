@@ -111,7 +111,10 @@ fn every_kind_of_line_stands_in_a_layer() {
     for (kinds, layer) in [
         (&[Line::Occluding, Line::Skyline][..], "silhouette"),
         (&[Line::Border], "border"),
-        (&[Line::Shore, Line::Drainage, Line::Ridge, Line::Hachure, Line::Own], "crease"),
+        (&[Line::Shore], "shore"),
+        (&[Line::Drainage], "drainage"),
+        (&[Line::Ridge], "ridge"),
+        (&[Line::Own], "own"),
     ] {
         assert!(kinds.iter().all(|line| layer_of(*line) == [format!("1 {layer}")]), "{layer}: {kinds:?}");
     }

@@ -11,6 +11,8 @@ use crate::surface::lattice::{CHUNK_QUADS, CHUNK_VERTICES};
 
 /// Words that tell what lies around a chunk.
 pub const AROUND: u32 = 16;
+/// Points of lines on the land for which there is room at first.
+const LEAST_LAID: u32 = 1 << 12;
 /// Vertices of the side of a chunk.
 pub const SIDE_VERTICES: u32 = 4 * CHUNK_QUADS;
 
@@ -38,6 +40,8 @@ pub struct CurveBuffers {
     buffers: Buffers,
     chunks: u32,
     capacity: CurveCapacity,
+    /// Points of lines on the land, and for how many there is room.
+    laid: [u32; 2],
     /// How often some were made anew: what binds them must then bind them again.
     generation: u64,
 }
@@ -49,7 +53,7 @@ impl CurveBuffers {
     /// [`Error::Limit`] when a buffer would exceed what every device binds; whatever the driver reports.
     pub fn fit(&mut self, gpu: &Gpu, frame: &Frame) -> Result<()> {
         let chunks = frame.lattice.chunks().len() as u32;
-        if !frame.plan.has_curves() || (chunks <= self.chunks && self.generation > 0) {
+        if !frame.plan.has_curves() || (chunks <= self.chunks && self.buffers.find("segments").is_some()) {
             return Ok(());
         }
         let chunks = chunks + chunks / 4;
@@ -95,6 +99,31 @@ impl CurveBuffers {
             return Ok(None);
         }
         gpu.read(self.buffers.get("segments")?, segments as usize).map(Some)
+    }
+
+    /// Takes points of lines on the land by their places on the lattice, in 1/256 of its finest step, none of them the north-west
+    /// sample.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] when they would exceed what every device binds; whatever the driver reports.
+    pub fn lay(&mut self, gpu: &Gpu, places: &[[i32; 2]]) -> Result<()> {
+        let count = places.len() as u32;
+        if self.buffers.find("laid").is_none() || count > self.laid[1] {
+            let room = (count + count / 4).max(LEAST_LAID);
+            self.buffers.create(gpu, "laid", u64::from(room) * size_of::<[i32; 2]>() as u64)?;
+            self.laid[1] = room;
+            self.generation += 1;
+        }
+        self.laid[0] = count;
+        let buffer = self.buffers.get("laid")?;
+        let nothing = vec![[0; 2]; (self.laid[1] - count) as usize];
+        gpu.queue.write_buffer(buffer, 0, bytemuck::cast_slice(&[places, &nothing].concat()));
+        gpu.check()
+    }
+
+    /// How many points of lines on the land there are.
+    pub fn laid(&self) -> u32 {
+        self.laid[0]
     }
 
     /// For how much there is room.

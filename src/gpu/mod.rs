@@ -12,6 +12,7 @@ pub mod crossed;
 pub mod curves;
 pub mod device;
 pub mod facing;
+pub mod lay;
 pub mod meet;
 pub mod memory;
 pub mod on_device;

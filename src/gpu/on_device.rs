@@ -114,6 +114,7 @@ impl<'a> OnDevice<'a> {
             PassName::Adjacency => adjacency::invocations(size),
             PassName::Border | PassName::RimSegments => border::invocations(pass, self.scene.rim_edges()),
             PassName::Sight => pass.folded(self.curves.capacity().segments.into()),
+            PassName::Lay => pass.folded(self.curves.laid().into()),
             PassName::Segments => pass.folded(self.curves.capacity().crossed.into()),
             PassName::Turning | PassName::Wanted => pass.folded(chunks.into()),
             PassName::Meet => meet::invocations(chunks),

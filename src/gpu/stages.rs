@@ -9,7 +9,7 @@ use super::page::PageBuffers;
 use super::pass::Pass;
 use super::scene::Scene;
 use super::uniforms::BatchUniform;
-use super::{adjacency, border, candidates, compose, crossed, facing, meet, pairs, project, rasterize};
+use super::{adjacency, border, candidates, compose, crossed, facing, lay, meet, pairs, project, rasterize};
 use super::{rasterize_large, rim_segments, seam, segments, sight, tessellate, toward_away, turn, turning};
 use super::{walk, walk_rest, wanted};
 use crate::error::{Error, Result};
@@ -209,6 +209,7 @@ fn pass(gpu: &Gpu, frame: &Frame, name: PassName, constants: &[(&str, f64)]) -> 
         PassName::Crossed => crossed::pass(gpu, constants),
         PassName::Segments => segments::pass(gpu, frame.keeps_vertices(), constants),
         PassName::RimSegments => rim_segments::pass(gpu, frame.keeps_vertices(), constants),
+        PassName::Lay => lay::pass(gpu, frame.keeps_vertices(), constants),
         PassName::Sight => sight::pass(gpu, frame.keeps_vertices(), constants),
         PassName::Compose => compose::pass(gpu, constants),
     }

@@ -132,6 +132,8 @@ pub struct Segment {
 pub mod code {
     /// Which corner of the facet faces the other way, or which edge is of the rim.
     pub const CORNER: u32 = 3;
+    /// A point of a line on the land, in the place of a corner; its number stands where that of a part would.
+    pub const LAID: u32 = 3;
     /// That corner faces away.
     pub const AWAY_CORNER: u32 = 4;
     /// It is of the rim.

@@ -1,8 +1,8 @@
 //! From the lines of a page to a drawing: which layers there are, and what stands in them.
 //!
 //! Each kind of line has a layer with a pen; distances may split it, and where lines of varying width are drawn by pens of
-//! one width, so do those. From bottom to top, which is the order of plotting: hidden lines, borders, silhouettes, creases,
-//! of each the farthest first and the finest.
+//! one width, so do those. From bottom to top, which is the order of plotting: hidden lines, lines on the
+//! land, borders, silhouettes, of each the farthest first and the finest.
 
 use std::collections::BTreeMap;
 
@@ -29,20 +29,27 @@ const MARK: f64 = 4.0;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
     Hidden,
+    Shore,
+    Drainage,
+    Ridge,
+    Own,
     Border,
     Silhouette,
-    Crease,
 }
 
 impl Kind {
-    const ALL: [Self; 4] = [Self::Hidden, Self::Border, Self::Silhouette, Self::Crease];
+    const ALL: [Self; 7] =
+        [Self::Hidden, Self::Shore, Self::Drainage, Self::Ridge, Self::Own, Self::Border, Self::Silhouette];
 
     /// What shows a kind of line.
     fn of(line: Line) -> Self {
         match line {
             Line::Occluding | Line::Skyline => Self::Silhouette,
             Line::Border => Self::Border,
-            Line::Shore | Line::Drainage | Line::Ridge | Line::Hachure | Line::Own => Self::Crease,
+            Line::Shore => Self::Shore,
+            Line::Drainage => Self::Drainage,
+            Line::Ridge => Self::Ridge,
+            Line::Own => Self::Own,
         }
     }
 
@@ -51,7 +58,10 @@ impl Kind {
             Self::Hidden => "hidden",
             Self::Border => "border",
             Self::Silhouette => "silhouette",
-            Self::Crease => "crease",
+            Self::Shore => "shore",
+            Self::Drainage => "drainage",
+            Self::Ridge => "ridge",
+            Self::Own => "own",
         }
     }
 
@@ -60,7 +70,10 @@ impl Kind {
             Self::Hidden => style.pens.hidden,
             Self::Border => style.pens.border,
             Self::Silhouette => style.pens.silhouette,
-            Self::Crease => style.pens.crease,
+            Self::Shore => style.pens.shore,
+            Self::Drainage => style.pens.drainage,
+            Self::Ridge => style.pens.ridge,
+            Self::Own => style.pens.own,
         }
     }
 }

@@ -11,6 +11,7 @@ use serde::{Deserialize, Deserializer, Serialize, de};
 use super::styles::BuiltIn;
 use super::{Colour, Pen};
 use crate::line::Economy;
+use crate::relief::Crease;
 
 /// Least and greatest of numbers in styles.
 const LENGTH: [f64; 2] = [0.0, 100.0];
@@ -43,6 +44,9 @@ pub struct Style {
     #[serde(deserialize_with = "length")]
     #[schemars(range(min = LENGTH[0], max = LENGTH[1]))]
     pub min_gap: f64,
+    /// Which lines of the land are drawn, whatever the eye: each in a layer of its own. Contours only.
+    #[serde(deserialize_with = "creases")]
+    pub creases: Vec<Crease>,
     /// Whether lone pixels of a mask are drawn, as dots; else they are left out as specks that say nothing.
     pub dots: bool,
     /// How wide lines are along their way.
@@ -103,8 +107,14 @@ pub struct Pens {
     pub silhouette: Pen,
     /// The border of the DEM and of its voids.
     pub border: Pen,
-    /// Creases and other lines of the world.
-    pub crease: Pen,
+    /// Where land and flat water meet.
+    pub shore: Pen,
+    /// Streams.
+    pub drainage: Pen,
+    /// Where water parts.
+    pub ridge: Pen,
+    /// Lines that the user gives.
+    pub own: Pen,
     /// Lines that land hides.
     pub hidden: Pen,
 }
@@ -158,6 +168,7 @@ impl Default for Style {
             tolerance: 0.075,
             min_jump: 0.01,
             min_gap: 0.45,
+            creases: Vec::new(),
             dots: false,
             weight: Weight::default(),
             wobble: Wobble::default(),
@@ -183,7 +194,23 @@ impl Default for Wobble {
 impl Default for Pens {
     fn default() -> Self {
         let pen = |width| Pen { width, ..Pen::default() };
-        Self { silhouette: pen(0.3), border: pen(0.24), crease: pen(0.18), hidden: pen(0.15) }
+        Self {
+            silhouette: pen(0.3),
+            border: pen(0.24),
+            shore: pen(0.18),
+            drainage: pen(0.18),
+            ridge: pen(0.18),
+            own: pen(0.24),
+            hidden: pen(0.15),
+        }
+    }
+}
+
+impl Pens {
+    /// All of them.
+    pub fn all(&self) -> [Pen; 7] {
+        let Self { silhouette, border, shore, drainage, ridge, own, hidden } = *self;
+        [silhouette, border, shore, drainage, ridge, own, hidden]
     }
 }
 
@@ -221,8 +248,7 @@ impl Style {
 
     /// Width of the broadest pen.
     pub fn broadest(&self) -> f64 {
-        let Pens { silhouette, border, crease, hidden } = self.pens;
-        let own = [silhouette, border, crease, hidden].map(|pen| pen.width).into_iter().fold(0.0, f64::max);
+        let own = self.pens.all().map(|pen| pen.width).into_iter().fold(0.0, f64::max);
         self.plot.widths.last().copied().filter(|_| self.plot.centre_lines).unwrap_or(own)
     }
 
@@ -279,6 +305,14 @@ fn speed<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
 
 fn seconds<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
     within(from, SECONDS, "seconds")
+}
+
+/// Each once, in one order.
+fn creases<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Crease>, D::Error> {
+    let mut creases = Vec::<Crease>::deserialize(from)?;
+    creases.sort_unstable();
+    creases.dedup();
+    Ok(creases)
 }
 
 /// Pens at hand, from fine to broad.

@@ -19,10 +19,15 @@ pub enum Line {
     Drainage,
     /// Where water parts.
     Ridge,
-    /// A line down a slope, drawn for tone.
-    Hachure,
     /// A line that the user gives.
     Own,
+}
+
+impl Line {
+    /// Whether it lies on the land whatever the eye, and bounds nothing of what that sees.
+    pub fn is_of_land(self) -> bool {
+        !matches!(self, Self::Occluding | Self::Skyline | Self::Border)
+    }
 }
 
 /// A point of a chain.
@@ -40,8 +45,8 @@ pub struct ChainPoint {
     pub world: DVec3,
     /// Pixels of ink in the square of 9 x 9 about it; 0 where none were [counted](super::crowded).
     pub crowd: u32,
-    /// How strongly it is drawn, 0 to 1, from here halfway to the points before and after: 1 until [economy](super::economy)
-    /// lowers it.
+    /// How strongly it is drawn, 0 to 1, from here halfway to the points before and after: until [economy](super::economy) lowers
+    /// it 1, and of lines on the land what the page [shows](super::detail) of them.
     pub weight: f32,
 }
 

@@ -14,7 +14,7 @@ use glam::DVec2;
 use rayon::prelude::*;
 use xxhash_rust::xxh3::xxh3_64;
 
-use super::Curve;
+use super::{Bound, Curve};
 
 /// Width and height of a cell, px: a stretch is at most about a pixel long, and those that crowd on far slopes lie level.
 const CELL: DVec2 = DVec2::new(1.0, 0.25);
@@ -66,7 +66,9 @@ impl<'a> Crossings<'a> {
             }
         }
         let of_curve = |curve: &'a Curve| {
-            let stretches = 0..curve.stretches.len();
+            // Lines that lie on the surface bound nothing: they hide none.
+            let bounds = |s: &usize| !matches!(curve.stretches[*s].bound, Bound::Nothing(_));
+            let stretches = (0..curve.stretches.len()).filter(bounds);
             let asked = |s: usize| crossings.buckets(curve, s).filter(|&bucket| is_asked[bucket]).map(move |b| (b, s));
             let listed = stretches.flat_map(asked).map(|(bucket, s)| (bucket, Edge::new(curve, s)));
             listed.collect::<Vec<_>>()

@@ -1,10 +1,12 @@
-//! Curves on the surface: where it turns from toward to away, and where it ends.
+//! Curves on the surface: where it turns from toward to away, where it ends, and lines that lie on it.
 //!
 //! What faces the eye is bounded by contours and by the rim: its boundary, walked with the surface that faces the eye on
 //! the left (seen from above), is a set of curves that neither branch nor cross. A curve has open ends only where what is
 //! certainly hidden or beside the page was left out.
 
 use glam::{DVec2, DVec3};
+
+use super::Line;
 
 /// A place on the lattice, in 1/256 of its finest step, x east and y south of the north-west sample.
 pub type Place = [i32; 2];
@@ -20,6 +22,8 @@ pub struct CurvePoint {
     pub world: DVec3,
     /// Where it lies on the lattice.
     pub at: Place,
+    /// How strongly the page shows what the curve draws, 0 to 1; 1 of what bounds the surface.
+    pub weight: f32,
 }
 
 /// Which boundary of the toward surface a stretch is.
@@ -29,6 +33,8 @@ pub enum Bound {
     Contour,
     /// The surface ends.
     Rim,
+    /// Nothing: a line that lies on it.
+    Nothing(Line),
 }
 
 /// What is known of whether the eye sees a stretch.
@@ -56,7 +62,7 @@ pub struct Stretch {
     pub behind: f32,
     /// How steeply facing falls along the view direction: sine of the angle between the stretch and the ray through it, seen
     /// from the outside of the surface. Above 0: convex, the surface folds out of sight behind it; below 0: concave, it hides
-    /// itself. 0 at a cusp. 1 for the rim.
+    /// itself. 0 at a cusp. 1 for all but contours.
     pub fall: f32,
     /// On the page, the unit vector from the surface outwards, to what lies behind.
     pub outward: DVec2,
@@ -106,6 +112,7 @@ impl Curve {
             depth,
             world: a.world.lerp(b.world, share * b.depth / depth),
             at,
+            weight: a.weight + (b.weight - a.weight) * share as f32,
         }
     }
 

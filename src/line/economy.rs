@@ -31,6 +31,9 @@ const BORDER_RANK: f64 = 0.1;
 const SKYLINE_RANK: f64 = 1.0;
 /// How much stronger a skyline is for being farther, for each unit of ln depth.
 const SKYLINE_SHARE: f64 = 0.01;
+/// How strong a line on the land is, and how much stronger one of full weight: all boundaries of the surface are stronger.
+const LAND_RANK: f64 = -40.0;
+const LAND_SHARE: f64 = 4.0;
 /// Where its jump or the sky ends, a line runs on whole for the first of these and fades until the second, gaps.
 const RUN_OUT: [f64; 2] = [1.0, 3.0];
 /// Along a chain, directions are averaged over about the first of these to either side, jumps over the second, gaps.
@@ -79,16 +82,26 @@ fn samples(chain: &Chain, index: u32, economy: &Economy) -> Vec<Sample> {
     let direction = |i: usize| along.direction(i).to_array();
     let directions: Vec<_> = (0..chain.points.len()).map(direction).collect();
     let directions = along.averaged(&directions, soft[0]);
+    let is_of_land = chain.line().is_of_land();
     let measures = |point: &ChainPoint| {
+        if is_of_land {
+            return [point.weight.into(), LAND_RANK + LAND_SHARE * f64::from(point.weight)];
+        }
         let by_jump = if min_jump > 0.0 { fade([min_jump, 2.0 * min_jump], point.jump()) } else { 1.0 };
         [by_jump, rank(point, min_jump)]
     };
     let measures: Vec<_> = chain.points.iter().map(measures).collect();
     let measures = along.averaged(&measures, soft[1]);
-    // Averages have long tails.
-    let by_jump: Vec<f64> = measures.iter().map(|measures| fade(TAILS, measures[0])).collect();
-    let by_jump = along.spread(&by_jump, runs_out);
-    let is_skyline = |i: usize| f64::from(u8::from(along.draws(i, |point| point.behind == 0.0)));
+    let by_jump: Vec<f64> = match is_of_land {
+        true => chain.points.iter().map(|point| point.weight.into()).collect(),
+        // Averages have long tails.
+        false => {
+            let by_jump: Vec<f64> = measures.iter().map(|measures| fade(TAILS, measures[0])).collect();
+            along.spread(&by_jump, runs_out)
+        }
+    };
+    let is_skyline =
+        |i: usize| f64::from(u8::from(along.draws(i, |point| point.behind == 0.0 && !point.line.is_of_land())));
     let skyline: Vec<f64> = (0..chain.points.len()).map(is_skyline).collect();
     let skyline = along.spread(&skyline, runs_out);
     // Lengths are told in gaps, were they ever so narrow.

@@ -19,7 +19,7 @@ use super::Id;
 use super::curve::Place;
 
 /// Steps of a [`Place`] across a cell of level 1: 64 of the finest lattice, in 256 parts.
-const CELL: i32 = 64 * 256;
+pub(super) const CELL: i32 = 64 * 256;
 /// Bits for a row or column of cells.
 const BITS: u32 = 18;
 

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use super::curve::{Bound, Curve, CurvePoint, Sight, Stretch};
+use super::laid::is_laid;
 use crate::gpu::uniforms::{Segment, code, seen};
 use crate::surface::Lattice;
 use crate::surface::lattice::LatticePoint;
@@ -23,8 +24,9 @@ const BETWEEN_PARTS: u32 = 127;
 const BITS: u32 = 23;
 
 /// The curves that segments on the facets of a lattice make up. In the order of their first segments' facets, whatever the
-/// order of the segments; one given twice counts once.
+/// order of the segments; one given twice counts once, points of lines on the land play no part.
 pub fn link(mut segments: Vec<Segment>, lattice: &Lattice, perspective: &Perspective) -> Vec<Curve> {
+    segments.retain(|segment| !is_laid(segment));
     let name = |segment: &Segment| (segment.facet, segment.code);
     segments.par_sort_unstable_by_key(name);
     segments.dedup_by_key(|segment| name(segment));
@@ -113,7 +115,7 @@ fn curve(run: &[&Segment], closed: bool, perspective: &Perspective) -> Option<Cu
     let point = |from_eye: [f32; 3], at: [i32; 2]| {
         let world = perspective.eye() + Vec3::from(from_eye).as_dvec3();
         let (place, depth) = perspective.project(world);
-        CurvePoint { place, depth, world, at }
+        CurvePoint { place, depth, world, at, weight: 1.0 }
     };
     let mut points: Vec<CurvePoint> = parts.iter().map(|part| point(part[0].start, part[0].at)).collect();
     if let Some(last) = run.last().filter(|_| !closed) {

@@ -12,6 +12,7 @@ pub mod clearance;
 mod crossing;
 pub mod crowd;
 pub mod curve;
+pub mod detail;
 mod doubt;
 pub mod economy;
 pub mod ends;
@@ -21,6 +22,7 @@ mod grid;
 pub mod identity;
 mod join;
 mod labels;
+pub mod laid;
 pub mod link;
 pub mod marks;
 pub mod one_pixel;
@@ -40,7 +42,9 @@ pub mod visible;
 pub use chain::{Chain, ChainPoint, Id, Line};
 pub use crowd::crowded;
 pub use curve::{Bound, Curve, CurvePoint, Sight, Stretch};
+pub use detail::Land;
 pub use economy::{Economy, economised};
+pub use laid::Laid;
 pub use link::link;
 pub use marks::{Mark, Marks};
 pub use one_pixel::one_pixel_wide;
@@ -95,7 +99,9 @@ impl Lines {
         let hidden = economised(hidden, &Economy { min_jump: 0.0, ..*economy });
         // A line that fades in or out takes its share along.
         let inked = |[a, b]: [&ChainPoint; 2]| (a.depth, a.place.distance(b.place) * f64::from(a.weight + b.weight));
-        let inked = chains.iter().flat_map(Chain::pairs).map(inked);
+        // Lines on the land do not move the widths of others.
+        let of_surface = chains.iter().filter(|chain| !chain.line().is_of_land());
+        let inked = of_surface.flat_map(Chain::pairs).map(inked);
         let [width, height] = perspective.size().to_array().map(|px| px as u32);
         let recession = Recession::of(inked);
         Self { width, height, eye: perspective.eye(), chains, hidden, recession }

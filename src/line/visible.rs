@@ -31,7 +31,7 @@ const GOES_ON: f64 = 0.05;
 /// What a change of what is drawn costs, px of stretches that draw another: runs under twice that are flicker.
 const FLICKER: f64 = 1.5;
 
-/// What is drawn, in the order of labels.
+/// What boundaries of the surface draw, in the order of labels.
 const LINES: [Line; 3] = [Line::Occluding, Line::Skyline, Line::Border];
 
 /// What the eye sees of curves on a page of so many pixels across and down.
@@ -57,7 +57,8 @@ fn sighted(mut curves: Vec<Curve>, [width, height]: [u32; 2], wants_hidden: bool
     let of_curve = |c: usize| {
         let spans = seen(&curves, c, &folds[c], &doubts[c], &near);
         let spans = joined(&curves[c], &folds[c], clipped(&curves[c], &spans, page));
-        let hidden = if wants_hidden { hidden(&curves[c], &folds[c], &spans, page) } else { Vec::new() };
+        let bounds = !matches!(curves[c].stretches[0].bound, Bound::Nothing(_));
+        let hidden = if wants_hidden && bounds { hidden(&curves[c], &folds[c], &spans, page) } else { Vec::new() };
         let chains = |spans: Vec<Span>| spans.into_iter().map(|span| chain(&curves[c], span)).collect::<Vec<_>>();
         (chains(spans), chains(hidden))
     };
@@ -209,20 +210,16 @@ fn chain(curve: &Curve, span: Span) -> (Chain, Vec<Held>) {
     let pieces: Vec<Span> = pieces(&[span]).collect();
     let stretch = |[from, _]: Span| &curve.stretches[from as usize % n];
     let length = |[from, to]: Span| curve.length(from as usize % n) * (to - from);
-    let drawn = |&piece: &Span| {
-        let drawn = LINES.iter().position(|&line| line == line_of(stretch(piece)));
-        let costs = std::array::from_fn(|label| if drawn == Some(label) { 0.0 } else { length(piece) });
-        Labelled::<3> { costs, step: 0 }
-    };
-    let labels = cheapest(&pieces.iter().map(drawn).collect::<Vec<_>>(), FLICKER);
+    let drawn: Vec<Line> = pieces.iter().map(|piece| line_of(stretch(*piece))).collect();
+    let lengths: Vec<f64> = pieces.iter().map(|piece| length(*piece)).collect();
+    let drawn = settled(&drawn, &lengths);
     let point = |at: f64, piece: usize| {
-        let CurvePoint { place, depth, world, .. } = curve.at(at);
+        let CurvePoint { place, depth, world, weight, .. } = curve.at(at);
         let behind = stretch(pieces[piece]).behind;
-        ChainPoint { place, line: LINES[labels[piece]], depth: depth as f32, behind, world, crowd: 0, weight: 1.0 }
+        ChainPoint { place, line: drawn[piece], depth: depth as f32, behind, world, crowd: 0, weight }
     };
     let mut points: Vec<ChainPoint> = (0..pieces.len()).map(|i| point(pieces[i][0], i)).collect();
     points.push(point(span[1], pieces.len() - 1));
-    let lengths: Vec<f64> = pieces.iter().map(|piece| length(*piece)).collect();
     let mut points = shown(&points, &lengths);
     if closed {
         points.pop();
@@ -234,12 +231,26 @@ fn chain(curve: &Curve, span: Span) -> (Chain, Vec<Held>) {
     (Chain { id: None, points, closed }, held.collect())
 }
 
+/// What pieces draw, without flicker.
+fn settled(drawn: &[Line], lengths: &[f64]) -> Vec<Line> {
+    if drawn.windows(2).all(|pair| pair[0] == pair[1]) {
+        return drawn.to_vec();
+    }
+    let labelled = |(drawn, length): (&Line, &f64)| {
+        let costs = std::array::from_fn(|label| if LINES[label] == *drawn { 0.0 } else { *length });
+        Labelled::<3> { costs, step: 0 }
+    };
+    let labelled: Vec<_> = drawn.iter().zip(lengths).map(labelled).collect();
+    cheapest(&labelled, FLICKER).into_iter().map(|label| LINES[label]).collect()
+}
+
 /// What a stretch draws.
 fn line_of(stretch: &Stretch) -> Line {
     match stretch.bound {
         Bound::Rim => Line::Border,
         Bound::Contour if stretch.behind == 0.0 => Line::Skyline,
         Bound::Contour => Line::Occluding,
+        Bound::Nothing(line) => line,
     }
 }
 

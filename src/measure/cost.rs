@@ -216,6 +216,7 @@ impl Quantities {
             | PassName::Crossed
             | PassName::Segments
             | PassName::RimSegments
+            | PassName::Lay
             | PassName::Sight
             | PassName::Compose => return None,
         })

@@ -167,7 +167,8 @@ impl Frame {
     /// all sides come first: what meets there may lie in several batches.
     pub fn of_curves(&self) -> Vec<(PassName, u32)> {
         let all = |often| self.passes.iter().filter(move |pass| pass.often == often).map(|pass| pass.name);
-        let (before, behind): (Vec<_>, Vec<_>) = all(Often::ForCurves).partition(|name| *name != PassName::Sight);
+        let (before, behind): (Vec<_>, Vec<_>) =
+            all(Often::ForCurves).partition(|name| !matches!(name, PassName::Lay | PassName::Sight));
         let mut sweeps = vec![all(Often::ForCurvesOfBatch).collect::<Vec<_>>()];
         if !self.keeps_vertices() {
             let vertices: Vec<_> = all(Often::ForVertices).filter(|name| *name != PassName::Project).collect();

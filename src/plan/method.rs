@@ -55,6 +55,16 @@ pub enum Curves {
     Off,
 }
 
+/// Whether lines on the land are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum LandLines {
+    /// Those that a renderer was given.
+    On,
+    /// None.
+    #[default]
+    Off,
+}
+
 /// Whether a frame leaves out what cannot change the picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Thrift {

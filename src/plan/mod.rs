@@ -13,7 +13,7 @@ pub mod registry;
 pub use batches::{Batch, batches};
 pub use detail::Detail;
 pub use frame::Frame;
-pub use method::{Border, Curves, Method, Share, Thrift, Visibility};
+pub use method::{Border, Curves, LandLines, Method, Share, Thrift, Visibility};
 pub use passes::PassName;
 pub use pieces::{Piece, Pieces};
 pub use registry::Yields;
@@ -29,6 +29,8 @@ pub struct Plan {
     pub border: Border,
     /// Whether curves are found too; those of a method that yields nothing else always are.
     pub curves: Curves,
+    /// Whether lines on the land are laid over a frame that has curves.
+    pub land: LandLines,
     /// Whether what cannot change the picture is left out.
     pub thrift: Thrift,
 }
@@ -36,7 +38,14 @@ pub struct Plan {
 impl Plan {
     /// Silhouettes and border by `method`, leaving out what cannot change the picture.
     pub fn new(detail: impl Into<Detail>, method: Method, border: Border) -> Self {
-        Self { detail: detail.into(), method, border, curves: Curves::Off, thrift: Thrift::LeaveOut }
+        Self {
+            detail: detail.into(),
+            method,
+            border,
+            curves: Curves::Off,
+            land: LandLines::Off,
+            thrift: Thrift::LeaveOut,
+        }
     }
 
     /// Whether its frames hold curves.

@@ -1,6 +1,6 @@
 //! The passes of a frame by their names: which run, in which order, how often and how far.
 
-use super::{Border, Detail, Plan, Yields};
+use super::{Border, Detail, LandLines, Plan, Yields};
 
 /// A pass: the name of its shader, of its adapter, of its label and of its timer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -45,6 +45,8 @@ pub enum PassName {
     Segments,
     /// The rim where it faces the eye.
     RimSegments,
+    /// Lines on the land, on its facets.
+    Lay,
     /// Which of these are seen.
     Sight,
     /// What is read back.
@@ -126,6 +128,7 @@ impl PassName {
             Self::Crossed => "crossed",
             Self::Segments => "segments",
             Self::RimSegments => "rim_segments",
+            Self::Lay => "lay",
             Self::Sight => "sight",
             Self::Compose => "compose",
         }
@@ -149,7 +152,7 @@ impl PassName {
             Self::Meet | Self::Crossed => (Often::ForCurvesOfBatch, Over::SeenChunks),
             Self::Segments => (Often::ForCurvesOfBatch, Over::Found),
             Self::RimSegments => (Often::ForCurvesOfBatch, Over::RimEdges),
-            Self::Sight => (Often::ForCurves, Over::Found),
+            Self::Lay | Self::Sight => (Often::ForCurves, Over::Found),
             Self::Compose => (Often::OnReading, Over::Pixels),
         };
         PlannedPass { name: self, often, over }
@@ -158,7 +161,9 @@ impl PassName {
 
 /// The passes that frames of a plan may run, in their order.
 pub fn passes(plan: &Plan) -> Vec<PlannedPass> {
-    use PassName::{Compose, Crossed, Facing, Meet, Project, Rasterize, RasterizeLarge, RimSegments, Seam, Segments};
+    use PassName::{
+        Compose, Crossed, Facing, Lay, Meet, Project, Rasterize, RasterizeLarge, RimSegments, Seam, Segments,
+    };
     use PassName::{Sight, Tessellate, Turn, Turning, Wanted};
     let seam: &[_] = if let Detail::Adaptive { .. } = plan.detail { &[Seam] } else { &[] };
     let entry = plan.method.entry();
@@ -167,10 +172,15 @@ pub fn passes(plan: &Plan) -> Vec<PlannedPass> {
     let border: &[_] = if inked { &[PassName::Border] } else { &[] };
     let curves: &[_] = match plan.border {
         _ if !plan.has_curves() => &[],
-        Border::On => &[Turning, Wanted, Turn, Meet, Crossed, Segments, RimSegments, Sight],
-        Border::Off => &[Turning, Wanted, Turn, Meet, Crossed, Segments, Sight],
+        Border::On => &[Turning, Wanted, Turn, Meet, Crossed, Segments, RimSegments],
+        Border::Off => &[Turning, Wanted, Turn, Meet, Crossed, Segments],
+    };
+    let seen: &[_] = match plan.land {
+        _ if !plan.has_curves() => &[],
+        LandLines::On => &[Lay, Sight],
+        LandLines::Off => &[Sight],
     };
     let raster = &[Facing, Project, Rasterize, RasterizeLarge][..];
-    let names = [&[Tessellate], seam, raster, entry.passes, border, curves, &[Compose]];
+    let names = [&[Tessellate], seam, raster, entry.passes, border, curves, seen, &[Compose]];
     names.concat().into_iter().map(PassName::planned).collect()
 }

@@ -5,8 +5,8 @@ use crate::error::Result;
 use crate::gpu::clock::Timer;
 use crate::gpu::uniforms::Segment;
 use crate::gpu::work::Work;
-use crate::line::{Chain, Curve, link, visible};
-use crate::plan::{Frame, Piece};
+use crate::line::{Chain, Curve, Laid, link, visible};
+use crate::plan::{Frame, LandLines, Piece};
 
 impl Renderer {
     /// Finds the curves of the last frame and brings them back.
@@ -28,6 +28,18 @@ impl Renderer {
         let curves = self.curves()?;
         let size = self.last().map_or([0; 2], |frame| frame.pieces.page());
         Ok(visible::chains(curves, size))
+    }
+
+    /// Lays lines on the land over a frame that has room for them: those that its page shows.
+    pub(super) fn lay(&mut self, frame: &Frame) -> Result<Laid> {
+        let Some(land) = self.land.clone().filter(|_| frame.plan.has_curves() && frame.plan.land == LandLines::On)
+        else {
+            return Ok(Laid::default());
+        };
+        let laid = Laid::new(&land, &self.perspective(frame));
+        self.curves.lay(&self.gpu, &laid.places)?;
+        self.stages.fit(&self.gpu, frame, &self.scene, &self.page, &self.curves)?;
+        Ok(laid)
     }
 
     /// The segments of curves whose middles lie in a piece that was drawn.

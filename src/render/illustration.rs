@@ -4,7 +4,7 @@ use super::Page;
 use crate::error::Result;
 use crate::ink::{self, Drawing, Sheet, Style};
 use crate::line::{Economy, Lines};
-use crate::plan::{Curves, Plan};
+use crate::plan::{Curves, LandLines, Plan};
 
 /// All that a drawing is made by, but what it shows and from where.
 #[derive(Debug, Clone)]
@@ -28,7 +28,7 @@ pub struct Illustration {
 impl Illustration {
     /// What of it the mask depends on, in words: neither style nor sheet.
     pub fn of_mask(&self) -> String {
-        format!("{:?} {:?}", Plan { curves: Curves::Off, ..self.plan }, self.frame)
+        format!("{:?} {:?}", Plan { curves: Curves::Off, land: LandLines::Off, ..self.plan }, self.frame)
     }
 
     /// The lines of a page, and their drawing.

@@ -3,7 +3,7 @@
 use super::{Drawn, Renderer};
 use crate::error::Result;
 use crate::gpu::uniforms::Segment;
-use crate::line::{Chain, Economy, Lines, Mark, Marks, link, marks, one_pixel_wide, rest, visible};
+use crate::line::{Chain, Economy, Laid, Lines, Mark, Marks, link, marks, one_pixel_wide, rest, visible};
 use crate::plan::{Curves, Frame, Piece, Plan, Yields};
 use crate::view::{Camera, Perspective};
 
@@ -16,6 +16,8 @@ pub struct Page {
     pub chains: Vec<Chain>,
     /// What nearer land hides of curves; none where the plan does not have [all](crate::plan::Curves::All).
     pub hidden: Vec<Chain>,
+    /// What the eye sees of lines on the land.
+    pub land: Vec<Chain>,
     /// How many pixels show land, inked or not.
     pub covered: u64,
     /// Nodes the longest walk visited, or facets of the longest cut; 0 for other methods.
@@ -30,12 +32,12 @@ impl Page {
     /// Its lines: curves, drawn as sparingly as `economy` says, and what of its ink no curve accounts for, traced and smoothed
     /// within `tolerance` px; of a plan without curves all its ink, traced.
     pub fn lines(&self, economy: &Economy, tolerance: f64) -> Lines {
-        let Self { marks, chains, hidden, perspective, .. } = self;
+        let Self { marks, chains, hidden, land, perspective, .. } = self;
         if !self.frame.plan.has_curves() {
             return Lines::of(marks, perspective, tolerance);
         }
         let rest = rest(chains, marks, perspective, economy, tolerance);
-        Lines::sparing(&[&chains[..], &rest].concat(), hidden, perspective, economy)
+        Lines::sparing(&[&chains[..], &rest, land].concat(), hidden, perspective, economy)
     }
 }
 
@@ -50,6 +52,7 @@ pub struct Found {
 struct Listed {
     marks: Vec<Mark>,
     segments: Vec<Segment>,
+    laid: Laid,
     covered: u64,
     longest_walk: u32,
     frame: Frame,
@@ -67,18 +70,20 @@ impl Found {
 
 impl Listed {
     fn page(self) -> Page {
-        let Self { marks, segments, covered, longest_walk, frame, perspective } = self;
+        let Self { marks, segments, laid, covered, longest_walk, frame, perspective } = self;
         let size = frame.pieces.page();
-        let curves = link(segments, &frame.lattice, &perspective);
+        let land = laid.curves(&segments, &perspective);
+        let curves = [link(segments, &frame.lattice, &perspective), land].concat();
         let (chains, hidden) = match frame.plan.curves {
             Curves::All => visible::seen_and_hidden(curves, size),
             Curves::On | Curves::Off => (visible::chains(curves, size), Vec::new()),
         };
+        let (land, chains): (Vec<Chain>, _) = chains.into_iter().partition(|chain| chain.line().is_of_land());
         let marks = match frame.plan.method.entry().yields {
             Yields::Ink => Marks::new(size, marks),
             Yields::Curves => one_pixel_wide(&chains, size),
         };
-        Page { marks, chains, hidden, covered, longest_walk, frame, perspective }
+        Page { marks, chains, hidden, land, covered, longest_walk, frame, perspective }
     }
 }
 
@@ -121,6 +126,7 @@ impl Renderer {
         let (mut list, mut segments, mut covered, mut longest_walk) = (Vec::new(), Vec::new(), 0, 0);
         let (count, yields) = (frame.pieces.iter().len() as f64, frame.plan.method.entry().yields);
         self.upload(&frame)?;
+        let laid = self.lay(&frame)?;
         for (done, piece) in (1..).zip(frame.pieces.iter()) {
             self.passes(&frame, piece, None)?;
             let drawn = self.read_piece(&frame, piece)?;
@@ -135,7 +141,7 @@ impl Renderer {
             progress(f64::from(done) / count);
         }
         let perspective = self.perspective(&frame);
-        Ok(Listed { marks: list, segments, covered, longest_walk, frame, perspective })
+        Ok(Listed { marks: list, segments, laid, covered, longest_walk, frame, perspective })
     }
 
     /// Draws a piece of a frame and brings it back, halo and all: `piece.drawn` of the page.

@@ -29,6 +29,7 @@ impl Renderer {
     pub fn timed_frame(&mut self, plan: &Plan, camera: &Camera) -> Result<FrameTime> {
         let frame = self.plan(plan, camera)?;
         self.upload(&frame)?;
+        self.lay(&frame)?;
         let time = frame.pieces.iter().try_fold(FrameTime::default(), |time, piece| {
             let mut timer = Timer::new(&self.gpu);
             self.passes(&frame, piece, Some(&mut timer))?;

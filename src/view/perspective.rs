@@ -38,6 +38,11 @@ impl Perspective {
         self.size
     }
 
+    /// Pixels that a metre across the view takes at this depth.
+    pub fn scale(&self, depth: f64) -> f64 {
+        self.focal * depth / self.near
+    }
+
     /// Metres along the view axis to the near plane.
     pub fn near(&self) -> f64 {
         self.near

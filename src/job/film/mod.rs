@@ -16,7 +16,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result, Setting, shown};
 use crate::files::Output;
-use crate::ink::style::Pens;
 use crate::ink::{Colour, Pen, Style};
 use crate::message;
 use picture::Picture;
@@ -42,7 +41,6 @@ pub struct Inks(pub Vec<Colour>);
 impl Inks {
     /// Of a style: its paper, and each of its pens as it shows on it.
     pub fn of(style: &Style) -> Self {
-        let Pens { silhouette, border, crease, hidden } = style.pens;
         let paper = style.paper;
         let on_paper = |pen: Pen| {
             let channel = |i: usize| {
@@ -52,7 +50,7 @@ impl Inks {
             Colour([0, 1, 2].map(channel))
         };
         let mut inks = vec![paper];
-        for pen in [silhouette, border, crease, hidden].map(on_paper) {
+        for pen in style.pens.all().map(on_paper) {
             if !inks.contains(&pen) {
                 inks.push(pen);
             }

@@ -1,0 +1,206 @@
+//! Lines on the land on their way over a page: points about a pixel apart, which the device lays on the facets that are drawn, and
+//! the curves that come back.
+//!
+//! Between the points of a line it runs as a Catmull-Rom spline on the map, so that near land shows no corners. Lattice places are
+//! rounded to odd numbers of their units: no facet's edge passes there. Cost: a look-up for each pixel of line. Does not handle:
+//! lines over voids, which end there.
+
+use glam::{DVec2, Vec3};
+use rayon::prelude::*;
+
+use super::curve::{Bound, Curve, CurvePoint, Place, Sight, Stretch};
+use super::detail::{Land, Shown};
+use super::{Line, identity::CELL};
+use crate::gpu::uniforms::{Segment, code, seen};
+use crate::relief::{LineKind, SurfaceLine};
+use crate::view::Perspective;
+use crate::view::cut::share_within;
+
+/// Longest way between two points on the page, px.
+const STEP: f64 = 1.0;
+/// Beyond the page lines are followed for so many px.
+const BEYOND: f64 = 4.0;
+/// Most points that the device numbers.
+const MOST: usize = 1 << 24;
+
+/// Lines on the land as a page shows them, in points.
+#[derive(Debug, Clone, Default)]
+pub struct Laid {
+    /// Where the points lie on the lattice.
+    pub places: Vec<Place>,
+    runs: Vec<Run>,
+}
+
+/// Points one after the other.
+#[derive(Debug, Clone)]
+struct Run {
+    line: Line,
+    places: Vec<Place>,
+    weights: Vec<f32>,
+    closed: bool,
+}
+
+impl Laid {
+    /// What a page shows of lines.
+    pub fn new(land: &Land, perspective: &Perspective) -> Self {
+        let shown = land.shown(perspective);
+        let runs =
+            land.lines.par_iter().zip(&shown).flat_map_iter(|(line, shown)| runs(line, shown, perspective.size()));
+        let mut runs: Vec<Run> = runs.collect();
+        let mut count = 0;
+        runs.retain(|run| {
+            count += run.places.len();
+            count <= MOST
+        });
+        Self { places: runs.iter().flat_map(|run| run.places.iter().copied()).collect(), runs }
+    }
+
+    /// The curves of these lines, by the points that the device found on the page; the others of `segments` play no part.
+    pub fn curves(&self, segments: &[Segment], perspective: &Perspective) -> Vec<Curve> {
+        let mut found: Vec<Option<&Segment>> = vec![None; self.places.len()];
+        for segment in segments.iter().filter(|segment| is_laid(segment)) {
+            found[(segment.code >> code::PART_SHIFT) as usize] = Some(segment);
+        }
+        let mut first = 0;
+        let of_runs = self.runs.iter().map(|run| {
+            first += run.places.len();
+            (run, &found[first - run.places.len()..first])
+        });
+        let of_runs: Vec<_> = of_runs.collect();
+        of_runs.into_par_iter().flat_map_iter(|(run, found)| curves(run, found, perspective)).collect()
+    }
+}
+
+/// Whether a segment is a point of a line on the land.
+pub fn is_laid(segment: &Segment) -> bool {
+    segment.code & code::CORNER == code::LAID
+}
+
+/// What a line of the land draws.
+fn line_of(kind: LineKind) -> Line {
+    match kind {
+        LineKind::Shore => Line::Shore,
+        LineKind::Drainage => Line::Drainage,
+        LineKind::Ridge => Line::Ridge,
+        LineKind::Own => Line::Own,
+    }
+}
+
+/// The parts of a line that a page shows.
+fn runs(line: &SurfaceLine, shown: &Shown, page: DVec2) -> Vec<Run> {
+    let new = || Run { line: line_of(line.kind), places: Vec::new(), weights: Vec::new(), closed: false };
+    let (mut runs, mut run) = (Vec::new(), new());
+    let mut finish = |run: &mut Run| {
+        let whole = std::mem::replace(run, new());
+        runs.extend((whole.places.len() > 1).then_some(whole));
+    };
+    let n = shown.weights.len();
+    let stretches = if line.closed { n } else { n.saturating_sub(1) };
+    let bounds = [DVec2::splat(-BEYOND), page + BEYOND];
+    for i in 0..stretches {
+        let ends = [i, (i + 1) % n];
+        let weights = ends.map(|end| f64::from(shown.weights[end]));
+        let ahead = shown.places[ends[0]].zip(shown.places[ends[1]]).filter(|_| weights != [0.0; 2]);
+        let on_page = ahead.and_then(|(a, b)| Some((a, b, share_within(bounds, a.0, b.0)?)));
+        let Some((a, b, [enter, leave])) = on_page else {
+            finish(&mut run);
+            continue;
+        };
+        if enter > 0.0 {
+            finish(&mut run);
+        }
+        let steps = (a.0.distance(b.0) * (leave - enter) / STEP).ceil().max(1.0);
+        for k in 0..=steps as usize {
+            let share = enter + (leave - enter) * k as f64 / steps;
+            // Depth is linear on the page; the way on the map is not.
+            let share = share * b.1 / (a.1 + (b.1 - a.1) * share);
+            let place = on_lattice(between(line, i, share));
+            if run.places.last() != Some(&place) {
+                run.places.push(place);
+                run.weights.push((weights[0] + (weights[1] - weights[0]) * share) as f32);
+            }
+        }
+        if leave < 1.0 {
+            finish(&mut run);
+        }
+    }
+    if line.closed && runs_whole(&run, n, line) {
+        run.closed = true;
+        run.places.pop();
+        run.weights.pop();
+    }
+    finish(&mut run);
+    runs
+}
+
+/// Whether a run goes all round a closed line.
+fn runs_whole(run: &Run, n: usize, line: &SurfaceLine) -> bool {
+    let ends = [run.places.first(), run.places.last()];
+    n > 2 && run.places.len() > 3 && ends.iter().all(|end| *end == Some(&on_lattice(line.points[0].at)))
+}
+
+/// The place at a share of the way from point `i` of a line to the next (Catmull, Rom 1974).
+fn between(line: &SurfaceLine, i: usize, t: f64) -> DVec2 {
+    let n = line.points.len();
+    let at = |k: usize| line.points[k % n].at;
+    let (b, c) = (at(i), at(i + 1));
+    let a = match (i, line.closed) {
+        (0, false) => b * 2.0 - c,
+        _ => at(i + n - 1),
+    };
+    let d = if i + 2 < n || line.closed { at(i + 2) } else { c * 2.0 - b };
+    let (t2, t3) = (t * t, t * t * t);
+    (b * 2.0 + (c - a) * t + (a * 2.0 - b * 5.0 + c * 4.0 - d) * t2 + (b * 3.0 - a - c * 3.0 + d) * t3) / 2.0
+}
+
+/// Of column and row, the nearest place on the lattice that lies on no edge of a facet.
+fn on_lattice(at: DVec2) -> Place {
+    let [x, y] = (at * f64::from(CELL)).to_array().map(|v| v as i32);
+    [x | 1, y & !3 | 2]
+}
+
+/// The curves of a run: as many as the gaps between the points that were found leave.
+fn curves(run: &Run, found: &[Option<&Segment>], perspective: &Perspective) -> Vec<Curve> {
+    let numbers: Vec<usize> = (0..found.len()).collect();
+    let parts = numbers.chunk_by(|a, b| found[*a].is_some() == found[*b].is_some());
+    let parts: Vec<&[usize]> = parts.filter(|part| found[part[0]].is_some() && part.len() > 1).collect();
+    let whole = |part: &[usize]| run.closed && part.len() == found.len();
+    let curve = |part: &[usize]| {
+        let there: Vec<(&Segment, f32)> = part.iter().filter_map(|i| Some((found[*i]?, run.weights[*i]))).collect();
+        curve(&there, run.line, whole(part), perspective)
+    };
+    parts.into_iter().map(curve).collect()
+}
+
+/// The curve through points one after the other.
+fn curve(there: &[(&Segment, f32)], line: Line, closed: bool, perspective: &Perspective) -> Curve {
+    let point = |&(segment, weight): &(&Segment, f32)| {
+        let world = perspective.eye() + Vec3::from(segment.start).as_dvec3();
+        let (place, depth) = perspective.project(world);
+        CurvePoint { place, depth, world, at: segment.at, weight }
+    };
+    let points: Vec<CurvePoint> = there.iter().map(point).collect();
+    let count = if closed { points.len() } else { points.len() - 1 };
+    let stretch = |i: usize| {
+        let next = (i + 1) % points.len();
+        let way = points[next].place - points[i].place;
+        Stretch {
+            bound: Bound::Nothing(line),
+            sight: sight(there[i].0.sight, there[next].0.sight),
+            // Nothing but the slope that it lies on.
+            behind: points[i].depth as f32,
+            fall: 1.0,
+            outward: DVec2::new(-way.y, way.x).normalize_or_zero(),
+        }
+    };
+    Curve { stretches: (0..count).map(stretch).collect(), points, closed }
+}
+
+/// What is known of a stretch by its ends.
+fn sight(start: u32, end: u32) -> Sight {
+    match (start, end) {
+        (seen::FREE, seen::FREE) => Sight::Free,
+        (seen::HIDDEN, seen::HIDDEN) => Sight::Hidden,
+        _ => Sight::Doubt { free: matches!(start, seen::FREE | seen::NEAREST_FREE) },
+    }
+}
