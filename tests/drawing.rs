@@ -1,4 +1,4 @@
-//! From strokes to pages: what the cover hides, how strokes come out, files that appear whole.
+//! From strokes to pages: how strokes come out, files that appear whole.
 
 use std::f64::consts::TAU;
 
@@ -8,9 +8,7 @@ use hachure::files::Output;
 use hachure::ink::plot::Journey;
 use hachure::ink::style::Weight;
 use hachure::ink::{Colour, Drawing, Form, Layer, Pen, Sheet, Stroke, StrokePoint, Style, draw, write_png};
-use hachure::line::{
-    Chain, ChainPoint, Cover, InkRaster, Kind, Line, Lines, Marks, Pixel, Recession, crowded, project_polyline,
-};
+use hachure::line::{Chain, ChainPoint, InkRaster, Kind, Line, Lines, Marks, Pixel, Recession, crowded};
 use hachure::view::{Camera, Perspective};
 
 use crate::ink::raster;
@@ -28,48 +26,6 @@ fn ridge(crest: u32) -> (Perspective, InkRaster) {
         Perspective::new(&camera, 1.0),
         InkRaster { pixels: pixels.pixels.iter().enumerate().map(sky).collect(), ..pixels },
     )
-}
-
-#[test]
-fn cover_hides_what_lies_behind_it() {
-    let (seen, raster) = ridge(40);
-    // From high above the crest to far below it, 1 km behind the eye's ridge of 100 m.
-    let line = [DVec3::new(-100.0, 1000.0, 300.0), DVec3::new(100.0, 1000.0, -300.0)];
-    let shown = project_polyline(&line, Line::Own, &seen, &raster, Cover::On);
-    let all = project_polyline(&line, Line::Own, &seen, &raster, Cover::Off);
-    assert_eq!((shown.len(), all.len()), (1, 1));
-    assert_eq!(shown[0].points, all[0].points[..shown[0].points.len()], "the visible part is unchanged");
-    let lowest = |chains: &[Chain]| chains[0].points.iter().map(|p| p.place.y).fold(0.0, f64::max);
-    assert!((lowest(&shown) - 41.0).abs() <= 1.0, "{}", lowest(&shown));
-    assert!(lowest(&all) > 60.0);
-    assert!(all[0].points.windows(2).all(|w| w[0].place.distance(w[1].place) <= 0.5 + 1e-9));
-    // On the surface or before it nothing is hidden, a little behind it everything below the crest is.
-    let at = |distance: f64| line.map(|p| DVec3::new(p.x / 10.0, distance, p.z / 10.0));
-    let length = |distance| {
-        let chains = project_polyline(&at(distance), Line::Own, &seen, &raster, Cover::On);
-        chains.iter().map(|c| c.points.len()).sum::<usize>()
-    };
-    assert!(length(100.0) == length(99.9) && length(100.3) >= length(100.0) - 2);
-    assert!(length(101.0) < length(100.0) * 6 / 10);
-}
-
-#[test]
-fn polylines_are_clipped_to_the_near_plane_and_the_page() {
-    let (seen, raster) = ridge(80);
-    let through_eye = [DVec3::new(5.0, -1e6, 1.0), DVec3::new(5.0, 1e6, 1.0)];
-    let chains = project_polyline(&through_eye, Line::Own, &seen, &raster, Cover::Off);
-    assert_eq!(chains.len(), 1);
-    let inside = |p: DVec2| (-1e-6..=100.0 + 1e-6).contains(&p.x) && (-1e-6..=80.0 + 1e-6).contains(&p.y);
-    assert!(chains[0].points.iter().all(|p| inside(p.place) && p.depth <= 1.0));
-    let behind = [DVec3::new(0.0, -10.0, 0.0), DVec3::new(1.0, -5.0, 0.0)];
-    assert!(project_polyline(&behind, Line::Own, &seen, &raster, Cover::Off).is_empty());
-    assert!(project_polyline(&[], Line::Own, &seen, &raster, Cover::Off).is_empty());
-    // Off the page and back on it: two chains, not one across the margin.
-    let out_and_in = [(-5.0, 0.0), (-99.0, 0.0), (-99.0, 5.0), (-5.0, 5.0)].map(|(x, z)| DVec3::new(x, 20.0, z));
-    assert_eq!(project_polyline(&out_and_in, Line::Own, &seen, &raster, Cover::Off).len(), 2);
-    let drawing = drawn(&lines(chains, &raster, &seen));
-    let layers: Vec<_> = drawing.layers.iter().map(|layer| (layer.name.as_str(), layer.strokes.len())).collect();
-    assert_eq!(layers, [("1 crease", 1)]);
 }
 
 /// The drawing of lines, blunt, a pixel a millimetre.

@@ -94,6 +94,11 @@ impl Id {
         Self(self.0 | Self::HIDDEN)
     }
 
+    /// The name of a line on the land in a plan, where rims are named by samples.
+    pub(super) fn of_land(self) -> Self {
+        Self(self.0 | Self::HIDDEN >> 1)
+    }
+
     /// Whether its chain is hidden by nearer land.
     pub fn is_hidden(self) -> bool {
         self.0 & Self::HIDDEN != 0

@@ -45,7 +45,7 @@ const RIDGE_WIDTH: [f64; 2] = [60.0, 500.0];
 #[derive(Debug, Clone, Default)]
 pub struct Land {
     /// The lines.
-    pub lines: Vec<SurfaceLine>,
+    lines: Vec<SurfaceLine>,
     /// Of each line each point: metres of the exaggerated world, on the surface between samples.
     world: Vec<Vec<DVec3>>,
     /// Exaggerated metres for one of the land.
@@ -54,13 +54,33 @@ pub struct Land {
     cell: f64,
 }
 
+/// Where a point of the world stands on a page.
+#[derive(Debug, Clone, Copy)]
+pub struct OnPage {
+    /// Px from its top left corner.
+    pub place: DVec2,
+    /// Near / distance along the view axis.
+    pub depth: f64,
+    /// Pixels that a metre across the view takes there.
+    pub scale: f64,
+}
+
+impl OnPage {
+    /// In perspective; `None` behind the near plane.
+    pub fn seen(world: DVec3, perspective: &Perspective) -> Option<Self> {
+        let ahead = perspective.distance(world) > perspective.near();
+        let (place, depth) = perspective.project(world);
+        ahead.then(|| Self { place, depth, scale: perspective.scale(depth) })
+    }
+}
+
 /// How a page shows a line: of each of its points.
 #[derive(Debug, Clone, Default)]
 pub struct Shown {
     /// How strongly, 0 to 1; empty for a line that it does not show.
     pub weights: Vec<f32>,
-    /// Where, px, and its depth; `None` behind the eye.
-    pub places: Vec<Option<(DVec2, f64)>>,
+    /// Where; `None` of what stands on no page.
+    pub places: Vec<Option<OnPage>>,
 }
 
 impl Land {
@@ -75,9 +95,14 @@ impl Land {
         Self { lines, world, exaggeration, cell: dem.cell().min_element() }
     }
 
-    /// How a page shows each line.
-    pub fn shown(&self, perspective: &Perspective) -> Vec<Shown> {
-        let of_line = |i: usize| self.alone(i, perspective);
+    /// The lines, and where their points lie, metres of the exaggerated world.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = (&SurfaceLine, &[DVec3])> {
+        self.lines.iter().zip(self.world.iter().map(Vec::as_slice))
+    }
+
+    /// How a page shows each line, given where it shows points of the world.
+    pub fn shown(&self, on_page: impl Fn(DVec3) -> Option<OnPage> + Sync) -> Vec<Shown> {
+        let of_line = |i: usize| self.alone(i, &on_page);
         let mut shown: Vec<Shown> = (0..self.lines.len()).into_par_iter().map(of_line).collect();
         // Branches stand behind what they join.
         for i in (0..self.lines.len()).rev() {
@@ -104,16 +129,12 @@ impl Land {
     }
 
     /// A line by its own merit.
-    fn alone(&self, i: usize, perspective: &Perspective) -> Shown {
+    fn alone(&self, i: usize, on_page: &impl Fn(DVec3) -> Option<OnPage>) -> Shown {
         let (line, world) = (&self.lines[i], &self.world[i]);
-        let projected = |point: &DVec3| {
-            let ahead = perspective.distance(*point) > perspective.near();
-            ahead.then(|| perspective.project(*point))
-        };
-        let places: Vec<Option<(DVec2, f64)>> = world.iter().map(projected).collect();
+        let places: Vec<Option<OnPage>> = world.iter().map(|point| on_page(*point)).collect();
         let steps: Vec<f64> = places.windows(2).map(|pair| step(pair[0], pair[1])).collect();
         let length: f64 = steps.iter().sum();
-        let scale = |at: Option<(DVec2, f64)>| at.map_or(0.0, |(_, depth)| perspective.scale(depth));
+        let scale = |at: Option<OnPage>| at.map_or(0.0, |at| at.scale);
         let by_length = match line.kind {
             LineKind::Shore | LineKind::Own => fade(PLAIN_LENGTH, length),
             LineKind::Drainage | LineKind::Ridge => {
@@ -125,7 +146,7 @@ impl Land {
         if by_length <= 0.0 {
             return Shown::default();
         }
-        let beside = |(point, at): (&SurfacePoint, &Option<(DVec2, f64)>)| self.beside(line.kind, point, scale(*at));
+        let beside = |(point, at): (&SurfacePoint, &Option<OnPage>)| self.beside(line.kind, point, scale(*at));
         let beside: Vec<f64> = line.points.iter().zip(&places).map(beside).collect();
         let weights = averaged(&beside, &steps).into_iter().map(|beside| beside.min(by_length) as f32).collect();
         Shown { weights, places }
@@ -161,8 +182,8 @@ fn width(line: &SurfaceLine, shown: &Shown) -> f64 {
 }
 
 /// From one point to the next on the page, px; nothing where one of them is behind the eye.
-fn step(a: Option<(DVec2, f64)>, b: Option<(DVec2, f64)>) -> f64 {
-    a.zip(b).map_or(0.0, |(a, b)| a.0.distance(b.0))
+fn step(a: Option<OnPage>, b: Option<OnPage>) -> f64 {
+    a.zip(b).map_or(0.0, |(a, b)| a.place.distance(b.place))
 }
 
 /// Values at points averaged along a line over about [`SOFT`] px to both sides, by its steps.

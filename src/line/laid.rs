@@ -9,7 +9,7 @@ use glam::{DVec2, Vec3};
 use rayon::prelude::*;
 
 use super::curve::{Bound, Curve, CurvePoint, Place, Sight, Stretch};
-use super::detail::{Land, Shown};
+use super::detail::{Land, OnPage, Shown};
 use super::{Line, identity::CELL};
 use crate::gpu::uniforms::{Segment, code, seen};
 use crate::relief::{LineKind, SurfaceLine};
@@ -43,9 +43,9 @@ struct Run {
 impl Laid {
     /// What a page shows of lines.
     pub fn new(land: &Land, perspective: &Perspective) -> Self {
-        let shown = land.shown(perspective);
-        let runs =
-            land.lines.par_iter().zip(&shown).flat_map_iter(|(line, shown)| runs(line, shown, perspective.size()));
+        let shown = land.shown(|world| OnPage::seen(world, perspective));
+        let lines: Vec<(&SurfaceLine, Shown)> = land.iter().map(|(line, _)| line).zip(shown).collect();
+        let runs = lines.par_iter().flat_map_iter(|(line, shown)| runs(line, shown, perspective.size()));
         let mut runs: Vec<Run> = runs.collect();
         let mut count = 0;
         runs.retain(|run| {
@@ -77,7 +77,7 @@ pub fn is_laid(segment: &Segment) -> bool {
 }
 
 /// What a line of the land draws.
-fn line_of(kind: LineKind) -> Line {
+pub(super) fn line_of(kind: LineKind) -> Line {
     match kind {
         LineKind::Shore => Line::Shore,
         LineKind::Drainage => Line::Drainage,
@@ -101,7 +101,7 @@ fn runs(line: &SurfaceLine, shown: &Shown, page: DVec2) -> Vec<Run> {
         let ends = [i, (i + 1) % n];
         let weights = ends.map(|end| f64::from(shown.weights[end]));
         let ahead = shown.places[ends[0]].zip(shown.places[ends[1]]).filter(|_| weights != [0.0; 2]);
-        let on_page = ahead.and_then(|(a, b)| Some((a, b, share_within(bounds, a.0, b.0)?)));
+        let on_page = ahead.and_then(|(a, b)| Some((a, b, share_within(bounds, a.place, b.place)?)));
         let Some((a, b, [enter, leave])) = on_page else {
             finish(&mut run);
             continue;
@@ -109,11 +109,11 @@ fn runs(line: &SurfaceLine, shown: &Shown, page: DVec2) -> Vec<Run> {
         if enter > 0.0 {
             finish(&mut run);
         }
-        let steps = (a.0.distance(b.0) * (leave - enter) / STEP).ceil().max(1.0);
+        let steps = (a.place.distance(b.place) * (leave - enter) / STEP).ceil().max(1.0);
         for k in 0..=steps as usize {
             let share = enter + (leave - enter) * k as f64 / steps;
             // Depth is linear on the page; the way on the map is not.
-            let share = share * b.1 / (a.1 + (b.1 - a.1) * share);
+            let share = share * b.depth / (a.depth + (b.depth - a.depth) * share);
             let place = on_lattice(between(line, i, share));
             if run.places.last() != Some(&place) {
                 run.places.push(place);
@@ -154,7 +154,7 @@ fn between(line: &SurfaceLine, i: usize, t: f64) -> DVec2 {
 }
 
 /// Of column and row, the nearest place on the lattice that lies on no edge of a facet.
-fn on_lattice(at: DVec2) -> Place {
+pub(super) fn on_lattice(at: DVec2) -> Place {
     let [x, y] = (at * f64::from(CELL)).to_array().map(|v| v as i32);
     [x | 1, y & !3 | 2]
 }

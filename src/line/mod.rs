@@ -3,8 +3,8 @@
 //! What a frame of a mask method leaves behind is an [`InkRaster`]: ink, kind, sub-pixel place and depth a pixel. Its ink
 //! as a list, [`Marks`], from one raster or the pieces of a large page, is traced to [`Chain`]s, these are smoothed
 //! within a stated tolerance, and the ink about their points is counted: the [`Lines`] of the page, all that stroking
-//! needs. Chains may come from elsewhere too: [`visible::chains`] are what the eye sees of [`Curve`]s on the surface,
-//! [`project_polyline`] makes them from polylines of the world, hidden by the cover.
+//! needs. Chains may come from elsewhere too: [`visible::chains`] are what the eye sees of [`Curve`]s on the surface, among them
+//! lines on the [`Land`] that were [`Laid`] on its facets.
 
 mod along;
 pub mod chain;
@@ -27,7 +27,6 @@ pub mod link;
 pub mod marks;
 pub mod one_pixel;
 mod overhead;
-pub mod overlay;
 pub mod raster;
 pub mod recession;
 mod rest;
@@ -49,7 +48,6 @@ pub use link::link;
 pub use marks::{Mark, Marks};
 pub use one_pixel::one_pixel_wide;
 pub use overhead::overhead;
-pub use overlay::{Cover, project_polyline};
 pub use raster::{InkRaster, Kind, Pixel};
 pub use recession::Recession;
 pub use rest::rest;

@@ -1,14 +1,19 @@
 //! The lines of a DEM as seen from straight above: a plan, orthographic, true to scale.
 //!
-//! So far these are its rims: the border of the DEM and of its voids. Method: rim edges are laid so that the land lies on
+//! These are its rims, the border of the DEM and of its voids, and lines on its land. Method: rim edges are laid so that the land lies on
 //! their left, and followed from end to end; where four of them meet at a sample, the sharpest turn to the left keeps land
-//! that touches by a corner apart. Heights play no part, nor does exaggeration. Cost: some look-ups for each rim edge.
+//! that touches by a corner apart. Heights play no part there, nor does exaggeration. Lines on
+//! the land are [shown](super::detail) as far as the scale shows their relief, and give way to stronger ones. Cost: some look-ups for each rim edge.
 
 use glam::{DVec2, DVec3, UVec2};
 use rustc_hash::FxHashMap;
 
+use super::curve::Place;
+use super::detail::{Land, OnPage, Shown};
+use super::identity::{Held, key, names};
+use super::laid::{line_of, on_lattice};
 use super::simplify::needed;
-use super::{Chain, ChainPoint, Id, Line, Lines, Recession};
+use super::{Chain, ChainPoint, Economy, Id, Line, Lines, Recession, economised};
 use crate::dem::Dem;
 use crate::error::Result;
 use crate::surface::rim::{RimEdge, rim};
@@ -20,19 +25,26 @@ const STRAIGHT: f64 = 1e-6;
 type Sample = [u32; 2];
 
 /// The plan of a DEM in a frame of so many pixels across and down, the middle of an area of its world (west, south, east and
-/// north, metres) in the middle, with so many pixels for each metre.
+/// north, metres) in the middle, with so many pixels for each metre; lines on the land keep `min_gap` px apart.
 ///
 /// # Errors
 /// As [`Dem::survey`].
-pub fn overhead(dem: &Dem, area: [f64; 4], [width, height]: [u32; 2], px_per_metre: f64) -> Result<Lines> {
+pub fn overhead(
+    dem: &Dem,
+    land: &Land,
+    area: [f64; 4],
+    [width, height]: [u32; 2],
+    px_per_metre: f64,
+    min_gap: f64,
+) -> Result<Lines> {
     let ([west, .., north], cell) = (dem.extent(), dem.cell());
     let middle = DVec2::new(area[0] + area[2], area[1] + area[3]) / 2.0;
     let frame = UVec2::new(width, height).as_dvec2() / 2.0;
+    let on_page = |world: DVec3| frame + (world.truncate() - middle) * DVec2::new(1.0, -1.0) * px_per_metre;
     let point = |[column, row]: Sample| {
         let world = DVec2::new(west + f64::from(column) * cell.x, north - f64::from(row) * cell.y);
-        let place = frame + (world - middle) * DVec2::new(1.0, -1.0) * px_per_metre;
         let (line, world) = (Line::Border, world.extend(0.0));
-        ChainPoint { place, line, depth: 1.0, behind: 0.0, world, crowd: 0, weight: 1.0 }
+        ChainPoint { place: on_page(world), line, depth: 1.0, behind: 0.0, world, crowd: 0, weight: 1.0 }
     };
     let chain = |ring: Vec<Sample>| {
         let id = Id(u64::from(ring[0][1]) << 32 | u64::from(ring[0][0]));
@@ -42,14 +54,41 @@ pub fn overhead(dem: &Dem, area: [f64; 4], [width, height]: [u32; 2], px_per_met
         let kept = needed(&places, STRAIGHT);
         Chain { id: Some(id), points: kept[..kept.len() - 1].iter().map(|i| points[*i]).collect(), closed: true }
     };
+    let shown = land.shown(|world| Some(OnPage { place: on_page(world), depth: 1.0, scale: px_per_metre }));
+    let of_land = of_land(land, &shown);
+    let economy = Economy { min_jump: 0.0, min_gap };
     Ok(Lines {
         width,
         height,
         eye: middle.extend(f64::INFINITY),
-        chains: rings(&rim(dem)?).into_iter().map(chain).collect(),
+        chains: rings(&rim(dem)?).into_iter().map(chain).chain(economised(&of_land, &economy)).collect(),
         hidden: Vec::new(),
         recession: Recession::of(std::iter::once((1.0, 1.0))),
     })
+}
+
+/// The chains of lines on the land.
+fn of_land(land: &Land, shown: &[Shown]) -> Vec<Chain> {
+    let mut held = Vec::new();
+    let mut chains: Vec<Chain> = Vec::new();
+    for ((line, world), shown) in land.iter().zip(shown).filter(|(_, shown)| !shown.weights.is_empty()) {
+        let point = |(i, world): (usize, &DVec3)| {
+            let on_page = shown.places[i]?;
+            let (line, depth) = (line_of(line.kind), on_page.depth as f32);
+            let weight = shown.weights[i];
+            Some(ChainPoint { place: on_page.place, line, depth, behind: depth, world: *world, crowd: 0, weight })
+        };
+        let points: Vec<ChainPoint> = world.iter().enumerate().filter_map(point).collect();
+        let places: Vec<Place> = line.points.iter().map(|point| on_lattice(point.at)).collect();
+        let holds = |pair: &[ChainPoint], at: Place| Held {
+            key: key(at, pair[1].place - pair[0].place),
+            length: pair[0].place.distance(pair[1].place),
+        };
+        held.push(points.windows(2).zip(places).map(|(pair, at)| holds(pair, at)).collect());
+        chains.push(Chain { id: None, points, closed: line.closed });
+    }
+    chains.iter_mut().zip(names(&held)).for_each(|(chain, id)| chain.id = id.map(Id::of_land));
+    chains
 }
 
 /// Rim edges as rings of samples, land on the left as seen from above, in the order of their first samples.
