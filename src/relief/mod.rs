@@ -4,7 +4,11 @@
 //! All are [`SurfaceLine`]s: polylines on the map of a DEM that lie on its surface, with what of the relief about each point tells
 //! whether a page can show it.
 
+mod own;
+
 use glam::DVec2;
+
+pub use own::own_lines;
 
 /// What a line of the land is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
