@@ -56,6 +56,7 @@ mod one_renderer;
 mod open_hills;
 mod overhead;
 mod overwritten;
+mod own_lines;
 mod page_curves;
 mod pieces;
 mod plots;

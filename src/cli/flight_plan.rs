@@ -8,8 +8,8 @@ use super::flight::FlightArguments;
 use super::flight_keys::{Key, Keys};
 use super::norths::Norths;
 use super::values::{Height, LookAt};
-use super::viewpoint::{FOV, Places, above, world};
-use crate::dem::{Crs, Dem, North};
+use super::viewpoint::{FOV, above, world};
+use crate::dem::{Crs, Dem, North, Whereabouts};
 use crate::error::{Error, Result, Setting, shown};
 use crate::geo::Track;
 use crate::message;
@@ -211,7 +211,7 @@ impl FlightPlan {
 
     /// The error for a path that is nowhere over the DEM.
     fn outside(&self, dem: &Dem) -> Error {
-        let Places { named, within } = Places::of(dem);
+        let Whereabouts { named, within } = Whereabouts::of(dem);
         let (path, places, crs) = match &self.origin {
             Origin::Track(path, track) => (path.as_path(), track.places.clone(), track.crs.as_ref().map(Crs::label)),
             Origin::Keys(path, keys) => (path.as_path(), keys.keys.iter().map(|key| key.place.place).collect(), None),
@@ -336,16 +336,8 @@ fn system(keys: &Keys, key: &Key, dem: &Dem) -> Result<Option<Crs>> {
 fn placed(path: &Path, dem: &Dem, crs: Option<&Crs>, places: &[DVec2]) -> Result<Vec<DVec2>> {
     let georeference = dem.georeference();
     let given = crs.unwrap_or(georeference.file());
-    let Places { named, within } = Places::of(dem);
-    if given != georeference.file() && georeference.globe()?.is_none() {
-        let what = format!(
-            "lies in {}, and the DEM in {named}, of which nobody knows where on the globe it is",
-            given.label()
-        );
-        let remedy =
-            "name the system of the DEM, `gdal_translate -a_srs EPSG:CODE IN OUT.tif`, or give keys in its coordinates";
-        return Err(Error::input(path, what, remedy));
-    }
+    let Whereabouts { named, within } = Whereabouts::of(dem);
+    Whereabouts::check_way(dem, path, given, "keys")?;
     let carried = georeference.world_places(given, places);
     let lost = carried.iter().position(Option::is_none);
     if let Some(place) = lost.and_then(|lost| places.get(lost)) {

@@ -9,7 +9,7 @@ use super::norths::Norths;
 use super::talk::Talk;
 use super::values::{self, Height, LookAt, Size, Standpoint};
 use super::words::flag;
-use crate::dem::{Crs, Dem, Georeference, North};
+use crate::dem::{Crs, Dem, Georeference, North, Whereabouts};
 use crate::error::{Error, Result, Setting};
 use crate::surface::{Level, Surface};
 use crate::view::{Camera, Fixed, choose, direction};
@@ -287,7 +287,7 @@ pub(super) fn world(dem: &Dem, crs: Option<&Crs>, place: DVec2, setting: Setting
         return Err(no_globe(dem, setting));
     }
     georeference.world_place(given, place).ok_or_else(|| {
-        let Places { named, within } = Places::of(dem);
+        let Whereabouts { named, within } = Whereabouts::of(dem);
         let what = format!(
             "no place {},{} of {} is on the map of the DEM, which lies in {named}",
             place.x,
@@ -302,31 +302,9 @@ pub(super) fn world(dem: &Dem, crs: Option<&Crs>, place: DVec2, setting: Setting
     })
 }
 
-/// The system of a DEM, and where in it the DEM lies, in words.
-pub(super) struct Places {
-    pub named: String,
-    pub within: String,
-}
-
-impl Places {
-    pub fn of(dem: &Dem) -> Self {
-        let ([west, south, east, north], georeference) = (dem.extent(), dem.georeference());
-        let file = georeference.file();
-        let corner = |x, y| georeference.place_in(file, DVec2::new(x, y)).unwrap_or(DVec2::new(x, y));
-        let (one, other) = (corner(west, south), corner(east, north));
-        let [low, high] = [one.min(other), one.max(other)];
-        let decimals = if file.is_geographic() { 6 } else { 2 };
-        let pair = |place: DVec2| format!("{:.decimals$},{:.decimals$}", place.x, place.y);
-        Self {
-            named: if file.label().is_empty() { "no named system".to_owned() } else { format!("\"{}\"", file.label()) },
-            within: format!("between {} and {} {}", pair(low), pair(high), file.units()),
-        }
-    }
-}
-
 /// The error for a place of the globe where the DEM is on none.
 fn no_globe(dem: &Dem, setting: Setting) -> Error {
-    let Places { named, within } = Places::of(dem);
+    let Whereabouts { named, within } = Whereabouts::of(dem);
     let what = match dem.georeference().file().label().is_empty() {
         true => "the DEM names no coordinate system, so other coordinates mean nothing in it".to_owned(),
         false => format!("the DEM lies in the local system {named}, which does not say where on the globe it is"),

@@ -60,6 +60,16 @@ impl Georeference {
         transform.places(crs, &self.world, places).into_iter().map(|place| Some(place? * unit)).collect()
     }
 
+    /// Places in `crs` of many world places in metres, each `None` as for [`Self::world_place`].
+    pub fn places_in(&self, crs: &Crs, places: &[DVec2]) -> Vec<Option<DVec2>> {
+        let one_system = *crs == self.world;
+        let (Some(unit), Some(transform), false) = (self.world.metres_per_unit(), &self.transform, one_system) else {
+            return places.iter().map(|place| self.place_in(crs, *place)).collect();
+        };
+        let places: Vec<DVec2> = places.iter().map(|place| *place / unit).collect();
+        transform.places(&self.world, crs, &places)
+    }
+
     /// Place in `crs` of a world place in metres; `None` as for [`Self::world_place`].
     pub fn place_in(&self, crs: &Crs, world: DVec2) -> Option<DVec2> {
         self.carried(&self.world, crs, world / self.world.metres_per_unit()?)

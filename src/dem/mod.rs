@@ -22,6 +22,7 @@ mod systems;
 mod tiles;
 pub(crate) mod tiling;
 mod validity;
+mod whereabouts;
 mod window;
 
 use std::sync::{Arc, OnceLock};
@@ -43,6 +44,7 @@ pub use systems::{Crs, Transform, Unit};
 pub use tiles::Tiles;
 pub use tiling::Tiling;
 pub use validity::{BLOCK_SIDE, Validity};
+pub use whereabouts::Whereabouts;
 pub use window::Window;
 
 /// A north-up grid of elevations in metres.

@@ -2,7 +2,8 @@
 //!
 //! GDAL and PROJ are known in `gdal/` alone, behind the traits of [`dem`](crate::dem): [`Tiles`](crate::dem::Tiles) and
 //! [`Transform`](crate::dem::Transform). A build without the feature `gdal` has the same names and reads nothing: each
-//! says so. Of vectors the way of a flight is read, see [`track`].
+//! says so. Of vectors the way of a flight is read, see [`track`], and
+//! lines of the user's own, see [`own_lines`].
 
 mod elevation_unit;
 mod encoding;
@@ -10,6 +11,7 @@ mod encoding;
 mod gdal;
 mod info;
 mod nodata;
+mod own;
 mod read;
 mod track;
 #[cfg(not(feature = "gdal"))]
@@ -19,10 +21,11 @@ pub use elevation_unit::ElevationUnit;
 pub use encoding::Encoding;
 pub use info::{Info, info};
 pub use nodata::Nodata;
+pub use own::{OwnLayer, OwnLine, OwnLines};
 pub use read::{Order, ReadOptions, Stage, read, read_all};
 pub use track::{Track, with_layer};
 #[cfg(not(feature = "gdal"))]
-pub use without::{Reading, available, track, write};
+pub use without::{Reading, available, own_lines, track, write};
 
 #[cfg(feature = "gdal")]
-pub use self::gdal::{Reading, available, track, write};
+pub use self::gdal::{Reading, available, own_lines, track, write};

@@ -4,7 +4,7 @@ use std::io;
 use std::iter::Empty;
 use std::path::{Path, PathBuf};
 
-use super::{ReadOptions, Stage, Track};
+use super::{OwnLines, ReadOptions, Stage, Track};
 use crate::dem::{Crs, Dem};
 use crate::error::{Error, Result};
 
@@ -97,6 +97,14 @@ pub fn available() -> Result<()> {
 /// # Errors
 /// [`Error::Input`], always.
 pub fn track(path: &Path, _: bool) -> Result<Track> {
+    Err(Error::input(path, format!("cannot be read, {WITHOUT}"), REMEDY))
+}
+
+/// Reads nothing.
+///
+/// # Errors
+/// [`Error::Input`], always.
+pub fn own_lines(path: &Path, _: bool) -> Result<OwnLines> {
     Err(Error::input(path, format!("cannot be read, {WITHOUT}"), REMEDY))
 }
 

@@ -5,10 +5,12 @@
 //! whether a page can show it.
 
 mod crease;
+mod own;
 
 use glam::DVec2;
 
 pub use crease::Crease;
+pub use own::own_lines;
 
 /// What a line of the land is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]

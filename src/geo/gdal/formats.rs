@@ -60,8 +60,19 @@ pub(super) const FORMATS: [&str; 38] = [
 const GUARDED: [&str; 2] = ["VRT", "MEM"];
 
 /// Formats of points, lines and areas that are told apart from unknown ones; all of them plain files.
-pub(super) const VECTORS: [&str; 8] =
-    ["ESRI Shapefile", "GeoJSON", "GPKG", "KML", "LIBKML", "GPX", "FlatGeobuf", "MapInfo File"];
+pub(super) const VECTORS: [&str; 11] = [
+    "ESRI Shapefile",
+    "GeoJSON",
+    "GeoJSONSeq",
+    "TopoJSON",
+    "GPKG",
+    "KML",
+    "LIBKML",
+    "GPX",
+    "FlatGeobuf",
+    "MapInfo File",
+    "DXF",
+];
 
 /// GDAL's option that names the one file `/vsicurl/` and its kin may open.
 const ONLY_REMOTE: &str = "CPL_VSIL_CURL_ALLOWED_FILENAME";

@@ -2,30 +2,24 @@
 //!
 //! Of GPX the tracks are taken, else routes, else waypoints; of other formats all layers. Parts of one line are joined in
 //! order. Where there are several lines, or points in several layers, nobody can say which is meant: it is refused, with the
-//! ways to name one. Formats are those that are plain files and call nothing. Cost: all features are read. Not handled: arcs
+//! ways to name one. Cost: all features are read. Not handled: arcs
 //! (`ogr2ogr -nlt CONVERT_TO_LINEAR`), heights in other units than metres or above other zeros than the DEM's, times, and
 //! single heights that are missing, which GDAL reads as 0.
 
 use std::path::Path;
 
+use gdal::config;
 use gdal::vector::{
     Feature, Geometry, Layer, LayerAccess, OGRwkbGeometryType, geometry_type_flatten, geometry_type_has_z,
 };
-use gdal::{Dataset, GdalOpenFlags, config};
 use glam::DVec3;
 
-use super::formats::{self, FORMATS, VECTORS};
-use super::name::{Local, Name};
-use super::source::{check_file, heard, one_line, unreadable_file};
-use super::{lossless, vsi};
+use super::vectors::{Purpose, Vectors};
 use crate::dem::Crs;
 use crate::error::{Error, Message, Result, Setting};
 use crate::geo::Track;
-use crate::geo::track::with_layer;
 use crate::message;
 
-/// Layers of GPX that hold ways, the best first.
-const GPX: [&str; 3] = ["tracks", "routes", "waypoints"];
 /// Lines that are named where there are too many.
 const NAMED: usize = 5;
 
@@ -55,32 +49,12 @@ struct Line {
 /// # Errors
 /// [`Error::Input`] where the file cannot be read, or there is no way in it, or several are.
 pub fn track(path: &Path, allow_remote: bool) -> Result<Track> {
-    formats::restrict(allow_remote);
     // Of GPX heights stand in attributes otherwise. Every GDAL that the bindings know has the option.
     let _ = config::set_thread_local_config_option("GPX_ELE_AS_25D", "YES");
-    let (file, layer) = with_layer(path);
     let wrong = |what: Message, remedy: Message| Error::input(path, what, remedy);
-    let dataset = open(&file, allow_remote)?;
-    let is_gpx = dataset.driver().short_name() == "GPX";
-    let names: Vec<String> = dataset.layers().map(|layer| layer.name()).collect();
-    let asked: Vec<&str> = match &layer {
-        Some(layer) if names.contains(layer) => vec![layer],
-        Some(layer) => {
-            let remedy = format!("name one of its layers: {}", names.join(", "));
-            return Err(wrong(format!("has no layer {layer}").into(), remedy.into()));
-        }
-        None if is_gpx => GPX.into_iter().filter(|known| names.iter().any(|name| name == known)).collect(),
-        None => names.iter().map(String::as_str).collect(),
-    };
-    let (found, complaint) = heard(|| {
-        let layers = asked.iter().filter_map(|name| dataset.layer_by_name(name).ok());
-        layers.map(|mut layer| Found::of(&mut layer)).collect::<Vec<_>>()
-    });
-    if let Some(words) = complaint {
-        let what = format!("is damaged or cut short ({})", one_line(&words, &file));
-        return Err(wrong(what.into(), "copy or download it again, or see what `ogrinfo IN` says of it".into()));
-    }
-    let (line, found) = chosen(&found, is_gpx, path)?;
+    let vectors = Vectors::open(path, Purpose::Way, allow_remote)?;
+    let found = vectors.read(Found::of)?;
+    let (line, found) = chosen(&found, vectors.is_gpx(), path)?;
     let count = line.points.len();
     if count < 2 {
         return Err(wrong(
@@ -100,46 +74,6 @@ pub fn track(path: &Path, allow_remote: bool) -> Result<Track> {
         heights: (known && !clamped).then_some(heights),
         above_ground: line.mode.as_deref() == Some("relativeToGround"),
         taken: format!("{} of layer {}", line.words(count), found.layer),
-    })
-}
-
-fn open(path: &Path, allow_remote: bool) -> Result<Dataset> {
-    let name = match path.exists() {
-        true => Name::Local(Local::by_ending(path)),
-        false => Name::of(&lossless::text(path.as_os_str())),
-    };
-    let name = match name {
-        Name::Local(mut local) => {
-            check_file(path, &local.file)?;
-            local.file = std::path::absolute(&local.file).map_err(|e| unreadable_file(path, &e))?;
-            local.connection()
-        }
-        Name::Remote(name) if allow_remote => name,
-        Name::Remote(_) => {
-            let remedy =
-                message!["download it first, or add `", Setting::AllowRemote, "` if you trust where it comes from"];
-            return Err(Error::input(path, "lies on a network", remedy));
-        }
-        Name::Other => {
-            let what = "is no file, but a connection to something else";
-            return Err(Error::input(path, what, "save the path to a file and name that"));
-        }
-    };
-    let flags = GdalOpenFlags::GDAL_OF_VECTOR | GdalOpenFlags::GDAL_OF_READONLY | GdalOpenFlags::GDAL_OF_VERBOSE_ERROR;
-    let (opened, complaint) = vsi::open(&name, flags, &VECTORS);
-    opened.ok_or_else(|| {
-        let convert =
-            "give a line as GeoJSON, KML, GPX or GeoPackage, perhaps made by `ogr2ogr OUT.gpkg IN`, or keys in a .toml";
-        if vsi::open(&name, GdalOpenFlags::GDAL_OF_RASTER, &FORMATS).0.is_some() {
-            return Error::input(path, "holds a raster, not a path", convert);
-        }
-        match complaint.filter(|words| !words.contains("not recognized as a supported file format")) {
-            Some(words) => {
-                let what = format!("cannot be opened as a path ({})", one_line(&words, path));
-                Error::input(path, what, "mend it, or download it again, or see what `ogrinfo IN` says of it")
-            }
-            None => Error::input(path, "is in no format of lines that hachure reads", convert),
-        }
     })
 }
 

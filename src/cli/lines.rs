@@ -1,0 +1,78 @@
+//! Flags of lines of the user's own that are drawn on the land.
+
+use std::path::PathBuf;
+
+use super::talk::Talk;
+use crate::dem::Dem;
+use crate::error::{Result, shown};
+use crate::geo::{self, OwnLines};
+use crate::relief::{self, SurfaceLine};
+
+/// The flags, as typed.
+#[derive(Debug, Clone, Default, clap::Args)]
+pub struct LinesArguments {
+    /// Also draw lines of your own on the land: all lines and rims of areas in a vector file (GeoPackage, GeoJSON, KML, GPX,
+    /// Shapefile …), FILE:LAYER of one of its layers; several times for several. The whole number in an attribute order,
+    /// strahler, stream_order, ord_stra or class says how much a line weighs [default: 1]
+    #[arg(long = "lines", value_name = "FILE[:LAYER]", help_heading = "Style")]
+    lines: Vec<PathBuf>,
+}
+
+/// The lines of all files, before their DEM is read.
+#[derive(Debug, Clone, Default)]
+pub struct GivenLines(Vec<(PathBuf, OwnLines)>);
+
+impl LinesArguments {
+    /// Whether there are any.
+    pub fn is_empty(&self) -> bool {
+        self.lines.is_empty()
+    }
+
+    /// The files that are read beside the DEM.
+    pub fn files(&self) -> Vec<PathBuf> {
+        self.lines.iter().map(|path| geo::with_layer(path).0).collect()
+    }
+
+    /// Reads the files; those on a network only where these are allowed.
+    ///
+    /// # Errors
+    /// As [`geo::own_lines`].
+    pub fn open(&self, allow_remote: bool) -> Result<GivenLines> {
+        let read = |path: &PathBuf| Ok((path.clone(), geo::own_lines(path, allow_remote)?));
+        self.lines.iter().map(read).collect::<Result<_>>().map(GivenLines)
+    }
+
+    /// The lines on a DEM: [`Self::open`] and [`GivenLines::on`] at once.
+    ///
+    /// # Errors
+    /// As those.
+    pub fn read(&self, dem: &Dem, allow_remote: bool, talk: &Talk) -> Result<Vec<SurfaceLine>> {
+        self.open(allow_remote)?.on(dem, talk)
+    }
+}
+
+impl GivenLines {
+    /// All that they depend on, wherever the files lie: what is equal is drawn equally on one DEM.
+    pub fn asked(&self) -> String {
+        let name = |(path, lines): &(PathBuf, OwnLines)| {
+            format!("{:?} {:032x}", path.file_name().unwrap_or_default(), lines.hash())
+        };
+        self.0.iter().map(name).collect::<Vec<_>>().join("; ")
+    }
+
+    /// The lines on a DEM, file by file; what was taken is told.
+    ///
+    /// # Errors
+    /// As [`relief::own_lines`].
+    pub fn on(&self, dem: &Dem, talk: &Talk) -> Result<Vec<SurfaceLine>> {
+        let mut on_dem = Vec::new();
+        for (path, lines) in &self.0 {
+            on_dem.extend(relief::own_lines(path, lines, dem)?);
+            talk.say(&format!("lines: {}: {}", shown(path), lines.taken()))?;
+            if lines.layers.iter().any(|layer| layer.crs.is_none()) {
+                talk.warn(&format!("{} names no coordinate system: assumed that it is the DEM's", shown(path)));
+            }
+        }
+        Ok(on_dem)
+    }
+}
