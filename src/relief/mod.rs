@@ -4,6 +4,19 @@
 //! All are [`SurfaceLine`]s: polylines on the map of a DEM that lie on its surface, with what of the relief about each point tells
 //! whether a page can show it.
 
+pub mod area;
+pub mod bits;
+pub mod channels;
+pub mod flood;
+pub mod flow;
+pub mod frame;
+pub mod grid;
+mod heap;
+mod smooth;
+pub mod steepest;
+pub mod threshold;
+pub mod water;
+
 use glam::DVec2;
 
 /// What a line of the land is.
