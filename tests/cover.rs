@@ -31,7 +31,7 @@ const RIDGE: Form = Form {
 
 /// Over the ridge from the south, on which the far plain comes out again behind it.
 fn camera() -> Camera {
-    look(from_middle(DVec3::new(0.0, -620.0, 260.0)), from_middle(DVec3::new(0.0, 100.0, 40.0)), 60.0, PAGE)
+    look(from_middle(DVec3::new(0.0, -620.0, 420.0)), from_middle(DVec3::new(0.0, 100.0, 20.0)), 60.0, PAGE)
 }
 
 /// Where a way on the map from a to b stands on the form.
@@ -149,7 +149,7 @@ fn lines_change_nothing_of_the_surface() {
 fn lines_on_a_page_in_pieces_are_those_of_one_piece() {
     let camera = camera();
     let ring: Vec<DVec2> = (0..=40).map(|k| DVec2::from_angle(f64::from(k) / 40.0 * std::f64::consts::TAU)).collect();
-    let ring = own(&ring.iter().map(|p| DVec2::new(0.0, -330.0) + *p * 60.0).collect::<Vec<_>>(), true);
+    let ring = own(&ring.iter().map(|p| DVec2::new(0.0, -190.0) + *p * 50.0).collect::<Vec<_>>(), true);
     let lines = vec![ring, own(&[DVec2::new(-500.0, -600.0), DVec2::new(500.0, 600.0)], false)];
     let whole = page(lines.clone(), &camera).land;
     assert_eq!(whole.iter().filter(|chain| chain.closed).count(), 1, "the ring before the ridge is seen whole");

@@ -4,8 +4,20 @@
 //! All are [`SurfaceLine`]s: polylines on the map of a DEM that lie on its surface, with what of the relief about each point tells
 //! whether a page can show it.
 
+pub mod area;
+pub mod bits;
+pub mod channels;
 mod crease;
+pub mod flood;
+pub mod flow;
+pub mod frame;
+pub mod grid;
+mod heap;
 mod own;
+mod smooth;
+pub mod steepest;
+pub mod threshold;
+pub mod water;
 
 use glam::DVec2;
 

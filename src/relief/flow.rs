@@ -1,0 +1,185 @@
+//! Which way water goes from every sample, over the land as it is: each pit is left by a way carved through its rim.
+//!
+//! Water goes the steepest way down. From a pit or a flat, lowest first as the flood reaches them, it goes along the flood's parents
+//! up to the first sample that drains already (carving; Soille, Vogt and Colombo 2003). No height changes, so no fall has to be made
+//! up on flats, which f32 could not hold. A sample drains when it lies on a carved way or in the catchment of a pit that was left, and
+//! is not touched from then on; what it flows to drains too, so no cycle can close. A seed without a lower neighbour is an
+//! outlet at once; one that has some becomes an outlet when a carved way ends on it.
+//!
+//! Cost: a pass for directions, one for catchments, the flood; 1 byte a sample that stays, 5 more on the way. Not handled: two
+//! ways out of one pit.
+
+use super::bits::Bits;
+use super::flood::flood;
+use super::frame::Frame;
+use super::steepest::{NONE, OUTLET, VOID, steepest};
+
+/// Where water may end.
+#[derive(Debug, Clone, Copy)]
+pub enum Ends<'a> {
+    /// At voids, which frame the grid too, and in this water.
+    Rim(&'a Bits),
+    /// At these samples, at least one of each piece of land.
+    At(&'a Bits),
+}
+
+/// Directions of all samples.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Flow {
+    frame: Frame,
+    steps: [usize; 8],
+    to: Vec<u8>,
+}
+
+/// Flow in the making.
+struct Carver {
+    flow: Flow,
+    /// The pit or outlet to which the steepest way leads from each sample.
+    catchments: Vec<u32>,
+    /// Samples that drain by a carved way; of pits, also all of their catchment.
+    drains: Bits,
+}
+
+impl Flow {
+    /// Over framed heights, NaN at voids.
+    pub fn of(frame: Frame, heights: &[f32], ends: Ends<'_>) -> Self {
+        let mut flow = Self { frame, steps: frame.steps(), to: steepest(frame, heights) };
+        let seeds = flow.seeds(ends);
+        let mut drains = Bits::none(frame.samples());
+        for seed in seeds.iter() {
+            let ends_here = match ends {
+                Ends::Rim(water) => flow.to[seed] == NONE || water.has(seed),
+                Ends::At(_) => true,
+            };
+            if ends_here {
+                flow.to[seed] = OUTLET;
+                drains.take(seed);
+            }
+        }
+        let mut carver = Carver { catchments: flow.catchments(), flow, drains };
+        flood(frame, heights, seeds.iter(), |sample, parents| {
+            if carver.flow.to[sample] == NONE {
+                carver.leave(sample, parents);
+            }
+        });
+        carver.flow
+    }
+
+    fn seeds(&self, ends: Ends<'_>) -> Bits {
+        let mut seeds = Bits::none(self.to.len());
+        match ends {
+            Ends::At(these) => return these.clone(),
+            Ends::Rim(water) => {
+                let inside = self.frame.indices().filter(|i| self.to[*i] != VOID);
+                inside.filter(|i| water.has(*i) || self.is_rim(*i)).for_each(|i| seeds.take(i));
+            }
+        }
+        seeds
+    }
+
+    /// Whether a sample of the land is beside a void or at the grid's edge.
+    pub fn is_rim(&self, i: usize) -> bool {
+        self.steps.iter().any(|step| self.to[i.wrapping_add(*step)] == VOID)
+    }
+
+    /// Whether there is land.
+    pub fn is_land(&self, i: usize) -> bool {
+        self.to[i] != VOID
+    }
+
+    /// Where water goes from here, `None` at an outlet and where there is no land.
+    pub fn down(&self, i: usize) -> Option<usize> {
+        self.steps.get(usize::from(self.to[i])).map(|step| i.wrapping_add(*step))
+    }
+
+    /// The number of the neighbour to which it goes.
+    pub fn direction(&self, i: usize) -> Option<usize> {
+        Some(usize::from(self.to[i])).filter(|k| *k < 8)
+    }
+
+    /// From where water comes.
+    pub fn donors(&self, i: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
+        let around = self.steps.iter().enumerate().map(move |(k, step)| (k, i.wrapping_add(*step)));
+        around.filter(|(k, from)| usize::from(self.to[*from]) == (k + 4) % 8)
+    }
+
+    /// Its grid.
+    pub fn frame(&self) -> Frame {
+        self.frame
+    }
+
+    /// Where the way down ends, of each sample; pits are not left yet.
+    fn catchments(&self) -> Vec<u32> {
+        const UNKNOWN: u32 = u32::MAX;
+        let mut ends = vec![UNKNOWN; self.to.len()];
+        for first in self.frame.indices().filter(|i| self.to[*i] != VOID) {
+            let mut i = first;
+            while let (UNKNOWN, Some(next)) = (ends[i], self.down(i)) {
+                i = next;
+            }
+            let end = if ends[i] == UNKNOWN { i as u32 } else { ends[i] };
+            let mut i = first;
+            while ends[i] == UNKNOWN {
+                ends[i] = end;
+                i = self.down(i).unwrap_or(i);
+            }
+        }
+        ends
+    }
+}
+
+impl Carver {
+    /// Carves the way out of a pit.
+    fn leave(&mut self, pit: usize, parents: &[u8]) {
+        let mut i = pit;
+        while !self.has_left(i) {
+            let next = self.step(i, usize::from(parents[i]));
+            // Not before the way is whole: it would end in the pit's own catchment.
+            if i != pit {
+                self.drains.take(i);
+            }
+            i = next;
+        }
+        self.drains.take(pit);
+    }
+
+    fn has_left(&self, i: usize) -> bool {
+        self.drains.has(i) || self.drains.has(self.catchments[i] as usize)
+    }
+
+    /// Turns a sample to a neighbour, or to another where that would cross what drains already, and tells to which.
+    ///
+    /// ```text
+    ///  from   d     a to d is the step, `from` to `onto` crosses it. The flood came to a from d, to the other two from d or from
+    ///      \ /      before: none of them is on the way from d. Where `from` drains, so does `onto`: a goes there. Else `from`
+    ///      / \      goes to d. Both go along a side, which crosses nothing.
+    ///     a  onto
+    /// ```
+    fn step(&mut self, a: usize, k: usize) -> usize {
+        let Flow { steps, to, .. } = &self.flow;
+        if k >= 8 {
+            // A seed with lower neighbours, over which the pit runs out.
+            self.flow.to[a] = OUTLET;
+            self.drains.take(a);
+            return a;
+        }
+        let beside = |turn: usize| a.wrapping_add(steps[(k + turn) % 8]);
+        // The neighbours on both sides of d, and by how much a step from one to the other is turned against k.
+        let crossing = [(7, 2), (1, 6)]
+            .into_iter()
+            .find(|(side, turn)| k % 2 == 1 && usize::from(to[beside(*side)]) == (k + turn) % 8);
+        let mut k = k;
+        if let Some((side, _)) = crossing {
+            let from = beside(side);
+            let onto = 8 - side;
+            if self.has_left(from) {
+                k = (k + onto) % 8;
+            } else {
+                self.flow.to[from] = ((k + onto) % 8) as u8;
+                self.drains.take(from);
+            }
+        }
+        self.flow.to[a] = k as u8;
+        a.wrapping_add(self.flow.steps[k])
+    }
+}
