@@ -73,10 +73,9 @@ impl Renderer {
         Ok(Self { gpu, surface, land: None, kept, scene, page, curves, stages, last: None })
     }
 
-    /// The same with lines on the land, for plans that ask for them.
-    #[must_use]
-    pub fn with_land(self, land: Arc<Land>) -> Self {
-        Self { land: Some(land), ..self }
+    /// Gives it lines on the land, for plans that ask for them.
+    pub fn set_land(&mut self, land: Option<Arc<Land>>) {
+        self.land = land;
     }
 
     /// Decides what a frame needs, without a word to the device.

@@ -79,7 +79,7 @@ fn own(places: &[DVec2], closed: bool) -> SurfaceLine {
 fn renderer(lines: Vec<SurfaceLine>) -> Renderer {
     let surface = Arc::new(Surface::new(RIDGE.dem(|_, _| true)));
     let land = Arc::new(Land::new(surface.dem(), 1.0, lines));
-    Renderer::new(gpu().clone(), surface).expect("a renderer").with_land(land)
+    Renderer::new(gpu().clone(), surface).expect("a renderer").with_land(Some(land))
 }
 
 fn plan() -> Plan {
@@ -154,7 +154,8 @@ fn lines_on_a_page_in_pieces_are_those_of_one_piece() {
     let whole = page(lines.clone(), &camera).land;
     assert_eq!(whole.iter().filter(|chain| chain.closed).count(), 1, "the ring before the ridge is seen whole");
     let mut renderer = renderer(lines);
-    let frame = renderer.plan(&plan(), &camera).and_then(|frame| frame.cut(Pieces::new(PAGE, [100, 100]))).expect("a frame");
+    let frame =
+        renderer.plan(&plan(), &camera).and_then(|frame| frame.cut(Pieces::new(PAGE, [100, 100]))).expect("a frame");
     assert!(frame.pieces.iter().len() > 4);
     assert_eq!(renderer.page_of(frame, |_| ()).expect("a page").land, whole);
 }

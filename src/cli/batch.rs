@@ -26,7 +26,9 @@ use crate::ink::Seal;
 use crate::job::manifest::Sequence;
 use crate::job::name::Naming;
 use crate::job::{Job, Made, Manifest};
+use crate::line::Land;
 use crate::plan::frame::Kept;
+use crate::relief::LandWanted;
 use crate::render::{Estimate, Illustration, Page, Renderer};
 use crate::surface::Surface;
 use entry::{Contents, Entry};
@@ -81,16 +83,18 @@ struct Scene {
     /// What it was read of and how.
     of: String,
     /// The files that it was read of: no drawing may replace one.
-    files: Arc<Vec<PathBuf>>,
+    files: Vec<PathBuf>,
     surface: Arc<Surface>,
     /// None where only plans were drawn of it so far.
     renderer: Option<Renderer>,
+    /// The lines of its land that the last drawing wanted.
+    land: Option<(LandWanted, Option<Arc<Land>>)>,
 }
 
 /// A drawing on its way to its files.
 struct Drawn<'a> {
     entry: &'a Entry,
-    inputs: Arc<Vec<PathBuf>>,
+    inputs: Vec<PathBuf>,
     what: What,
 }
 
@@ -189,8 +193,11 @@ impl Studio<'_> {
         self.talk.say(&format!("{}:", entry.called))?;
         if let Some(scale) = entry.draw.scale() {
             let scene = self.scene(&entry.draw)?;
-            let planned = plan::draw(&entry.draw, scale, scene.surface.dem())?;
-            return Ok(Drawn { entry, inputs: scene.files.clone(), what: What::Plan(planned) });
+            let inputs = inputs(scene, &entry.draw);
+            let surface = scene.surface.clone();
+            let land = self.land(&entry.draw, &plan::check(&entry.draw)?.1)?;
+            let planned = plan::draw(&entry.draw, scale, surface.dem(), land.as_deref())?;
+            return Ok(Drawn { entry, inputs, what: What::Plan(planned) });
         }
         let illustration = entry.draw.check()?;
         let gpu = match &self.gpu {
@@ -203,18 +210,33 @@ impl Studio<'_> {
         let adapter = gpu.adapter_and_driver();
         progress.on(&adapter);
         let surface = self.scene(&entry.draw)?.surface.clone();
+        let land = self.land(&entry.draw, &illustration.land)?;
         let Self { scene: Some(scene), talk, .. } = self else {
             return Err(Error::mistake("a DEM was read and is not there"));
         };
         let view = entry.draw.look(&surface, &illustration, talk)?;
         let renderer = match &mut scene.renderer {
             Some(renderer) => renderer,
-            none => none.insert(Renderer::new(gpu, surface)?),
+            none => none.insert(Renderer::new(gpu, surface.clone())?),
         };
+        renderer.set_land(land);
         let page = renderer.page(&illustration.plan, &view.camera, |_| ())?;
         entry.draw.warn_of_blank(renderer, &view, &page, talk);
-        let inputs = scene.files.clone();
+        let inputs = inputs(scene, &entry.draw);
         Ok(Drawn { entry, inputs, what: What::View(Box::new(page), illustration, adapter) })
+    }
+
+    /// The lines of the land that a drawing wants: the last one's, or found.
+    fn land(&mut self, draw: &DrawArguments, wanted: &LandWanted) -> Result<Option<Arc<Land>>> {
+        let (cache, talk) = (self.cache.clone(), self.talk.hushed());
+        let scene = self.scene(draw)?;
+        match &scene.land {
+            Some((of, land)) if of == wanted => Ok(land.clone()),
+            _ => {
+                let land = scene::land(&draw.drawing, wanted, &draw.terrain, scene.surface.dem(), &cache, &talk)?;
+                Ok(scene.land.insert((wanted.clone(), land)).1.clone())
+            }
+        }
     }
 
     /// The DEM of a drawing: the last one's, or read.
@@ -225,14 +247,19 @@ impl Studio<'_> {
             // Both together may be more than there is room for.
             self.scene = None;
             let reading = draw.open(self.cache.clone())?;
-            let files = Arc::new(reading.files().map(Path::to_owned).collect());
+            let files = reading.files().map(Path::to_owned).collect();
             let surface = Arc::new(scene::surface(&draw.terrain, reading, talk)?);
             scene::prepare(&surface, &self.cache, talk)?;
             self.cache.discard_damaged(surface.dem(), &|message| talk.warn(&told(message)));
-            self.scene = Some(Scene { of, files, surface, renderer: None });
+            self.scene = Some(Scene { of, files, surface, renderer: None, land: None });
         }
         self.scene.as_mut().ok_or_else(|| Error::mistake("a DEM was read and is not there"))
     }
+}
+
+/// The files that a drawing is made of.
+fn inputs(scene: &Scene, draw: &DrawArguments) -> Vec<PathBuf> {
+    [scene.files.clone(), draw.drawing.land.lines.files()].concat()
 }
 
 impl Drawn<'_> {

@@ -115,15 +115,18 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     let illustration = arguments.check()?;
     let started = Instant::now();
     let cache = arguments.cache.cache();
-    let reading = arguments.open(cache.clone())?;
-    let mut outputs = arguments.outputs.open(Taken::inputs(reading.files()))?;
+    let (reading, beside) = (arguments.open(cache.clone())?, arguments.drawing.land.lines.files());
+    let mut outputs =
+        arguments.outputs.open(Taken::inputs(reading.files().chain(beside.iter().map(PathBuf::as_path))))?;
     let surface = Arc::new(scene::surface(&arguments.terrain, reading, talk)?);
     let gpu = scene::prepare_and_open(&surface, &cache, &arguments.device, talk)?;
     let view = arguments.look(&surface, &illustration, talk)?;
+    let land = scene::land(&arguments.drawing, &illustration.land, &arguments.terrain, surface.dem(), &cache, talk)?;
     let gpu = Arc::new(gpu?);
     DeviceArguments::tell(&gpu, talk)?;
     talk.progress("drawing", 0.3);
     let mut renderer = Renderer::new(gpu, surface.clone())?;
+    renderer.set_land(land);
     let page = renderer.page(&illustration.plan, &view.camera, |share| talk.progress("drawing", 0.3 + 0.3 * share))?;
     cache.discard_damaged(surface.dem(), &|message| talk.warn(&told(message)));
     let mut drawn = Drawn { renderer: &mut renderer, view: &view, page };
@@ -214,7 +217,8 @@ impl DrawArguments {
         self.drawing.plan(Wanted::Drawing)?;
         self.view.check()?;
         self.outputs.check()?;
-        self.drawing.illustration(self.view.typed_size(), Wanted::Drawing, self.outputs.want_picture())
+        let (size, remote) = (self.view.typed_size(), self.terrain.allows_remote());
+        self.drawing.illustration(size, Wanted::Drawing, self.outputs.want_picture(), remote)
     }
 
     /// The view, told as flags that repeat it, and what is to be said of it and of the DEM.

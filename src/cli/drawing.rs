@@ -2,13 +2,16 @@
 //! page they stand, in which style.
 
 use super::choices;
+use super::land::LandArguments;
 use super::page::{Layout, PageArguments};
 use super::style::StyleArguments;
 use super::values::{self, LevelChoice, Size};
 use super::viewpoint::SIZE;
 use crate::error::{Error, Result, Setting};
+use crate::ink::Style;
 use crate::plan::detail::ERROR_PX;
-use crate::plan::{Border, Curves, Detail, Method, Plan, Share};
+use crate::plan::{Border, Curves, Detail, LandLines, Method, Plan, Share};
+use crate::relief::LandWanted;
 use crate::render::Illustration;
 
 /// The flags, as typed.
@@ -47,6 +50,9 @@ pub struct DrawingArguments {
     /// The look.
     #[command(flatten)]
     pub style: StyleArguments,
+    /// Lines of the land.
+    #[command(flatten)]
+    pub land: LandArguments,
 }
 
 /// What is asked for of a view.
@@ -74,21 +80,36 @@ impl DrawingArguments {
         let plan = Plan { curves, ..Plan::new(detail, method, self.border) };
         if !plan.has_curves() {
             self.style.refuse_for_traced()?;
+            self.land.refuse_for_traced()?;
         }
         Ok(if wanted == Wanted::Mask { Plan { curves: Curves::Off, ..plan } } else { plan })
     }
 
-    /// The drawing of a view in a frame of this size, if the flags go together; `pictures` says whether some of its files are.
+    /// The drawing of a view in a frame of this size, if the flags go together; `pictures` says whether some of its files are;
+    /// files on a network are read only where these are allowed.
     ///
     /// # Errors
-    /// [`Error::Setting`]; as [`StyleArguments::style`].
-    pub fn illustration(&self, size: Option<Size>, wanted: Wanted, pictures: bool) -> Result<Illustration> {
+    /// [`Error::Setting`]; as [`StyleArguments::style`] and [`LandArguments::wanted`].
+    pub fn illustration(
+        &self,
+        size: Option<Size>,
+        wanted: Wanted,
+        pictures: bool,
+        allow_remote: bool,
+    ) -> Result<Illustration> {
         let (plan, style) = (self.plan(wanted)?, self.style.style()?);
+        let land = self.wanted(&style, &plan, allow_remote)?;
+        let plan = Plan { land: if land.is_nothing() { LandLines::Off } else { LandLines::On }, ..plan };
         let layout = self.layout(size, pictures)?;
         let frame = [layout.frame.width, layout.frame.height];
         let economy = self.style.economy(&style, layout.sheet.placement(frame).px_per_mm);
         let split = self.style.split().to_vec();
-        Ok(Illustration { plan, style, economy, split, sheet: layout.sheet, frame, px_per_mm: layout.px_per_mm })
+        Ok(Illustration { plan, style, land, economy, split, sheet: layout.sheet, frame, px_per_mm: layout.px_per_mm })
+    }
+
+    /// Which lines of the land are to be drawn; none where no curves are.
+    fn wanted(&self, style: &Style, plan: &Plan, allow_remote: bool) -> Result<LandWanted> {
+        if plan.has_curves() { self.land.wanted(style, allow_remote) } else { Ok(LandWanted::default()) }
     }
 
     /// How the page is laid out.

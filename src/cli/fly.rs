@@ -87,7 +87,6 @@ struct Asked {
     share: Share,
     dem: Content,
     sequence: Sequence,
-    jobs: Vec<Job>,
 }
 
 /// A DEM on a device, and the way over it.
@@ -106,21 +105,24 @@ pub fn run(arguments: &FlyArguments, talk: &Talk) -> Result<()> {
     if let Some(path) = &arguments.preview {
         return arguments.preview(path, &cache, talk);
     }
-    let Asked { files, illustration, plan, share, dem, sequence, jobs } = arguments.asked(&cache, talk)?;
+    let (asked, jobs) = arguments.asked(&cache, talk)?;
     if arguments.jobs.list {
-        return arguments.list(&illustration, &plan, &jobs, &cache, talk);
+        return arguments.list(&asked, &jobs, &cache, talk);
     }
-    let beside = arguments.flight.files();
+    let beside = arguments.beside();
     let named = || Taken::inputs(arguments.terrain.dems.iter().chain(&beside).map(PathBuf::as_path));
-    let pictures = arguments.pictures(&files, &jobs)?;
-    let film = arguments.video.as_deref().map(|path| film::of(path, plan.fps(), named(), &pictures)).transpose()?;
-    let folder = files.folder();
-    Manifest::refuse_others(&folder, &sequence)?;
-    let work = Work { sequence, share, called: "frames", jobs, folder, dems: vec![dem] };
+    let pictures = arguments.pictures(&asked.files, &jobs)?;
+    let film =
+        arguments.video.as_deref().map(|path| film::of(path, asked.plan.fps(), named(), &pictures)).transpose()?;
+    let folder = asked.files.folder();
+    Manifest::refuse_others(&folder, &asked.sequence)?;
+    let Asked { files, illustration, share, dem, sequence, .. } = &asked;
+    let (sequence, share, dems) = (sequence.clone(), share.clone(), vec![dem.clone()]);
+    let work = Work { sequence, share, called: "frames", jobs, folder, dems };
     let progress = Progress::start(talk, arguments.jobs.progress, work.jobs.len());
     let fly = || {
         let is_left = work.jobs.iter().any(|job| !job.is_done());
-        let mut aloft = is_left.then(|| arguments.rise(&plan, &files, &work.jobs, &cache, talk)).transpose()?;
+        let mut aloft = is_left.then(|| arguments.rise(&asked, &work.jobs, &cache, talk)).transpose()?;
         let adapter = aloft.as_ref().map(|aloft| aloft.adapter.clone()).unwrap_or_default();
         progress.on(&adapter);
         let draw = |job: &Job| {
@@ -133,7 +135,7 @@ pub fn run(arguments: &FlyArguments, talk: &Talk) -> Result<()> {
         let finish = |job: &Job, found: Found| {
             let page = found.page();
             blank.fetch_add(usize::from(page.marks.inked() == 0), Ordering::Relaxed);
-            files.write(job, &page, &illustration, &adapter)
+            files.write(job, &page, illustration, &adapter)
         };
         work.run(talk, &progress, draw, finish)?;
         match blank.into_inner() {
@@ -156,12 +158,13 @@ impl FlyArguments {
         self.jobs.progress == Form::Json || self.jobs.list
     }
 
-    /// Whether the flags go together, and all that is known without the DEM.
-    fn asked(&self, cache: &Cache, talk: &Talk) -> Result<Asked> {
+    /// Whether the flags go together, all that is known without the DEM, and the frames to draw.
+    fn asked(&self, cache: &Cache, talk: &Talk) -> Result<(Asked, Vec<Job>)> {
         let files = self.frames.files()?;
         self.flight.check()?;
         let size = self.flight.typed_size();
-        let illustration = self.drawing.illustration(size, files.wanted(), files.want_picture())?;
+        let illustration =
+            self.drawing.illustration(size, files.wanted(), files.want_picture(), self.terrain.allows_remote())?;
         let [width, height] = illustration.frame;
         let plan = self.flight.sized(Size { width, height }).plan(self.terrain.allows_remote())?;
         let share = self.jobs.share(plan.count(), "frames")?;
@@ -185,7 +188,7 @@ impl FlyArguments {
         let name = |naming: &Naming, n: &u32| naming.clone().with("frame", n.to_le_bytes()).name();
         let job = |n: &u32| files.job(*n, [name(&of_job, n), name(&of_mask, n)]);
         let jobs = share.frames.numbers().iter().map(job).collect();
-        Ok(Asked { files, illustration, plan, share, dem, sequence, jobs })
+        Ok((Asked { files, illustration, plan, share, dem, sequence }, jobs))
     }
 
     /// The pictures of a film, where one is wanted.
@@ -232,22 +235,15 @@ impl FlyArguments {
     }
 
     /// Lists jobs with what they may take.
-    fn list(
-        &self,
-        illustration: &Illustration,
-        plan: &FlightPlan,
-        jobs: &[Job],
-        cache: &Cache,
-        talk: &Talk,
-    ) -> Result<()> {
+    fn list(&self, asked: &Asked, jobs: &[Job], cache: &Cache, talk: &Talk) -> Result<()> {
         let surface = Arc::new(scene::surface(&self.terrain, self.open(cache)?, &talk.hushed())?);
         scene::prepare(&surface, cache, talk)?;
-        let (flight, mut kept) = (self.flight(plan, &surface, &talk.hushed())?, Kept::default());
+        let (flight, mut kept) = (self.flight(&asked.plan, &surface, &talk.hushed())?, Kept::default());
         for job in jobs {
             let camera = flight.camera(job.number);
             let estimate = match job.is_done() {
                 true => Ok(Estimate::NOTHING),
-                false => listing::estimate(&illustration.plan, &surface, &camera, &mut kept),
+                false => listing::estimate(&asked.illustration.plan, &surface, &camera, &mut kept),
             };
             listing::tell(job, estimate, talk)?;
         }
@@ -255,8 +251,9 @@ impl FlyArguments {
     }
 
     /// Reads the DEM, opens the device, and lays the way over the land.
-    fn rise(&self, plan: &FlightPlan, files: &FrameFiles, jobs: &[Job], cache: &Cache, talk: &Talk) -> Result<Aloft> {
-        let (reading, beside) = (self.open(cache)?, self.flight.files());
+    fn rise(&self, asked: &Asked, jobs: &[Job], cache: &Cache, talk: &Talk) -> Result<Aloft> {
+        let (plan, files, wanted) = (&asked.plan, &asked.files, &asked.illustration.land);
+        let (reading, beside) = (self.open(cache)?, self.beside());
         let mut inputs = Taken::inputs(reading.files().chain(beside.iter().map(PathBuf::as_path)));
         self.video.as_deref().map_or(Ok(()), |video| inputs.take(Setting::Video, video))?;
         files.spare(inputs, jobs)?;
@@ -265,11 +262,19 @@ impl FlyArguments {
         cells::warn(surface.dem(), self.drawing.exaggeration, talk);
         warn_of_survey(surface.dem(), talk)?;
         let flight = self.flight(plan, &surface, talk)?;
+        let land = scene::land(&self.drawing, wanted, &self.terrain, surface.dem(), cache, talk)?;
         let gpu = Arc::new(gpu?);
         DeviceArguments::tell(&gpu, talk)?;
         let adapter = gpu.adapter_and_driver();
         cache.discard_damaged(surface.dem(), &|message| talk.warn(&told(message)));
-        Ok(Aloft { renderer: Renderer::new(gpu, surface)?, flight, adapter })
+        let mut renderer = Renderer::new(gpu, surface)?;
+        renderer.set_land(land);
+        Ok(Aloft { renderer, flight, adapter })
+    }
+
+    /// The files that are read beside the DEM.
+    fn beside(&self) -> Vec<PathBuf> {
+        [self.flight.files(), self.drawing.land.lines.files()].concat()
     }
 
     fn open(&self, cache: &Cache) -> Result<Reading> {

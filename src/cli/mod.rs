@@ -21,6 +21,7 @@ pub mod generate;
 pub mod info;
 pub mod jobs;
 pub mod journey;
+pub mod land;
 pub mod lines;
 pub mod listing;
 pub mod memory;

@@ -1,5 +1,6 @@
 //! `hachure draw --plan`: the land from straight above, true to scale.
 
+use std::path::PathBuf;
 use std::time::Instant;
 
 use glam::DVec2;
@@ -9,6 +10,7 @@ use super::draw::DrawArguments;
 use super::draw_report::{DemReport, LayerReport, PageReport};
 use super::journey;
 use super::page::{Layout, MARGIN};
+use super::scene;
 use super::talk::Talk;
 use super::terrain::warn_of_survey;
 use super::values::{PAGES_MM, Size};
@@ -17,8 +19,9 @@ use crate::error::{Error, Result, Setting};
 use crate::files::Taken;
 use crate::ink::strokes::inset;
 use crate::ink::{self, Drawing, Sheet, Style};
-use crate::line::overhead;
+use crate::line::{Land, overhead};
 use crate::message;
+use crate::relief::LandWanted;
 
 /// Millimetres of a metre.
 const MM: f64 = 1000.0;
@@ -51,7 +54,7 @@ pub struct Planned {
 ///
 /// # Errors
 /// [`Error::Setting`]; as [`styles::find`](crate::ink::styles::find).
-pub fn check(arguments: &DrawArguments) -> Result<Style> {
+pub fn check(arguments: &DrawArguments) -> Result<(Style, LandWanted)> {
     arguments.outputs.check()?;
     if arguments.outputs.want_mask() {
         let what = "a mask is of what an eye sees, and a plan has none";
@@ -60,19 +63,23 @@ pub fn check(arguments: &DrawArguments) -> Result<Style> {
     let mut style = arguments.drawing.style.style()?;
     // The corners of the rim do as well.
     style.plot.registration = false;
-    Ok(style)
+    let land = arguments.drawing.land.wanted(&style, arguments.terrain.allows_remote())?;
+    Ok((style, land))
 }
 
 /// Draws the plan of a DEM: no GPU, no view.
 ///
 /// # Errors
 /// As [`check`]; [`Error::Setting`] for a scale that fits no page.
-pub fn draw(arguments: &DrawArguments, scale: f64, dem: &Dem) -> Result<Planned> {
-    let style = check(arguments)?;
+pub fn draw(arguments: &DrawArguments, scale: f64, dem: &Dem, land: Option<&Land>) -> Result<Planned> {
+    let (style, _) = check(arguments)?;
     let area = arguments.area.unwrap_or(dem.extent());
     let layout = layout(area, scale, inset(style.broadest()) + style.wobble.reach, arguments)?;
     let frame = [layout.frame.width, layout.frame.height];
-    let lines = overhead(dem, area, frame, layout.sheet.placement(frame).px_per_mm * MM / scale)?;
+    let px_per_mm = layout.sheet.placement(frame).px_per_mm;
+    let economy = arguments.drawing.style.economy(&style, px_per_mm);
+    let none = Land::default();
+    let lines = overhead(dem, land.unwrap_or(&none), area, frame, px_per_mm * MM / scale, economy.min_gap)?;
     let drawing = ink::draw(&lines, &layout.sheet, &style, &[])?;
     Ok(Planned { drawing, px_per_mm: layout.px_per_mm, style, layout, lines: lines.chains.len() })
 }
@@ -82,14 +89,17 @@ pub fn draw(arguments: &DrawArguments, scale: f64, dem: &Dem) -> Result<Planned>
 /// # Errors
 /// Whatever went wrong; nothing stands under a final name then.
 pub fn run(arguments: &DrawArguments, scale: f64, talk: &Talk) -> Result<()> {
-    check(arguments)?;
+    let (_, wanted) = check(arguments)?;
     let started = Instant::now();
-    let reading = arguments.open(arguments.cache.cache())?;
-    let mut outputs = arguments.outputs.open(Taken::inputs(reading.files()))?;
+    let cache = arguments.cache.cache();
+    let (reading, beside) = (arguments.open(cache.clone())?, arguments.drawing.land.lines.files());
+    let inputs = reading.files().chain(beside.iter().map(PathBuf::as_path));
+    let mut outputs = arguments.outputs.open(Taken::inputs(inputs))?;
     let dem = arguments.terrain.read(reading, talk)?;
     warn_of_survey(&dem, talk)?;
     dem.check_patches()?;
-    let Planned { drawing, px_per_mm, style, layout, lines } = draw(arguments, scale, &dem)?;
+    let land = scene::land(&arguments.drawing, &wanted, &arguments.terrain, &dem, &cache, talk)?;
+    let Planned { drawing, px_per_mm, style, layout, lines } = draw(arguments, scale, &dem, land.as_deref())?;
     let report = PlanReport {
         version: env!("CARGO_PKG_VERSION"),
         dem: DemReport::of(&arguments.terrain.dems, &dem),

@@ -1,16 +1,21 @@
 //! A DEM on its way to a device: read, looked at, and the device opened meanwhile.
 
 use std::panic::resume_unwind;
+use std::sync::Arc;
 use std::thread;
 
 use super::device::DeviceArguments;
+use super::drawing::DrawingArguments;
 use super::talk::Talk;
 use super::terrain::TerrainArguments;
 use super::words::told;
 use crate::cache::Cache;
+use crate::dem::Dem;
 use crate::error::Result;
 use crate::geo::Reading;
 use crate::gpu::Gpu;
+use crate::line::Land;
+use crate::relief::LandWanted;
 use crate::surface::Surface;
 
 /// Reads the DEM and finds its normals.
@@ -38,7 +43,27 @@ pub fn prepare(surface: &Surface, cache: &Cache, talk: &Talk) -> Result<()> {
     surface.dem().check_patches()
 }
 
-/// The same while the device opens: drivers take their time to start. What opening comes to is told after all that is said
+/// The lines of the land that are wanted; `None` where none are.
+///
+/// # Errors
+/// As [`LandArguments::land`](super::land::LandArguments::land).
+pub fn land(
+    drawing: &DrawingArguments,
+    wanted: &LandWanted,
+    terrain: &TerrainArguments,
+    dem: &Dem,
+    cache: &Cache,
+    talk: &Talk,
+) -> Result<Option<Arc<Land>>> {
+    if wanted.is_nothing() {
+        return Ok(None);
+    }
+    talk.progress("looking for lines of the land", 0.2);
+    let land = drawing.land.land(wanted, dem, drawing.exaggeration, terrain.allows_remote(), cache, talk)?;
+    Ok(Some(Arc::new(land)))
+}
+
+/// [`prepare`] while the device opens: drivers take their time to start. What opening comes to is told after all that is said
 /// of the DEM and its view.
 ///
 /// # Errors

@@ -52,10 +52,14 @@ settings! {
     Cell = "cell",
     /// The file whose grid is drawn.
     CellOf = "cell of",
+    /// From how much land on water runs in a channel.
+    ChannelArea = "channel area",
     /// Metres that a flight keeps above the ground.
     Clearance = "clearance",
     /// Frames of a flight in all.
     Count = "count",
+    /// Lines of the land.
+    Creases = "creases",
     /// The part that is taken.
     Crop = "crop",
     /// The coordinate system of places that are given.
@@ -96,6 +100,8 @@ settings! {
     Level = "level",
     /// Several of them.
     Levels = "levels",
+    /// Files of lines of the user's own.
+    Lines = "lines",
     /// Where the eye stands, on the globe.
     LonLat = "longitude and latitude",
     /// What the middle of the page shows.

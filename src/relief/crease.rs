@@ -28,3 +28,31 @@ impl Crease {
         }
     }
 }
+
+/// From how much land on water runs in a channel.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum ChannelArea {
+    /// As the land says, see [`threshold`](super::threshold).
+    #[default]
+    Auto,
+    /// So many square metres.
+    SquareMetres(f64),
+}
+
+/// All that decides which lines of the land there are.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct LandWanted {
+    /// Of the land itself.
+    pub creases: Vec<Crease>,
+    /// Where channels begin.
+    pub channel_area: ChannelArea,
+    /// What tells the lines that the user gives from any others; empty where there are none.
+    pub own: String,
+}
+
+impl LandWanted {
+    /// Whether there are none.
+    pub fn is_nothing(&self) -> bool {
+        self.creases.is_empty() && self.own.is_empty()
+    }
+}

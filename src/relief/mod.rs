@@ -21,7 +21,7 @@ pub mod water;
 
 use glam::DVec2;
 
-pub use crease::Crease;
+pub use crease::{ChannelArea, Crease, LandWanted};
 pub use own::own_lines;
 
 /// What a line of the land is.

@@ -5,6 +5,7 @@ use crate::error::Result;
 use crate::ink::{self, Drawing, Sheet, Style};
 use crate::line::{Economy, Lines};
 use crate::plan::{Curves, LandLines, Plan};
+use crate::relief::LandWanted;
 
 /// All that a drawing is made by, but what it shows and from where.
 #[derive(Debug, Clone)]
@@ -13,6 +14,8 @@ pub struct Illustration {
     pub plan: Plan,
     /// How it is stroked.
     pub style: Style,
+    /// Which lines of the land are drawn.
+    pub land: LandWanted,
     /// How sparing it is with curves.
     pub economy: Economy,
     /// Distances that part layers, metres.

@@ -1,0 +1,114 @@
+//! Flags of lines on the land: creases, and lines of the user's own.
+
+use super::lines::LinesArguments;
+use super::talk::Talk;
+use super::values::number;
+use crate::cache::Cache;
+use crate::dem::Dem;
+use crate::error::{Error, Result, Setting};
+use crate::ink::Style;
+use crate::line::Land;
+use crate::relief::{ChannelArea, Crease, LandWanted};
+
+/// The flags, as typed.
+#[derive(Debug, Clone, clap::Args)]
+#[command(next_help_heading = "Style")]
+pub struct LandArguments {
+    #[arg(
+        long, value_name = "NAME,…|none", value_parser = creases,
+        help = format!(
+            "Lines of the land, each kind in a layer of its own: {}; or none [default: as the style has it, {}]",
+            Crease::ALL.map(Crease::name).join(", "), creases_word(&Style::default().creases)
+        )
+    )]
+    creases: Option<Creases>,
+    /// From how much land on water runs in a channel: square metres, hectares or square kilometres, as 40000m2, 4ha, .04km2; auto:
+    /// as the land says by the falls of its streams. What of them is drawn is a matter of the page
+    #[arg(long, value_name = "AREA|auto", value_parser = channel_area, default_value = "auto")]
+    channel_area: ChannelArea,
+    /// Lines of the user's own.
+    #[command(flatten)]
+    pub lines: LinesArguments,
+}
+
+/// Several kinds, each once, in one order.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Creases(pub Vec<Crease>);
+
+/// What users call them.
+fn creases_word(creases: &[Crease]) -> String {
+    match creases {
+        [] => "none".to_owned(),
+        creases => creases.iter().map(|crease| crease.name()).collect::<Vec<_>>().join(","),
+    }
+}
+
+impl LandArguments {
+    /// What is asked for, beside what the style says; files on a network are read only where these are allowed.
+    ///
+    /// # Errors
+    /// As [`LinesArguments::open`]; [`Error::Setting`] for an area of channels that nobody draws.
+    pub fn wanted(&self, style: &Style, allow_remote: bool) -> Result<LandWanted> {
+        let creases = self.creases.as_ref().map_or(&style.creases, |creases| &creases.0).clone();
+        let channel_area = self.channel_area;
+        if channel_area != ChannelArea::Auto && !creases.contains(&Crease::Drainage) {
+            let what = "goes with drainage only";
+            return Err(Error::setting(Setting::ChannelArea, what, "add --creases drainage, or leave it out"));
+        }
+        Ok(LandWanted { creases, channel_area, own: self.lines.open(allow_remote)?.asked() })
+    }
+
+    /// Refuses what only contours can be drawn with.
+    ///
+    /// # Errors
+    /// [`Error::Setting`].
+    pub fn refuse_for_traced(&self) -> Result<()> {
+        let asks = self.creases.as_ref().is_some_and(|creases| !creases.0.is_empty());
+        let given = [(Setting::Creases, asks), (Setting::Lines, !self.lines.is_empty())];
+        let refuse = |setting| Error::setting(setting, "goes with contours only", "leave out --method");
+        given.into_iter().find(|(_, given)| *given).map_or(Ok(()), |(setting, _)| Err(refuse(setting)))
+    }
+
+    /// The lines that are wanted of a DEM whose heights are exaggerated by this factor.
+    ///
+    /// # Errors
+    /// As [`Cache::creases`] and [`LinesArguments::read`].
+    pub fn land(
+        &self,
+        wanted: &LandWanted,
+        dem: &Dem,
+        exaggeration: f64,
+        allow_remote: bool,
+        cache: &Cache,
+        talk: &Talk,
+    ) -> Result<Land> {
+        let _ = cache;
+        let own = self.lines.read(dem, allow_remote, talk)?;
+        Ok(Land::new(dem, exaggeration, own))
+    }
+}
+
+/// Kinds of lines of the land, with commas between, or `none`.
+fn creases(text: &str) -> std::result::Result<Creases, String> {
+    let names = Crease::ALL.map(Crease::name).join(", ");
+    let known = |word: &str| Crease::ALL.into_iter().find(|crease| crease.name() == word);
+    let listed = match text {
+        "none" => Some(Vec::new()),
+        text => text.split(',').map(|word| known(word.trim())).collect::<Option<Vec<_>>>(),
+    };
+    let mut creases = listed.ok_or_else(|| format!("want some of {names}, with commas between, or none"))?;
+    creases.sort_unstable();
+    creases.dedup();
+    Ok(Creases(creases))
+}
+
+/// An area with its unit, or `auto`.
+fn channel_area(text: &str) -> std::result::Result<ChannelArea, String> {
+    if text == "auto" {
+        return Ok(ChannelArea::Auto);
+    }
+    let units = [("km2", 1e6), ("ha", 1e4), ("m2", 1.0)];
+    let in_unit = |(unit, metres): (&str, f64)| Some(number(text.strip_suffix(unit)?).ok()? * metres);
+    let area = units.into_iter().find_map(in_unit).filter(|area| *area > 0.0);
+    area.map(ChannelArea::SquareMetres).ok_or_else(|| "want an area, as 40000m2, 4ha or .04km2, or auto".to_owned())
+}
