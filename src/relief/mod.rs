@@ -4,20 +4,29 @@
 //! All are [`SurfaceLine`]s: polylines on the map of a DEM that lie on its surface, with what of the relief about each point tells
 //! whether a page can show it.
 
+pub mod across;
 pub mod area;
 pub mod bits;
+pub mod branches;
 pub mod channels;
 pub mod flood;
 pub mod flow;
 pub mod frame;
 pub mod grid;
 mod heap;
+pub mod lines;
+pub mod net;
+pub mod prune;
 mod smooth;
 pub mod steepest;
 pub mod threshold;
+pub mod trace;
 pub mod water;
+pub mod whole;
 
 use glam::DVec2;
+
+pub use whole::{ChannelArea, Relief};
 
 /// What a line of the land is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
