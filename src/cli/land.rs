@@ -8,7 +8,7 @@ use crate::dem::Dem;
 use crate::error::{Error, Result, Setting};
 use crate::ink::Style;
 use crate::line::Land;
-use crate::relief::{ChannelArea, Crease, LandWanted};
+use crate::relief::{ChannelArea, Crease, LandWanted, Relief};
 
 /// The flags, as typed.
 #[derive(Debug, Clone, clap::Args)]
@@ -83,8 +83,11 @@ impl LandArguments {
         talk: &Talk,
     ) -> Result<Land> {
         let _ = cache;
-        let own = self.lines.read(dem, allow_remote, talk)?;
-        Ok(Land::new(dem, exaggeration, own))
+        let mut lines = self.lines.read(dem, allow_remote, talk)?;
+        if wanted.creases.contains(&Crease::Drainage) {
+            lines.extend(Relief::of(dem, exaggeration)?.drainage(wanted.channel_area));
+        }
+        Ok(Land::new(dem, exaggeration, lines))
     }
 }
 

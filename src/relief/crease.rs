@@ -3,6 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::ChannelArea;
+
 /// Lines that the land has by itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
@@ -27,16 +29,6 @@ impl Crease {
             Self::Shores => "shores",
         }
     }
-}
-
-/// From how much land on water runs in a channel.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub enum ChannelArea {
-    /// As the land says, see [`threshold`](super::threshold).
-    #[default]
-    Auto,
-    /// So many square metres.
-    SquareMetres(f64),
 }
 
 /// All that decides which lines of the land there are.

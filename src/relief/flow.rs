@@ -17,10 +17,15 @@ use super::steepest::{NONE, OUTLET, VOID, steepest};
 /// Where water may end.
 #[derive(Debug, Clone, Copy)]
 pub enum Ends<'a> {
-    /// At voids, which frame the grid too, and in this water.
+    /// At voids, which frame the grid too, and in this sea.
     Rim(&'a Bits),
-    /// At these samples, at least one of each piece of land.
-    At(&'a Bits),
+    /// At these samples, at least one of each piece of land, and where the land falls to a void that is not of this sea.
+    At {
+        /// The samples.
+        tops: &'a Bits,
+        /// Voids beyond which there is no more land.
+        sea: &'a Bits,
+    },
 }
 
 /// Directions of all samples.
@@ -44,18 +49,9 @@ impl Flow {
     /// Over framed heights, NaN at voids.
     pub fn of(frame: Frame, heights: &[f32], ends: Ends<'_>) -> Self {
         let mut flow = Self { frame, steps: frame.steps(), to: steepest(frame, heights) };
-        let seeds = flow.seeds(ends);
         let mut drains = Bits::none(frame.samples());
-        for seed in seeds.iter() {
-            let ends_here = match ends {
-                Ends::Rim(water) => flow.to[seed] == NONE || water.has(seed),
-                Ends::At(_) => true,
-            };
-            if ends_here {
-                flow.to[seed] = OUTLET;
-                drains.take(seed);
-            }
-        }
+        let seeds = flow.seeds(heights, ends, &mut drains);
+        drains.iter().for_each(|end| flow.to[end] = OUTLET);
         let mut carver = Carver { catchments: flow.catchments(), flow, drains };
         flood(frame, heights, seeds.iter(), |sample, parents| {
             if carver.flow.to[sample] == NONE {
@@ -65,16 +61,34 @@ impl Flow {
         carver.flow
     }
 
-    fn seeds(&self, ends: Ends<'_>) -> Bits {
+    /// From where the flood comes; `outlets` gets those at which water ends at once.
+    fn seeds(&self, heights: &[f32], ends: Ends<'_>, outlets: &mut Bits) -> Bits {
         let mut seeds = Bits::none(self.to.len());
-        match ends {
-            Ends::At(these) => return these.clone(),
-            Ends::Rim(water) => {
-                let inside = self.frame.indices().filter(|i| self.to[*i] != VOID);
-                inside.filter(|i| water.has(*i) || self.is_rim(*i)).for_each(|i| seeds.take(i));
+        for i in self.frame.indices().filter(|i| self.is_land(*i)) {
+            let is_end = match ends {
+                Ends::Rim(sea) => sea.has(i) || self.is_rim(i) && (self.to[i] == NONE || self.falls_out(heights, i)),
+                Ends::At { tops, sea } => {
+                    let around = self.steps.iter().any(|step| sea.has(i.wrapping_add(*step)));
+                    tops.has(i) || !around && self.is_rim(i) && self.falls_out(heights, i)
+                }
+            };
+            if is_end {
+                outlets.take(i);
+            }
+            if is_end || matches!(ends, Ends::Rim(_)) && self.is_rim(i) {
+                seeds.take(i);
             }
         }
         seeds
+    }
+
+    /// Whether the land falls most steeply to a void, were it to go on beyond as it comes from the other side: water would run along
+    /// the rim else.
+    fn falls_out(&self, heights: &[f32], i: usize) -> bool {
+        let distances = self.frame.distances();
+        let fall = |k: usize| f64::from(heights[i] - heights[i.wrapping_add(self.steps[k])]) / distances[k];
+        let within = self.direction(i).map_or(0.0, fall);
+        (0..8).any(|k| heights[i.wrapping_add(self.steps[k])].is_nan() && -fall((k + 4) % 8) > within)
     }
 
     /// Whether a sample of the land is beside a void or at the grid's edge.

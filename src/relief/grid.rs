@@ -48,6 +48,9 @@ impl Grid {
     pub fn smooth(&self, at: DVec2) -> f32 {
         let Some((i, [x, y])) = self.corner(at) else { return f32::NAN };
         let stride = self.frame.stride();
+        if i + 2 * stride + 3 > self.smoothed.len() {
+            return f32::NAN;
+        }
         let [x, y] = [cubic(x), cubic(y)];
         let row = |k: usize, weight: f32| {
             let row = &self.smoothed[i + k * stride - stride - 1..][..4];

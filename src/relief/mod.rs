@@ -4,8 +4,10 @@
 //! All are [`SurfaceLine`]s: polylines on the map of a DEM that lie on its surface, with what of the relief about each point tells
 //! whether a page can show it.
 
+pub mod across;
 pub mod area;
 pub mod bits;
+pub mod branches;
 pub mod channels;
 mod crease;
 pub mod flood;
@@ -13,16 +15,22 @@ pub mod flow;
 pub mod frame;
 pub mod grid;
 mod heap;
+pub mod lines;
+pub mod net;
 mod own;
+pub mod prune;
 mod smooth;
 pub mod steepest;
 pub mod threshold;
+pub mod trace;
 pub mod water;
+pub mod whole;
 
 use glam::DVec2;
 
-pub use crease::{ChannelArea, Crease, LandWanted};
+pub use crease::{Crease, LandWanted};
 pub use own::own_lines;
+pub use whole::{ChannelArea, Relief};
 
 /// What a line of the land is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -1,0 +1,40 @@
+//! A forest cut into branches: at each junction the longest goes on, the others end.
+//!
+//! Cost: a few passes over the nodes. The branches come longest first, so each after the one it joins.
+
+use super::channels::Channels;
+
+/// A way down the forest.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Branch {
+    /// From the head on, at least one.
+    pub nodes: Vec<u32>,
+    /// The node of another branch to which the last flows.
+    pub joins: Option<u32>,
+}
+
+/// The branches; `length` is of a node, more than that of any above it.
+pub fn branches(channels: &Channels, length: impl Fn(usize) -> f32) -> Vec<Branch> {
+    let nodes = channels.samples.len();
+    // The node above that goes on, where there is one.
+    let mut main: Vec<Option<u32>> = vec![None; nodes];
+    for node in 0..nodes {
+        if let Some(below) = channels.below(node) {
+            let is_longer = main[below].is_none_or(|other| length(node) > length(other as usize));
+            if is_longer {
+                main[below] = Some(node as u32);
+            }
+        }
+    }
+    let goes_on = |node: usize| channels.below(node).filter(|below| main[*below] == Some(node as u32));
+    let from = |head: usize| {
+        let nodes: Vec<u32> =
+            std::iter::successors(Some(head), |node| goes_on(*node)).map(|node| node as u32).collect();
+        let joins = nodes.last().and_then(|last| channels.below(*last as usize)).map(|below| below as u32);
+        Branch { nodes, joins }
+    };
+    let mut branches: Vec<Branch> = (0..nodes).filter(|node| main[*node].is_none()).map(from).collect();
+    let end = |branch: &Branch| branch.nodes.last().map_or(0.0, |last| length(*last as usize));
+    branches.sort_by(|a, b| end(b).total_cmp(&end(a)));
+    branches
+}

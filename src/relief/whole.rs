@@ -1,0 +1,115 @@
+//! The lines of a whole DEM, from its heights.
+
+use super::SurfaceLine;
+use super::area::Area;
+use super::bits::Bits;
+use super::branches::branches;
+use super::channels::Channels;
+use super::flow::{Ends, Flow};
+use super::grid::Grid;
+use super::lines::{Node, lines};
+use super::prune::pruned;
+use super::threshold::{FIRST, Trial, found, trials};
+use super::trace::Follows;
+use super::water::sea;
+use crate::dem::Dem;
+use crate::error::Result;
+
+/// Samples that make a channel where the land does not tell, or tells less.
+const CELLS: u32 = 25;
+/// Most samples that the land may tell: where it tells more it is not of one kind, and its valleys would go undrawn.
+const MOST_CELLS: u32 = 100;
+
+/// How much land makes a channel.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum ChannelArea {
+    /// As the falls of the streams tell, between 25 and 100 cells.
+    #[default]
+    Auto,
+    /// So many square metres.
+    SquareMetres(f64),
+}
+
+/// A DEM's heights, and where water goes on them.
+#[derive(Debug, Clone)]
+pub struct Relief {
+    grid: Grid,
+    sea: Bits,
+    flow: Flow,
+    area: Area,
+}
+
+impl Relief {
+    /// Of a held DEM whose heights are exaggerated by a factor.
+    ///
+    /// # Errors
+    /// [`Error::Limit`](crate::error::Error::Limit) for a filed one.
+    pub fn of(dem: &Dem, exaggeration: f64) -> Result<Self> {
+        let grid = Grid::of(dem, exaggeration)?;
+        let sea = sea(grid.frame, &grid.heights);
+        let flow = Flow::of(grid.frame, &grid.smoothed, Ends::Rim(&sea));
+        let area = Area::of(&flow, &sea)?;
+        Ok(Self { grid, sea, flow, area })
+    }
+
+    /// Its heights.
+    pub fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
+    /// Its sea, in the grid's frame.
+    pub fn sea(&self) -> &Bits {
+        &self.sea
+    }
+
+    /// Where water goes.
+    pub fn flow(&self) -> &Flow {
+        &self.flow
+    }
+
+    /// How much of it gathers.
+    pub fn area(&self) -> &Area {
+        &self.area
+    }
+
+    /// Areas from which water may run in beds, and how streams then fall.
+    pub fn trials(&self) -> Vec<Trial> {
+        trials(&self.grid, &Channels::of(&self.flow, &self.area, FIRST), &self.area)
+    }
+
+    /// Samples that make a channel.
+    pub fn channel_cells(&self, area: ChannelArea) -> u32 {
+        match area {
+            ChannelArea::Auto => found(&self.trials()).map_or(CELLS, |trial| trial.cells.clamp(CELLS, MOST_CELLS)),
+            ChannelArea::SquareMetres(area) => (area / self.grid.frame.side().powi(2)).ceil().max(1.0) as u32,
+        }
+    }
+
+    /// The lines along which water runs, the longest first, each after the one it joins.
+    pub fn drainage(&self, area: ChannelArea) -> Vec<SurfaceLine> {
+        let least = self.channel_cells(area);
+        let channels = Channels::of(&self.flow, &self.area, least);
+        let orders = channels.orders(&self.area, least).strahler;
+        let sample = |node: u32| channels.samples[node as usize] as usize;
+        let branches = branches(&channels, |node| self.area.length[sample(node as u32)]);
+        let source = |node: u32| self.grid.smoothed[self.source(sample(node))];
+        let tops: Vec<f32> =
+            branches.iter().map(|branch| branch.nodes.first().map_or(f32::NAN, |node| source(*node))).collect();
+        let node = |branch: usize, node: u32| {
+            let i = sample(node);
+            let drop = tops[branch] - self.grid.smoothed[i];
+            Node { at: self.grid.frame.at(i), length: self.area.length[i], drop, order: orders[node as usize] }
+        };
+        pruned(&self.grid, lines(&self.grid, &branches, Follows::Valley, node))
+    }
+
+    /// Where the longest way to a sample begins.
+    fn source(&self, mut i: usize) -> usize {
+        let metres = self.grid.frame.distances();
+        let length = |(k, from): (usize, usize)| f64::from(self.area.length[from]) + metres[k];
+        while let Some((_, from)) = self.flow.donors(i).max_by(|a, b| length(*a).total_cmp(&length(*b))) {
+            i = from;
+        }
+        i
+    }
+}
