@@ -17,6 +17,7 @@ mod coverage;
 mod crossings;
 mod dem;
 mod depth_draw;
+mod detail;
 mod drawing;
 mod economy;
 mod examples;

@@ -5,7 +5,7 @@ use std::fs;
 use glam::DVec2;
 use hachure::geo::{ReadOptions, read};
 use hachure::ink::styles::BuiltIn;
-use hachure::line::{Chain, Lines, overhead};
+use hachure::line::{Chain, Lines, Overhead};
 use serde_json::Value;
 
 use crate::cli::{Place, refuses, stderr};
@@ -28,7 +28,7 @@ fn plan(rows: &[&str]) -> Lines {
     fs::write(&path, text).expect("a file");
     let size = [rows[0].len(), rows.len()].map(|samples| 10 * (samples as u32 - 1));
     let dem = read(&path, &ReadOptions::default()).expect("a DEM");
-    overhead(&dem, dem.extent(), size, 1.0).expect("a plan")
+    Overhead { area: dem.extent(), size, px_per_metre: 1.0 }.lines(&dem).expect("a plan")
 }
 
 /// Twice the area to the left of a ring as seen from above; rows run down.

@@ -78,6 +78,11 @@ pub const COVER_PX: f64 = 1.0;
 /// Example: 10 m cells at level 4 seen from 400 m: a facet's chord of 2.5 m sags .02 m, .02 px of a page 384 px wide.
 pub const LAID_PX: f64 = 0.1;
 
+/// How much the weight of a line on the land may change where the eye moves a thousandth of its way.
+///
+/// Example: of a branch of 60 px, in the middle of the ramp from 10 to 120 px, a thousandth nearer .06 px more are seen: .001.
+pub const FADE_STEP: f32 = 0.02;
+
 /// Share of ink of one level that may lie farther than [`REACH_PX`] from any ink of the next finer level.
 ///
 /// Example: of 400 px at most 4 px between level 16 and level 32.

@@ -19,7 +19,7 @@ use crate::error::{Error, Result, Setting};
 use crate::files::Taken;
 use crate::ink::strokes::inset;
 use crate::ink::{self, Drawing, Sheet, Style};
-use crate::line::{Land, overhead};
+use crate::line::{Land, Overhead};
 use crate::message;
 use crate::relief::LandWanted;
 
@@ -78,8 +78,9 @@ pub fn draw(arguments: &DrawArguments, scale: f64, dem: &Dem, land: Option<&Land
     let frame = [layout.frame.width, layout.frame.height];
     let px_per_mm = layout.sheet.placement(frame).px_per_mm;
     let economy = arguments.drawing.style.economy(&style, px_per_mm);
-    let none = Land::default();
-    let lines = overhead(dem, land.unwrap_or(&none), area, frame, px_per_mm * MM / scale, economy.min_gap)?;
+    let overhead = Overhead { area, size: frame, px_per_metre: px_per_mm * MM / scale };
+    let mut lines = overhead.lines(dem)?;
+    lines.chains.extend(land.map(|land| overhead.land(land, economy.min_gap)).into_iter().flatten());
     let drawing = ink::draw(&lines, &layout.sheet, &style, &[])?;
     Ok(Planned { drawing, px_per_mm: layout.px_per_mm, style, layout, lines: lines.chains.len() })
 }

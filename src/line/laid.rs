@@ -155,7 +155,7 @@ fn between(line: &SurfaceLine, i: usize, t: f64) -> DVec2 {
 
 /// Of column and row, the nearest place on the lattice that lies on no edge of a facet.
 pub(super) fn on_lattice(at: DVec2) -> Place {
-    let [x, y] = (at * f64::from(CELL)).to_array().map(|v| v as i32);
+    let [x, y] = (at * f64::from(CELL)).to_array().map(|v| v.round() as i32);
     [x | 1, y & !3 | 2]
 }
 

@@ -47,7 +47,7 @@ pub use laid::Laid;
 pub use link::link;
 pub use marks::{Mark, Marks};
 pub use one_pixel::one_pixel_wide;
-pub use overhead::overhead;
+pub use overhead::Overhead;
 pub use raster::{InkRaster, Kind, Pixel};
 pub use recession::Recession;
 pub use rest::rest;

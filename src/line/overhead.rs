@@ -24,47 +24,64 @@ const STRAIGHT: f64 = 1e-6;
 /// A sample, by column and row.
 type Sample = [u32; 2];
 
-/// The plan of a DEM in a frame of so many pixels across and down, the middle of an area of its world (west, south, east and
-/// north, metres) in the middle, with so many pixels for each metre; lines on the land keep `min_gap` px apart.
-///
-/// # Errors
-/// As [`Dem::survey`].
-pub fn overhead(
-    dem: &Dem,
-    land: &Land,
-    area: [f64; 4],
-    [width, height]: [u32; 2],
-    px_per_metre: f64,
-    min_gap: f64,
-) -> Result<Lines> {
-    let ([west, .., north], cell) = (dem.extent(), dem.cell());
-    let middle = DVec2::new(area[0] + area[2], area[1] + area[3]) / 2.0;
-    let frame = UVec2::new(width, height).as_dvec2() / 2.0;
-    let on_page = |world: DVec3| frame + (world.truncate() - middle) * DVec2::new(1.0, -1.0) * px_per_metre;
-    let point = |[column, row]: Sample| {
-        let world = DVec2::new(west + f64::from(column) * cell.x, north - f64::from(row) * cell.y);
-        let (line, world) = (Line::Border, world.extend(0.0));
-        ChainPoint { place: on_page(world), line, depth: 1.0, behind: 0.0, world, crowd: 0, weight: 1.0 }
-    };
-    let chain = |ring: Vec<Sample>| {
-        let id = Id(u64::from(ring[0][1]) << 32 | u64::from(ring[0][0]));
-        let mut points: Vec<ChainPoint> = ring.iter().map(|sample| point(*sample)).collect();
-        points.push(points[0]);
-        let places: Vec<DVec3> = points.iter().map(|point| point.place.extend(0.0)).collect();
-        let kept = needed(&places, STRAIGHT);
-        Chain { id: Some(id), points: kept[..kept.len() - 1].iter().map(|i| points[*i]).collect(), closed: true }
-    };
-    let shown = land.shown(|world| Some(OnPage { place: on_page(world), depth: 1.0, scale: px_per_metre }));
-    let of_land = of_land(land, &shown);
-    let economy = Economy { min_jump: 0.0, min_gap };
-    Ok(Lines {
-        width,
-        height,
-        eye: middle.extend(f64::INFINITY),
-        chains: rings(&rim(dem)?).into_iter().map(chain).chain(economised(&of_land, &economy)).collect(),
-        hidden: Vec::new(),
-        recession: Recession::of(std::iter::once((1.0, 1.0))),
-    })
+/// A frame over the land.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Overhead {
+    /// Metres of the world, its middle in the middle of the frame: west, south, east and north.
+    pub area: [f64; 4],
+    /// Pixels across and down.
+    pub size: [u32; 2],
+    /// Pixels for each metre.
+    pub px_per_metre: f64,
+}
+
+impl Overhead {
+    /// The plan of a DEM: its rims.
+    ///
+    /// # Errors
+    /// As [`Dem::survey`].
+    pub fn lines(&self, dem: &Dem) -> Result<Lines> {
+        let ([west, .., north], cell, [width, height]) = (dem.extent(), dem.cell(), self.size);
+        let point = |[column, row]: Sample| {
+            let world = DVec2::new(west + f64::from(column) * cell.x, north - f64::from(row) * cell.y);
+            let (place, line, world) = (self.place(world), Line::Border, world.extend(0.0));
+            ChainPoint { place, line, depth: 1.0, behind: 0.0, world, crowd: 0, weight: 1.0 }
+        };
+        let chain = |ring: Vec<Sample>| {
+            let id = Id(u64::from(ring[0][1]) << 32 | u64::from(ring[0][0]));
+            let mut points: Vec<ChainPoint> = ring.iter().map(|sample| point(*sample)).collect();
+            points.push(points[0]);
+            let places: Vec<DVec3> = points.iter().map(|point| point.place.extend(0.0)).collect();
+            let kept = needed(&places, STRAIGHT);
+            Chain { id: Some(id), points: kept[..kept.len() - 1].iter().map(|i| points[*i]).collect(), closed: true }
+        };
+        Ok(Lines {
+            width,
+            height,
+            eye: self.middle().extend(f64::INFINITY),
+            chains: rings(&rim(dem)?).into_iter().map(chain).collect(),
+            hidden: Vec::new(),
+            recession: Recession::of(std::iter::once((1.0, 1.0))),
+        })
+    }
+
+    /// Lines on the land, `min_gap` px apart.
+    pub fn land(&self, land: &Land, min_gap: f64) -> Vec<Chain> {
+        let on_page =
+            |world: DVec3| Some(OnPage { place: self.place(world.truncate()), depth: 1.0, scale: self.px_per_metre });
+        economised(&of_land(land, &land.shown(on_page)), &Economy { min_jump: 0.0, min_gap })
+    }
+
+    fn middle(&self) -> DVec2 {
+        let [west, south, east, north] = self.area;
+        DVec2::new(west + east, south + north) / 2.0
+    }
+
+    /// Where a place of the world stands, px.
+    fn place(&self, world: DVec2) -> DVec2 {
+        let frame = UVec2::from(self.size).as_dvec2() / 2.0;
+        frame + (world - self.middle()) * DVec2::new(1.0, -1.0) * self.px_per_metre
+    }
 }
 
 /// The chains of lines on the land.
