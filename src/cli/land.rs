@@ -8,7 +8,7 @@ use crate::dem::Dem;
 use crate::error::{Error, Result, Setting};
 use crate::ink::Style;
 use crate::line::Land;
-use crate::relief::{ChannelArea, Crease, LandWanted, Relief};
+use crate::relief::{ChannelArea, Crease, LandWanted, Relief, SurfaceLine};
 
 /// The flags, as typed.
 #[derive(Debug, Clone, clap::Args)]
@@ -84,11 +84,31 @@ impl LandArguments {
     ) -> Result<Land> {
         let _ = cache;
         let mut lines = self.lines.read(dem, allow_remote, talk)?;
-        if wanted.creases.contains(&Crease::Drainage) {
-            lines.extend(Relief::of(dem, exaggeration)?.drainage(wanted.channel_area));
+        let flows = |crease: &Crease| matches!(crease, Crease::Drainage | Crease::Ridges);
+        if wanted.creases.iter().any(flows) {
+            let relief = Relief::of(dem, exaggeration)?;
+            for crease in &wanted.creases {
+                append(
+                    &mut lines,
+                    match crease {
+                        Crease::Drainage => relief.drainage(wanted.channel_area),
+                        Crease::Ridges => relief.ridges()?,
+                        Crease::Shores => Vec::new(),
+                    },
+                );
+            }
         }
         Ok(Land::new(dem, exaggeration, lines))
     }
+}
+
+/// Puts lines behind others: what they join moves along.
+fn append(lines: &mut Vec<SurfaceLine>, more: Vec<SurfaceLine>) {
+    let before = lines.len() as u32;
+    lines.extend(more.into_iter().map(|line| {
+        let joins = line.joins.map(|[onto, at]| [onto + before, at]);
+        SurfaceLine { joins, ..line }
+    }));
 }
 
 /// Kinds of lines of the land, with commas between, or `none`.

@@ -35,13 +35,18 @@ pub struct Orders {
 impl Channels {
     /// Of a flow: where at least `least` samples gather.
     pub fn of(flow: &Flow, area: &Area, least: u32) -> Self {
+        Self::among(flow, |i| area.cells[i] >= least.max(1), |_| true)
+    }
+
+    /// Of a flow: the samples that belong, each with the one below unless the forest is cut there.
+    pub fn among(flow: &Flow, belongs: impl Fn(usize) -> bool, goes_on: impl Fn(usize) -> bool) -> Self {
         let frame = flow.frame();
         let mut bits = Bits::none(frame.samples());
-        let samples: Vec<u32> = frame.indices().filter(|i| area.cells[*i] >= least.max(1)).map(|i| i as u32).collect();
+        let samples: Vec<u32> = frame.indices().filter(|i| belongs(*i)).map(|i| i as u32).collect();
         samples.iter().for_each(|i| bits.take(*i as usize));
         let numbers = bits.ranked();
-        let below = |i: &u32| flow.down(*i as usize).and_then(|down| numbers.number(down));
-        let down: Vec<u32> = samples.iter().map(|i| below(i).map_or(NO_NODE, |down| down as u32)).collect();
+        let below = |i: usize| flow.down(i).filter(|_| goes_on(i)).and_then(|down| numbers.number(down));
+        let down: Vec<u32> = samples.iter().map(|i| below(*i as usize).map_or(NO_NODE, |down| down as u32)).collect();
         let order = downwards(&down);
         Self { samples, down, order, numbers }
     }

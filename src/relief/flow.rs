@@ -1,10 +1,11 @@
-//! Which way water goes from every sample, over the land as it is: each pit is left by a way carved through its rim.
+//! Which way water goes from every sample, over the land as it is: each pit is left by a way through its rim.
 //!
-//! Water goes the steepest way down. From a pit or a flat, lowest first as the flood reaches them, it goes along the flood's parents
-//! up to the first sample that drains already (carving; Soille, Vogt and Colombo 2003). No height changes, so no fall has to be made
-//! up on flats, which f32 could not hold. A sample drains when it lies on a carved way or in the catchment of a pit that was left, and
-//! is not touched from then on; what it flows to drains too, so no cycle can close. A seed without a lower neighbour is an
-//! outlet at once; one that has some becomes an outlet when a carved way ends on it.
+//! Water goes the steepest way down, so each pit, or sample of a flat, has a catchment. As the flood reaches pits, lowest first, each
+//! catchment is tied to one that drains already, where the flood came in: the way from there down to the pit is turned round, so
+//! water leaves along the bottom of the valley, or the crest, that leads to the pass (carving; Soille, Vogt and Colombo 2003; the
+//! flood by Barnes, Lehman and Mulla 2014). No height changes, so no fall has to be made up on flats, which f32 could not
+//! hold. A catchment is a tree, turned to another root and tied once to what drains: no cycle can close. A seed
+//! without a lower neighbour is an outlet at once; one that has some becomes an outlet when its catchment leaves there.
 //!
 //! Cost: a pass for directions, one for catchments, the flood; 1 byte a sample that stays, 5 more on the way. Not handled: two
 //! ways out of one pit.
@@ -41,7 +42,7 @@ struct Carver {
     flow: Flow,
     /// The pit or outlet to which the steepest way leads from each sample.
     catchments: Vec<u32>,
-    /// Samples that drain by a carved way; of pits, also all of their catchment.
+    /// Those of which the whole catchment drains.
     drains: Bits,
 }
 
@@ -143,57 +144,63 @@ impl Flow {
 }
 
 impl Carver {
-    /// Carves the way out of a pit.
+    /// Lets the catchment of a pit drain, and before it those that the flood came through and that do not.
     fn leave(&mut self, pit: usize, parents: &[u8]) {
-        let mut i = pit;
-        while !self.has_left(i) {
-            let next = self.step(i, usize::from(parents[i]));
-            // Not before the way is whole: it would end in the pit's own catchment.
-            if i != pit {
-                self.drains.take(i);
+        while !self.has_left(pit) {
+            let mut last = pit;
+            loop {
+                let k = usize::from(parents[last]);
+                let Some(next) = self.flow.steps.get(k).map(|step| last.wrapping_add(*step)) else {
+                    // A seed with lower neighbours, over which it runs out.
+                    self.turn(last, OUTLET);
+                    break;
+                };
+                if self.has_left(next) {
+                    self.tie(last, k);
+                    break;
+                }
+                last = next;
             }
-            i = next;
         }
-        self.drains.take(pit);
     }
 
     fn has_left(&self, i: usize) -> bool {
-        self.drains.has(i) || self.drains.has(self.catchments[i] as usize)
+        self.drains.has(self.catchments[i] as usize)
     }
 
-    /// Turns a sample to a neighbour, or to another where that would cross what drains already, and tells to which.
+    /// Ties a catchment to the neighbour d of one of its samples, or another that is in the way.
     ///
     /// ```text
-    ///  from   d     a to d is the step, `from` to `onto` crosses it. The flood came to a from d, to the other two from d or from
-    ///      \ /      before: none of them is on the way from d. Where `from` drains, so does `onto`: a goes there. Else `from`
-    ///      / \      goes to d. Both go along a side, which crosses nothing.
+    ///  from   d     a would go to d, but water goes `from` here `onto` there. Where that drains, a goes `onto` there. Else that
+    ///      \ /      catchment, which may be the same, goes from `onto` to d. Either way is along a side, which crosses nothing.
+    ///      / \
     ///     a  onto
     /// ```
-    fn step(&mut self, a: usize, k: usize) -> usize {
+    fn tie(&mut self, a: usize, k: usize) {
         let Flow { steps, to, .. } = &self.flow;
-        if k >= 8 {
-            // A seed with lower neighbours, over which the pit runs out.
-            self.flow.to[a] = OUTLET;
-            self.drains.take(a);
-            return a;
-        }
         let beside = |turn: usize| a.wrapping_add(steps[(k + turn) % 8]);
         // The neighbours on both sides of d, and by how much a step from one to the other is turned against k.
-        let crossing = [(7, 2), (1, 6)]
-            .into_iter()
-            .find(|(side, turn)| k % 2 == 1 && usize::from(to[beside(*side)]) == (k + turn) % 8);
-        let mut k = k;
-        if let Some((side, _)) = crossing {
-            let from = beside(side);
-            let onto = 8 - side;
-            if self.has_left(from) {
-                k = (k + onto) % 8;
-            } else {
-                self.flow.to[from] = ((k + onto) % 8) as u8;
-                self.drains.take(from);
-            }
+        let crosses = |(side, turn): &(usize, usize)| usize::from(to[beside(*side)]) == (k + turn) % 8;
+        let crossing = [(7, 2), (1, 6)].into_iter().find(|way| k % 2 == 1 && crosses(way));
+        let Some((from, _)) = crossing else { return self.turn(a, k as u8) };
+        let onto = beside(8 - from);
+        if self.has_left(onto) {
+            self.turn(a, ((k + 8 - from) % 8) as u8);
+        } else {
+            // From the one side of d to d is as from a to the other side.
+            self.turn(onto, ((k + from) % 8) as u8);
         }
-        self.flow.to[a] = k as u8;
-        a.wrapping_add(self.flow.steps[k])
+    }
+
+    /// Turns the way from a sample down to its pit round, and lets it leave by a direction.
+    fn turn(&mut self, first: usize, direction: u8) {
+        self.drains.take(self.catchments[first] as usize);
+        let (mut i, mut direction) = (first, direction);
+        loop {
+            let before = std::mem::replace(&mut self.flow.to[i], direction);
+            let Some(step) = self.flow.steps.get(usize::from(before)) else { return };
+            i = i.wrapping_add(*step);
+            direction = (before + 4) % 8;
+        }
     }
 }

@@ -1,12 +1,14 @@
 //! Branches as lines of the land: traced, laid beside each other without crossing, cut where they are no valleys or ridges.
 
 use glam::DVec2;
+use rayon::prelude::*;
 
 use super::across::across;
 use super::branches::Branch;
 use super::grid::Grid;
-use super::net::Net;
-use super::trace::{Follows, trace};
+use super::net::{Laid, Net};
+use super::prune::pruned;
+use super::trace::{Follows, Place, trace};
 use super::{LineKind, SurfaceLine, SurfacePoint};
 
 /// What is known of a node.
@@ -27,40 +29,49 @@ pub fn lines(
     grid: &Grid,
     branches: &[Branch],
     follows: Follows,
-    node: impl Fn(usize, u32) -> Node,
+    node: impl Fn(usize, u32) -> Node + Sync,
 ) -> Vec<SurfaceLine> {
-    let mut net = Net::default();
-    let mut known = Vec::new();
-    for (which, branch) in branches.iter().enumerate() {
+    let traced = |(which, branch): (usize, &Branch)| {
         let nodes: Vec<Node> = branch.nodes.iter().chain(&branch.joins).map(|number| node(which, *number)).collect();
-        if nodes.len() < 2 {
-            continue;
-        }
         let places: Vec<DVec2> = nodes.iter().map(|node| node.at).collect();
-        let before = net.lines.len();
-        net.lay(trace(grid, &places, follows), branch.joins.is_some());
-        if net.lines.len() > before {
+        (trace(grid, &places, follows), nodes, branch.joins.is_some())
+    };
+    let long =
+        branches.par_iter().enumerate().filter(|(_, branch)| branch.nodes.len() + branch.joins.iter().count() > 1);
+    let traced: Vec<_> = long.map(traced).collect();
+    let mut net = Net::new(grid.frame);
+    let mut known = Vec::new();
+    for (places, nodes, is_branch) in traced {
+        if net.lay(places, is_branch) {
             known.push(nodes);
         }
     }
-    let kind = match follows {
-        Follows::Valley => LineKind::Drainage,
-        Follows::Crest => LineKind::Ridge,
+    let free: Vec<usize> = net.lines.iter().map(|laid| laid.free).collect();
+    let line = |(laid, nodes): (Laid, &Vec<Node>)| line(grid, laid, nodes, follows);
+    let lines = net.lines.into_par_iter().zip(&known).map(line).collect();
+    pruned(grid, lines, &free)
+}
+
+/// A line with what is known of its nodes.
+fn line(grid: &Grid, laid: Laid, nodes: &[Node], follows: Follows) -> SurfaceLine {
+    let ats: Vec<DVec2> = laid.places.iter().map(|place| place.at).collect();
+    let mut most = [0.0_f32; 2];
+    let point = |(place, across): (&Place, [f32; 3])| {
+        let k = (place.node as usize).min(nodes.len() - 2);
+        let share = (place.node - k as f64) as f32;
+        let between = |of: fn(&Node) -> f32| of(&nodes[k]) + (of(&nodes[k + 1]) - of(&nodes[k])) * share;
+        most = [most[0].max(between(|node| node.length)), most[1].max(between(|node| node.drop))];
+        SurfacePoint { at: place.at, across, length: most[0], drop: most[1] }
     };
-    let line = |((places, joint), nodes): (&(Vec<super::trace::Place>, Option<super::net::Joint>), &Vec<Node>)| {
-        let ats: Vec<DVec2> = places.iter().map(|place| place.at).collect();
-        let mut most = [0.0_f32; 2];
-        let points = places.iter().zip(across(grid, &ats, follows)).map(|(place, across)| {
-            let k = (place.node as usize).min(nodes.len() - 2);
-            let share = (place.node - k as f64) as f32;
-            let between = |of: fn(&Node) -> f32| of(&nodes[k]) + (of(&nodes[k + 1]) - of(&nodes[k])) * share;
-            most = [most[0].max(between(|node| node.length)), most[1].max(between(|node| node.drop))];
-            SurfacePoint { at: place.at, across, length: most[0], drop: most[1] }
-        });
-        let points = points.collect();
-        // The last node is the trunk's.
-        let order = nodes[nodes.len() - 2].order;
-        SurfaceLine { kind, order, points, closed: false, joins: joint.map(|joint| [joint.line, joint.place]) }
-    };
-    net.lines.iter().zip(&known).map(line).collect()
+    SurfaceLine {
+        kind: match follows {
+            Follows::Valley => LineKind::Drainage,
+            Follows::Crest => LineKind::Ridge,
+        },
+        // The last node is that of the line it joins.
+        order: nodes[nodes.len() - 2].order,
+        points: laid.places.iter().zip(across(grid, &ats, follows)).map(point).collect(),
+        closed: false,
+        joins: laid.joint.map(|joint| [joint.line, joint.place]),
+    }
 }

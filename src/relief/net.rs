@@ -1,20 +1,26 @@
 //! Lines that do not cross: each ends where it comes near one that lies already.
 //!
 //! Lines are laid longest first. A line whose beginning is near another begins where it has left that; it ends on the first
-//! that it comes near to, after which it would run beside it, no matter which one its water meets in the end. Cost: a few hashes a place.
+//! that it comes near to, after which it would run beside it, no matter which one its water meets in the end. Cost: a look at a few cells a place; 4
+//! bytes a cell while they are laid.
 //! Not handled: a line that comes near itself.
 
 use glam::DVec2;
-use rustc_hash::FxHashMap;
 
+use super::frame::Frame;
 use super::trace::{Place, SPACING};
 
 /// How near two lines come before they join, cells: so near that they could cross between two places.
 const NEAR: f64 = 0.6;
 /// How far the end of a branch may lie from the one that it joins, cells.
 const FAR: f64 = 2.0;
+/// How near another a line runs beside it, cells.
+const BESIDE: f64 = 2.5;
 /// Over how many places the end of a line bends to the one that it joins.
 const BEND: usize = 6;
+
+/// No place.
+const NOTHING: u32 = u32::MAX;
 
 /// A place of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -25,21 +31,45 @@ pub struct Joint {
     pub place: u32,
 }
 
+/// A line that lies.
+#[derive(Debug)]
+pub struct Laid {
+    /// At least two.
+    pub places: Vec<Place>,
+    /// The place of another that the last one is.
+    pub joint: Option<Joint>,
+    /// How many of its places are not beside lines that lay before.
+    pub free: usize,
+}
+
 /// Lines by the cells that they run through.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Net {
-    /// All that lie, each with the place of another that its last one is.
-    pub lines: Vec<(Vec<Place>, Option<Joint>)>,
-    /// The last place in each cell.
-    cells: FxHashMap<[i32; 2], u32>,
+    /// All, as they were laid.
+    pub lines: Vec<Laid>,
+    /// Columns and rows.
+    size: [usize; 2],
+    /// The last place in each cell, or [`NOTHING`].
+    cells: Vec<u32>,
     /// All places, each with the one before it in its cell.
-    places: Vec<(Joint, Option<u32>)>,
+    places: Vec<(Joint, u32)>,
 }
 
 impl Net {
-    /// Lays a line, if it is anywhere not near another. Whether it joins one in the end is known.
-    pub fn lay(&mut self, mut line: Vec<Place>, is_branch: bool) {
-        let Some(first) = line.iter().position(|place| self.near(place.at, NEAR).is_none()) else { return };
+    /// No line on a grid.
+    pub fn new(frame: Frame) -> Self {
+        Self {
+            lines: Vec::new(),
+            size: frame.size,
+            cells: vec![NOTHING; frame.size[0] * frame.size[1]],
+            places: Vec::new(),
+        }
+    }
+
+    /// Lays a line where it is not near another, if it is anywhere not, and tells whether it did. Whether it joins one in the
+    /// end is known.
+    pub fn lay(&mut self, mut line: Vec<Place>, is_branch: bool) -> bool {
+        let Some(first) = line.iter().position(|place| self.near(place.at, NEAR).is_none()) else { return false };
         line.drain(..first);
         let meets = line.iter().position(|place| self.near(place.at, NEAR).is_some());
         if let Some(meets) = meets {
@@ -51,14 +81,16 @@ impl Net {
         if let Some(joint) = joint {
             self.bend(&mut line, joint);
         }
-        if line.len() >= 2 {
+        let lies = line.len() >= 2;
+        if lies {
             self.keep(line, joint);
         }
+        lies
     }
 
     /// Moves the end of a line onto its joint, and what comes before it less and less.
     fn bend(&self, line: &mut Vec<Place>, joint: Joint) {
-        let to = self.lines[joint.line as usize].0[joint.place as usize].at;
+        let to = self.lines[joint.line as usize].places[joint.place as usize].at;
         let last = line.len() - 1;
         let by = to - line[last].at;
         let bend = BEND.min(last);
@@ -73,38 +105,41 @@ impl Net {
         }
     }
 
-    fn keep(&mut self, line: Vec<Place>, joint: Option<Joint>) {
-        for (k, place) in line.iter().enumerate() {
+    fn keep(&mut self, places: Vec<Place>, joint: Option<Joint>) {
+        let is_free = |place: &&Place| self.around(place.at, BESIDE).all(|(distance, _)| distance >= BESIDE);
+        let free = places.iter().filter(is_free).count();
+        for (k, place) in places.iter().enumerate() {
             let at = Joint { line: self.lines.len() as u32, place: k as u32 };
-            let number = self.places.len() as u32;
-            let before = self.cells.insert(cell(place.at), number);
+            let [c, r] = self.cell(place.at);
+            let before = std::mem::replace(&mut self.cells[r * self.size[0] + c], self.places.len() as u32);
             self.places.push((at, before));
         }
-        self.lines.push((line, joint));
+        self.lines.push(Laid { places, joint, free });
     }
 
-    /// The nearest place of all lines, within a radius.
+    /// The nearest place of all lines, nearer than a radius.
     fn near(&self, at: DVec2, radius: f64) -> Option<Joint> {
-        let [west, north] = cell(at - radius);
-        let [east, south] = cell(at + radius);
-        let mut nearest = (radius, None);
-        for r in north..=south {
-            for c in west..=east {
-                let mut next = self.cells.get(&[c, r]).copied();
-                while let Some((joint, before)) = next.map(|next| self.places[next as usize]) {
-                    let place = self.lines[joint.line as usize].0[joint.place as usize];
-                    let distance = place.at.distance(at);
-                    if distance < nearest.0 {
-                        nearest = (distance, Some(joint));
-                    }
-                    next = before;
-                }
-            }
-        }
-        nearest.1
+        let within = self.around(at, radius).filter(|(distance, _)| *distance < radius);
+        within.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, joint)| joint)
     }
-}
 
-fn cell(at: DVec2) -> [i32; 2] {
-    [at.x.floor() as i32, at.y.floor() as i32]
+    /// The places in all cells within a radius, and some beyond, with their distances.
+    fn around(&self, at: DVec2, radius: f64) -> impl Iterator<Item = (f64, Joint)> + '_ {
+        let [west, north] = self.cell(at - radius);
+        let [east, south] = self.cell(at + radius);
+        let cells = (north..=south).flat_map(move |r| &self.cells[r * self.size[0] + west..=r * self.size[0] + east]);
+        let in_cell = |first: &u32| {
+            std::iter::successors(self.places.get(*first as usize), |(_, next)| self.places.get(*next as usize))
+        };
+        cells.flat_map(in_cell).map(move |(joint, _)| {
+            let place = self.lines[joint.line as usize].places[joint.place as usize];
+            (place.at.distance(at), *joint)
+        })
+    }
+
+    /// Column and row of the cell of a place; the nearest beyond the grid.
+    fn cell(&self, at: DVec2) -> [usize; 2] {
+        let [columns, rows] = self.size;
+        [(at.x.max(0.0) as usize).min(columns - 1), (at.y.max(0.0) as usize).min(rows - 1)]
+    }
 }

@@ -8,8 +8,9 @@ use super::channels::Channels;
 use super::flow::{Ends, Flow};
 use super::grid::Grid;
 use super::lines::{Node, lines};
-use super::prune::pruned;
+use super::parting::{Beds, Parting};
 use super::threshold::{FIRST, Trial, found, trials};
+use super::tops::tops;
 use super::trace::Follows;
 use super::water::sea;
 use crate::dem::Dem;
@@ -100,7 +101,45 @@ impl Relief {
             let drop = tops[branch] - self.grid.smoothed[i];
             Node { at: self.grid.frame.at(i), length: self.area.length[i], drop, order: orders[node as usize] }
         };
-        pruned(&self.grid, lines(&self.grid, &branches, Follows::Valley, node))
+        lines(&self.grid, &branches, Follows::Valley, node)
+    }
+
+    /// The lines along which water parts, the longest first, each after the one it joins.
+    ///
+    /// They are where water would gather on the land turned upside down, from which it leaves at the highest sample.
+    ///
+    /// # Errors
+    /// [`Error::Mistake`](crate::error::Error::Mistake) where the flow goes round in a circle.
+    pub fn ridges(&self) -> Result<Vec<SurfaceLine>> {
+        let frame = self.grid.frame;
+        let mut negated: Vec<f32> = self.grid.smoothed.iter().map(|height| -height).collect();
+        self.sea.iter().for_each(|i| negated[i] = f32::NAN);
+        let flow = Flow::of(frame, &negated, Ends::At { tops: &tops(frame, &negated), sea: &self.sea });
+        let area = Area::of(&flow, &self.sea)?;
+        let beds = self.beds();
+        // No ridge goes through a bed to the next.
+        let belongs = |i: usize| area.cells[i] >= CELLS && !beds.is_bed(i);
+        let goes_on = |i: usize| flow.direction(i).is_some_and(|k| !beds.crosses(i, k));
+        let crests = Channels::among(&flow, belongs, goes_on);
+        let sample = |node: u32| crests.samples[node as usize] as usize;
+        let branches = branches(&crests, |node| area.length[sample(node as u32)]);
+        let steps = frame.steps();
+        let node = |_: usize, node: u32| {
+            let i = sample(node);
+            let k = flow.direction(i).unwrap_or(0);
+            let sides = [2, 6].map(|turn| i.wrapping_add(steps[(k + turn) % 8]));
+            let is_land = sides.iter().all(|side| self.flow.is_land(*side));
+            let Parting { length, drop } = if is_land { beds.parting(sides) } else { Parting::default() };
+            Node { at: frame.at(i), length, drop, order: 1 }
+        };
+        Ok(lines(&self.grid, &branches, Follows::Crest, node))
+    }
+
+    /// Where water runs in beds, as ridges are told by.
+    fn beds(&self) -> Beds<'_> {
+        let channels = Channels::of(&self.flow, &self.area, CELLS);
+        let branches = branches(&channels, |node| self.area.length[channels.samples[node] as usize]);
+        Beds::new(&self.flow, &self.area, &self.grid.smoothed, channels, &branches)
     }
 
     /// Where the longest way to a sample begins.
