@@ -105,7 +105,9 @@ impl Inking<'_> {
         let Weight { far, flat, crowd, .. } = *self.weight;
         let receding = 1.0 - (1.0 - far) * self.recession.share(point);
         let roomy = (receding * (crowd * SQUARE / f64::from(point.crowd.max(1))).sqrt().min(1.0)).max(far);
-        roomy * f64::from(point.weight) * (flat + (1.0 - flat) * point.relief().sqrt())
+        // What lies on the land has nothing behind it: its width is a matter of its own.
+        let apart = if point.line.is_of_land() { 1.0 } else { flat + (1.0 - flat) * point.relief().sqrt() };
+        roomy * f64::from(point.weight) * apart
     }
 
     /// The run as the hand draws it.

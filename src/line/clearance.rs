@@ -56,11 +56,16 @@ pub struct Sample {
     pub skyline: f32,
     /// ln depth: larger is nearer.
     pub log_depth: f32,
+    /// How far it keeps from lines that bound the surface, in gaps.
+    pub berth: f32,
+    /// Whether it bounds the surface.
+    pub bounds: bool,
 }
 
 /// Weights of samples whose lines keep `gap` px apart, 0 to 1, in the order of the samples.
 pub fn weights(samples: &[Sample], gap: f32) -> Vec<f32> {
-    let cells = Cells::new(samples, gap);
+    let widest = samples.iter().map(|sample| sample.berth).fold(1.0, f32::max);
+    let cells = Cells::new(samples, gap * widest);
     // Neighbours on the page are neighbours in memory.
     let sorted: Vec<Sample> = cells.list.iter().map(|&i| samples[i as usize]).collect();
     let mut order: Vec<u32> = (0..sorted.len() as u32).filter(|&i| sorted[i as usize].alone > 0.0).collect();
@@ -90,7 +95,8 @@ impl Sample {
             return 0.0;
         }
         let to = self.way_to(other);
-        let nearer = 1.0 - smoothstep([gap / 2.0, gap], to.length());
+        let keeps = if other.bounds { gap * self.berth } else { gap };
+        let nearer = 1.0 - smoothstep([keeps / 2.0, keeps], to.length());
         let cos = self.along.dot(other.along);
         let stronger = smoothstep([0.0, RANK], other.rank - self.rank) * smoothstep(SIDE_BY_SIDE, cos.abs());
         // The surface lies on the left, what is behind on the right.

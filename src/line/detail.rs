@@ -36,7 +36,7 @@ const PLAIN_LENGTH: [f64; 2] = [2.0, 12.0];
 /// Along the page, what the land beside a line says is averaged over this to either side, px.
 const SOFT: f64 = 10.0;
 /// Width of a stream of the first order as a share of that of one of the fourth.
-const LEAST_WIDTH: f64 = 0.5;
+const LEAST_WIDTH: f64 = 0.6;
 const WHOLE_ORDER: f64 = 4.0;
 /// Lengths of ridges on the page between which their width grows as that of streams does by order, px.
 const RIDGE_WIDTH: [f64; 2] = [60.0, 500.0];

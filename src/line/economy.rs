@@ -34,6 +34,8 @@ const SKYLINE_SHARE: f64 = 0.01;
 /// How strong a line on the land is, and how much stronger one of full weight: all boundaries of the surface are stronger.
 const LAND_RANK: f64 = -40.0;
 const LAND_SHARE: f64 = 4.0;
+/// How far a ridge keeps from a silhouette beside it, gaps: both say the same.
+const RIDGE_BERTH: f32 = 2.5;
 /// Where its jump or the sky ends, a line runs on whole for the first of these and fades until the second, gaps.
 const RUN_OUT: [f64; 2] = [1.0, 3.0];
 /// Along a chain, directions are averaged over about the first of these to either side, jumps over the second, gaps.
@@ -124,6 +126,8 @@ fn samples(chain: &Chain, index: u32, economy: &Economy) -> Vec<Sample> {
             alone: (by_jump[i] * by_length).lerp(1.0, skyline[i]) as f32,
             skyline: skyline[i] as f32,
             log_depth: point.log_depth() as f32,
+            berth: if point.line == Line::Ridge { RIDGE_BERTH } else { 1.0 },
+            bounds: !is_of_land,
         }
     };
     chain.points.iter().enumerate().map(sample).collect()
