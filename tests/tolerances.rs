@@ -83,6 +83,11 @@ pub const LAID_PX: f64 = 0.1;
 /// Example: of a branch of 60 px, in the middle of the ramp from 10 to 120 px, a thousandth nearer .06 px more are seen: .001.
 pub const FADE_STEP: f32 = 0.02;
 
+/// Steps of a flight, m, and the share of drawn length of lines on the land that may come or go in one but for hiding.
+///
+/// Example: 30 000 px of line, of which 300 px fade by a tenth: .1 %.
+pub const LAND_POPS: [(f64, f64); 2] = [(1.0, 0.005), (10.0, 0.02)];
+
 /// Share of ink of one level that may lie farther than [`REACH_PX`] from any ink of the next finer level.
 ///
 /// Example: of 400 px at most 4 px between level 16 and level 32.

@@ -16,10 +16,11 @@ const LEAST_WEIGHT: f32 = 0.25;
 const ALONG: f64 = 6.0;
 
 /// For each chain of a page of so many pixels across and down, whether its first and its last point are free ends. A closed
-/// one has none.
+/// one has none. What bounds the surface ends on nothing that lies on the land: its strokes are the same with and without.
 pub fn free(chains: &[Chain], [width, height]: [u32; 2]) -> Vec<[bool; 2]> {
     let page = DVec2::new(width.into(), height.into());
     let tree = RTree::bulk_load(chains.iter().enumerate().flat_map(|(index, chain)| pieces(index, chain)).collect());
+    let of_land: Vec<bool> = chains.iter().map(|chain| chain.line().is_of_land()).collect();
     let is_free = |index: usize, backward: bool| {
         let chain = &chains[index];
         let Some(end) = (if backward { chain.points.last() } else { chain.points.first() }) else { return false };
@@ -28,7 +29,10 @@ pub fn free(chains: &[Chain], [width, height]: [u32; 2]) -> Vec<[bool; 2]> {
         let mut near = tree.locate_within_distance(at.to_array(), ON_LINE * ON_LINE);
         let length = chain.length();
         let own_way = |arc: f64| if backward { length - arc } else { arc };
-        let is_other = |piece: &Of| piece.data.0 != index || own_way(piece.data.1) > ALONG;
+        let is_other = |piece: &Of| {
+            let counts = of_land[index] || !of_land[piece.data.0];
+            counts && (piece.data.0 != index || own_way(piece.data.1) > ALONG)
+        };
         !chain.closed && !on_edge && !near.any(is_other)
     };
     (0..chains.len()).map(|index| [false, true].map(|backward| is_free(index, backward))).collect()

@@ -166,7 +166,8 @@ impl Source<'_> {
                 ("dem", _) => dems = texts,
                 (_, DeValue::Boolean(true)) => words.push(format!("--{flag}")),
                 (_, DeValue::Boolean(false)) => {}
-                ("output", _) => words.extend(texts.into_iter().map(|text| format!("--{flag}={text}"))),
+                ("output" | "lines", _) => words.extend(texts.into_iter().map(|text| format!("--{flag}={text}"))),
+                ("creases", _) => words.push(format!("--{flag}={}", texts.join(","))),
                 (_, DeValue::Array(_))
                     if texts.iter().any(|text| text.parse::<f64>().is_err() && !text.starts_with('+')) =>
                 {

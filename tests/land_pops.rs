@@ -1,0 +1,111 @@
+//! Lines on the land from frame to frame: what comes and goes of their ink is what land hides.
+
+use std::sync::Arc;
+
+use glam::DVec2;
+use hachure::geo::{ReadOptions, read};
+use hachure::ink::{Sheet, Style};
+use hachure::line::{Chain, ChainPoint, Land};
+use hachure::plan::{Curves, LandLines, Plan};
+use hachure::relief::{ChannelArea, Relief};
+use hachure::render::Renderer;
+use hachure::surface::Surface;
+use hachure::view::{Camera, Fixed, Perspective, choose};
+use rstar::RTree;
+use rstar::primitives::GeomWithData;
+
+use crate::scenes::gpu;
+use crate::tolerances::LAND_POPS;
+
+const FRAMES: u32 = 20;
+/// Within this a line is where it was, px.
+const HERE: f64 = 1.5;
+/// At the edge of the page nothing counts, px.
+const MARGIN: f64 = 3.0;
+
+/// The lines on the land of a frame: those that the eye may see, and how strongly they are drawn.
+struct Frame {
+    perspective: Perspective,
+    seen: RTree<[f64; 2]>,
+    drawn: Vec<Chain>,
+    weights: RTree<GeomWithData<[f64; 2], f32>>,
+}
+
+fn frame(renderer: &mut Renderer, camera: &Camera) -> Frame {
+    let plan = Plan { curves: Curves::On, land: LandLines::On, ..Plan::default() };
+    let page = renderer.page(&plan, camera, |_| ()).expect("a page");
+    let (style, size) = (Style::default(), [camera.width, camera.height]);
+    let px_per_mm = Sheet::for_frame(size).placement(size).px_per_mm;
+    let lines = page.lines(&style.economy(px_per_mm), style.tolerance * px_per_mm);
+    let drawn: Vec<Chain> = lines.chains.into_iter().filter(|chain| chain.line().is_of_land()).collect();
+    let places = |point: &ChainPoint| point.place.to_array();
+    // Points stand at most 4 px apart: between them there are more.
+    let seen = page.land.iter().flat_map(|chain| points(chain)).map(|point| places(&point)).collect();
+    let weights = drawn.iter().flat_map(|chain| points(chain));
+    let weights = weights.map(|point| GeomWithData::new(places(&point), point.weight)).collect();
+    Frame {
+        perspective: page.perspective,
+        seen: RTree::bulk_load(seen),
+        weights: RTree::bulk_load(weights),
+        drawn,
+    }
+}
+
+/// Points of a chain at most half a pixel apart.
+fn points(chain: &Chain) -> impl Iterator<Item = ChainPoint> + use<'_> {
+    chain.pairs().flat_map(|[a, b]| {
+        let steps = (a.place.distance(b.place) * 2.0).ceil().max(1.0);
+        (0..steps as u32).map(move |k| {
+            let t = f64::from(k) / steps;
+            let weight = a.weight + (b.weight - a.weight) * t as f32;
+            ChainPoint { place: a.place.lerp(b.place, t), world: a.world.lerp(b.world, t), weight, ..*a }
+        })
+    })
+}
+
+/// What is drawn in one frame and not in another that may show it, where no land hides it there: length by weight, and all.
+fn lost(from: &Frame, to: &Frame) -> [f64; 2] {
+    let page = to.perspective.size();
+    let mut sums = [0.0; 2];
+    for point in from.drawn.iter().flat_map(points) {
+        let (there, depth) = to.perspective.project(point.world);
+        let on_page = depth > 0.0 && there.cmpgt(DVec2::splat(MARGIN)).all() && there.cmplt(page - MARGIN).all();
+        let there = there.to_array();
+        if !on_page || to.seen.locate_within_distance(there, HERE * HERE).next().is_none() {
+            continue;
+        }
+        let near = to.weights.locate_within_distance(there, HERE * HERE);
+        let weight = near.map(|near| near.data).fold(0.0, f32::max);
+        sums[0] += f64::from((point.weight - weight).max(0.0));
+        sums[1] += f64::from(point.weight);
+    }
+    sums
+}
+
+/// The share of drawn length that comes or goes from a frame to the next, of a flight in steps of so many metres.
+fn comes_and_goes(renderer: &mut Renderer, first: &Camera, step: f64) -> f64 {
+    let [.., forward] = first.axes();
+    let at = |k: u32| Camera { eye: first.eye + forward * f64::from(k) * step, ..*first };
+    let frames: Vec<Frame> = (0..FRAMES).map(|k| frame(renderer, &at(k))).collect();
+    let pairs = frames.windows(2).flat_map(|pair| [lost(&pair[0], &pair[1]), lost(&pair[1], &pair[0])]);
+    let [lost, all] = pairs.fold([0.0; 2], |a, b| [a[0] + b[0], a[1] + b[1]]);
+    assert!(all > 0.0, "lines on the land are drawn");
+    lost / all
+}
+
+#[test]
+fn lines_on_the_land_do_not_pop() {
+    let surface = Arc::new(Surface::new(read("dem/golden-gate.tif", &ReadOptions::default()).expect("the sample")));
+    let camera = choose(surface.dem(), Fixed::default(), 60.0, 640, 360).expect("a view");
+    let relief = Relief::of(surface.dem(), 1.0).expect("flow");
+    let mut renderer = Renderer::new(gpu().clone(), surface.clone()).expect("a renderer");
+    let lines = [("drainage", relief.drainage(ChannelArea::Auto)), ("ridges", relief.ridges().expect("ridges"))];
+    for (what, lines) in lines {
+        renderer.set_land(Some(Arc::new(Land::new(surface.dem(), 1.0, lines))));
+        for (step, most) in LAND_POPS {
+            let share = comes_and_goes(&mut renderer, &camera, step);
+            println!("land: {:.3} % of {what} come or go a step of {step} m", share * 100.0);
+            assert!(share <= most, "{what}: {share}");
+        }
+    }
+}
