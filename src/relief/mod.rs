@@ -14,6 +14,7 @@ pub mod flow;
 pub mod frame;
 pub mod grid;
 mod heap;
+mod kept;
 pub mod lines;
 pub mod net;
 pub mod parting;
@@ -28,6 +29,7 @@ pub mod whole;
 
 use glam::DVec2;
 
+pub use kept::Crease;
 pub use whole::{ChannelArea, Relief};
 
 /// What a line of the land is.
