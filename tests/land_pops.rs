@@ -43,12 +43,7 @@ fn frame(renderer: &mut Renderer, camera: &Camera) -> Frame {
     let seen = page.land.iter().flat_map(|chain| points(chain)).map(|point| places(&point)).collect();
     let weights = drawn.iter().flat_map(|chain| points(chain));
     let weights = weights.map(|point| GeomWithData::new(places(&point), point.weight)).collect();
-    Frame {
-        perspective: page.perspective,
-        seen: RTree::bulk_load(seen),
-        weights: RTree::bulk_load(weights),
-        drawn,
-    }
+    Frame { perspective: page.perspective, seen: RTree::bulk_load(seen), weights: RTree::bulk_load(weights), drawn }
 }
 
 /// Points of a chain at most half a pixel apart.

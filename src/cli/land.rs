@@ -3,12 +3,13 @@
 use super::lines::LinesArguments;
 use super::talk::Talk;
 use super::values::number;
-use crate::cache::Cache;
+use super::words::told;
+use crate::cache::{Cache, Hearing};
 use crate::dem::Dem;
-use crate::error::{Error, Result, Setting};
+use crate::error::{Error, Message, Result, Setting};
 use crate::ink::Style;
 use crate::line::Land;
-use crate::relief::{ChannelArea, Crease, LandWanted, Relief, SurfaceLine};
+use crate::relief::{ChannelArea, Crease, LandWanted, SurfaceLine, kept};
 
 /// The flags, as typed.
 #[derive(Debug, Clone, clap::Args)]
@@ -82,22 +83,16 @@ impl LandArguments {
         cache: &Cache,
         talk: &Talk,
     ) -> Result<Land> {
-        let _ = cache;
         let mut lines = self.lines.read(dem, allow_remote, talk)?;
-        let flows = |crease: &Crease| matches!(crease, Crease::Drainage | Crease::Ridges);
-        if wanted.creases.iter().any(flows) {
-            let relief = Relief::of(dem, exaggeration)?;
-            for crease in &wanted.creases {
-                append(
-                    &mut lines,
-                    match crease {
-                        Crease::Drainage => relief.drainage(wanted.channel_area),
-                        Crease::Ridges => relief.ridges()?,
-                        Crease::Shores => Vec::new(),
-                    },
-                );
-            }
-        }
+        let found = |crease: &Crease| match crease {
+            Crease::Drainage => Some(kept::Crease::Drainage(wanted.channel_area)),
+            Crease::Ridges => Some(kept::Crease::Ridges),
+            Crease::Shores => None,
+        };
+        let asked: Vec<kept::Crease> = wanted.creases.iter().filter_map(found).collect();
+        let warn = |message: &Message| talk.warn(&told(message));
+        let hearing = Hearing { warn: &warn, progress: &|done| talk.progress("looking for creases", 0.2 + 0.1 * done) };
+        cache.creases(dem, exaggeration, &asked, hearing)?.into_iter().for_each(|more| append(&mut lines, more));
         Ok(Land::new(dem, exaggeration, lines))
     }
 }

@@ -13,7 +13,8 @@ const DISTANCES: [f64; 3] = [3.0, 6.0, 12.0];
 /// Over how many places before and after one its direction is taken.
 const AHEAD: usize = 4;
 
-/// Of each place of a line, metres at the three distances; 0 where neither side has heights.
+/// Of each place of a line, metres at the three distances; 0 where a side has no height: what lies along
+/// the rim is not known to be a valley.
 pub fn across(grid: &Grid, line: &[DVec2], follows: Follows) -> Vec<[f32; 3]> {
     let sign = if follows == Follows::Valley { 1.0 } else { -1.0 };
     let side = grid.frame.side();
@@ -24,9 +25,7 @@ pub fn across(grid: &Grid, line: &[DVec2], follows: Follows) -> Vec<[f32; 3]> {
         DISTANCES.map(|distance| {
             let rise = |to: f64| sign * (grid.height(line[k] + across * to * distance) - here);
             let [left, right] = [rise(-1.0), rise(1.0)];
-            // The other where one is a void.
-            let least = left.min(right);
-            if least.is_nan() { 0.0 } else { least }
+            if left.is_nan() || right.is_nan() { 0.0 } else { left.min(right) }
         })
     };
     (0..line.len()).map(one).collect()

@@ -7,7 +7,7 @@ use super::across::across;
 use super::branches::Branch;
 use super::grid::Grid;
 use super::net::{Laid, Net};
-use super::prune::pruned;
+use super::prune::{Lie, pruned};
 use super::trace::{Follows, Place, trace};
 use super::{LineKind, SurfaceLine, SurfacePoint};
 
@@ -46,10 +46,11 @@ pub fn lines(
             known.push(nodes);
         }
     }
-    let free: Vec<usize> = net.lines.iter().map(|laid| laid.free).collect();
+    let lies = |laid: &Laid| Lie { free: laid.free, lowest: laid.places.iter().map(|place| place.is_lowest).collect() };
+    let lies: Vec<Lie> = net.lines.iter().map(lies).collect();
     let line = |(laid, nodes): (Laid, &Vec<Node>)| line(grid, laid, nodes, follows);
     let lines = net.lines.into_par_iter().zip(&known).map(line).collect();
-    pruned(grid, lines, &free)
+    pruned(grid, lines, &lies)
 }
 
 /// A line with what is known of its nodes.

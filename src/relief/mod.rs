@@ -15,6 +15,7 @@ pub mod flow;
 pub mod frame;
 pub mod grid;
 mod heap;
+pub mod kept;
 pub mod lines;
 pub mod net;
 mod own;

@@ -1,7 +1,7 @@
 //! Lines without what nobody would draw: beginnings that are neither in a valley nor on a ridge, stumps, and what runs beside others.
 //!
-//! A line begins where another joins it, where it is long, or where it begins to show: the land on both sides rises, or falls, by a
-//! hundredth and by a tenth of how much the line does, so contours bend by six degrees, at one of three distances. Without that
+//! A line begins where another joins it, where it is long, or where it begins to show: the land rises, or falls, to both sides at once, and
+//! by a hundredth and by a tenth of how much the line does, so contours bend by six degrees, at one of three distances. Without that
 //! water that runs down a plane side by side would be as many lines. Cost: a pass over the points.
 
 use super::grid::Grid;
@@ -25,14 +25,23 @@ const FREE: usize = 9;
 const FREE_SHARE: f64 = 0.4;
 const GONE: usize = usize::MAX;
 
-/// The lines, each after the one it joins; those left, in the same order. `free` is how many points of each are not beside
-/// others.
-pub fn pruned(grid: &Grid, lines: Vec<SurfaceLine>, free: &[usize]) -> Vec<SurfaceLine> {
+/// How a line lies.
+#[derive(Debug, Clone)]
+pub struct Lie {
+    /// How many of its points are not beside lines that are longer.
+    pub free: usize,
+    /// Whether the land rises, or falls, from each point to both sides.
+    pub lowest: Vec<bool>,
+}
+
+/// The lines, each after the one it joins; those left, in the same order.
+pub fn pruned(grid: &Grid, lines: Vec<SurfaceLine>, lies: &[Lie]) -> Vec<SurfaceLine> {
     // Of each line the first point that stays.
     let mut begins = vec![GONE; lines.len()];
     for (k, line) in lines.iter().enumerate().rev() {
-        let adds = free[k] >= FREE && free[k] as f64 >= FREE_SHARE * line.points.len() as f64;
-        let shown = if adds { begin(grid, line) } else { GONE };
+        let free = lies[k].free;
+        let adds = free >= FREE && free as f64 >= FREE_SHARE * line.points.len() as f64;
+        let shown = if adds { begin(grid, line, &lies[k].lowest) } else { GONE };
         // Two points at least, though another may join the last.
         begins[k] = if shown.min(begins[k]) == GONE { GONE } else { shown.min(begins[k]).min(line.points.len() - 2) };
         if let (Some([trunk, point]), true) = (line.joins, begins[k] != GONE) {
@@ -55,7 +64,7 @@ pub fn pruned(grid: &Grid, lines: Vec<SurfaceLine>, free: &[usize]) -> Vec<Surfa
 }
 
 /// The first point of a line that no other joins.
-fn begin(grid: &Grid, line: &SurfaceLine) -> usize {
+fn begin(grid: &Grid, line: &SurfaceLine, lowest: &[bool]) -> usize {
     let heights: Vec<f64> = line.points.iter().map(|point| f64::from(grid.height(point.at))).collect();
     let cells_long = line.points.len() as f64 * SPACING;
     let shows = |(k, point): (usize, &SurfacePoint)| {
@@ -66,7 +75,7 @@ fn begin(grid: &Grid, line: &SurfaceLine) -> usize {
         let least = SLOPE.max(SHARE * slope) * grid.frame.side();
         // What is no longer than wide is a part of what it joins.
         let mut sides = point.across.iter().zip(DISTANCES).filter(|(_, cells)| *cells <= cells_long);
-        let stands_out = sides.any(|(across, cells)| f64::from(*across) >= least * cells);
+        let stands_out = lowest[k] && sides.any(|(across, cells)| f64::from(*across) >= least * cells);
         match line.kind {
             LineKind::Ridge => stands_out && point.length > 0.0,
             _ => stands_out || point.length >= LONG,

@@ -1,8 +1,10 @@
 //! A branch of samples as a smooth curve in the bottom of its valley, or on its crest.
 //!
-//! Twice: each place is moved across the way to the lowest place of the smoothed surface there, then all are smoothed along the
-//! way by a Gaussian. What is no valley across the way is only smoothed. Both ends stay. Places come half a cell apart. Cost: some 30
-//! heights a place. Not handled: bends narrower than two cells, which are cut by a part of a cell.
+//! Directions of eight neighbours run askew on wide valleys, by cells. So, a few times: across the way the smoothed surface is
+//! followed down as long as it falls; places move there, those without a bottom across as their neighbours do; and all are
+//! smoothed along the way. At last they are put on the bottom itself, and smoothed by a Gaussian that moves none far. Both ends
+//! are free. Places come half a cell apart. Cost: some 50 heights a place, more in wide valleys. Not handled: bends narrower than two
+//! cells, which are cut by a part of a cell.
 
 use glam::DVec2;
 
@@ -24,65 +26,113 @@ pub struct Place {
     pub at: DVec2,
     /// How many nodes of the branch lie before it, fractional.
     pub node: f64,
+    /// Whether the land rises, or falls, from it to both sides.
+    pub is_lowest: bool,
 }
 
 /// Cells between places.
 pub const SPACING: f64 = 0.5;
-/// How far a node may be moved across its way, cells, and in how many steps to each side.
-const REACH: [f64; 2] = [1.0, 0.5];
-const STEPS: i32 = 6;
-/// Standard deviations of the smoothing, places.
-const DEVIATIONS: [f64; 2] = [3.0, 2.0];
-/// How far smoothing may move a place, cells.
+/// How far across the bottom is looked for each time, cells, and in how many steps to each side.
+const REACH: [f64; 6] = [6.0, 6.0, 4.0, 2.0, 1.0, 0.5];
+const STEPS: i32 = 8;
+/// How far a place moves at a time, cells; the widest looks are left out where none moves half as far.
+const MOVE: f64 = 2.0;
+/// Standard deviation of how moves spread along the way, and of the smoothing after it, places.
+const SPREAD: f64 = 3.0;
+const SMOOTH: f64 = 2.0;
+/// What no bottom across weighs when moves spread: little, so the others take it along.
+const STAYS: f64 = 0.1;
+/// Standard deviation of the last smoothing, places, and how far that may move a place, cells.
+const LAST: f64 = 2.5;
 const HOLD: f64 = 0.4;
-/// Over how many places before and after one its direction is taken.
-const AHEAD: usize = 4;
+/// Standard deviation of the smoothing after which a direction is taken, places, and over how many before and after one: where the bed is
+/// steep and wide, the lowest place across a way that is askew is not that of the valley.
+const DIRECTION: f64 = 5.0;
+const AHEAD: usize = 6;
 
 /// The curve of at least two nodes.
 pub fn trace(grid: &Grid, nodes: &[DVec2], follows: Follows) -> Vec<Place> {
-    let nodes = nodes.iter().enumerate().map(|(k, at)| Place { at: *at, node: k as f64 });
+    let nodes = nodes.iter().enumerate().map(|(k, at)| Place { at: *at, node: k as f64, is_lowest: false });
     let mut places: Vec<Place> = nodes.collect();
-    for (reach, deviation) in REACH.into_iter().zip(DEVIATIONS) {
-        places = resampled(&places);
-        let rough: Vec<DVec2> = smoothed(&places.iter().map(|place| place.at).collect::<Vec<_>>(), deviation);
-        let snapped: Vec<DVec2> =
-            (0..places.len()).map(|k| snapped(grid, &rough, places[k].at, k, reach, follows)).collect();
-        let smooth = smoothed(&snapped, deviation);
-        for ((place, snapped), smooth) in places.iter_mut().zip(&snapped).zip(smooth) {
-            place.at = *snapped + (smooth - *snapped).clamp_length_max(HOLD);
+    let mut farthest = f64::INFINITY;
+    for reach in REACH {
+        if reach > MOVE && farthest < MOVE / 2.0 {
+            continue;
         }
+        places = resampled(&places);
+        let moves = moves(grid, &places, reach, follows);
+        farthest = moves.iter().flatten().map(|by| by.length()).fold(0.0, f64::max);
+        let spread = spread(&moves);
+        let moved: Vec<DVec2> = places.iter().zip(spread).map(|(place, by)| place.at + by).collect();
+        places.iter_mut().zip(smoothed(&moved, SMOOTH)).for_each(|(place, at)| place.at = at);
+    }
+    places = resampled(&places);
+    let moves = moves(grid, &places, MOVE / 2.0, follows);
+    let bottom: Vec<DVec2> =
+        places.iter().zip(&moves).map(|(place, by)| place.at + by.unwrap_or_default().clamp_length_max(HOLD)).collect();
+    for (((place, bottom), smooth), by) in places.iter_mut().zip(&bottom).zip(smoothed(&bottom, LAST)).zip(&moves) {
+        place.at = *bottom + (smooth - *bottom).clamp_length_max(HOLD);
+        place.is_lowest = by.is_some();
     }
     resampled(&places)
 }
 
-/// The place across the way at `k` that is lowest, or highest.
-fn snapped(grid: &Grid, way: &[DVec2], at: DVec2, k: usize, reach: f64, follows: Follows) -> DVec2 {
-    if k == 0 || k + 1 == way.len() {
-        return at;
-    }
-    let along = (way[(k + AHEAD).min(way.len() - 1)] - way[k.saturating_sub(AHEAD)]) * grid.frame.cell;
-    // Across on the ground, and one cell long.
-    let Some(across) = (along.perp() / grid.frame.cell).try_normalize() else { return at };
-    let sign = if follows == Follows::Valley { 1.0 } else { -1.0 };
-    let place = |step: f64| at + across * (step * reach / f64::from(STEPS));
-    let height = |step: i32| sign * grid.smooth(place(f64::from(step)));
-    // Down on the side that falls, as long as it does.
-    let turn = if height(1) < height(-1) { 1 } else { -1 };
-    let [mut before, mut here] = [height(-turn), height(0)];
-    for step in 1..=STEPS {
-        let next = height(step * turn);
+/// By how much each place lies off the lowest place across the way, or the highest; `None` where there is none within reach.
+fn moves(grid: &Grid, places: &[Place], reach: f64, follows: Follows) -> Vec<Option<DVec2>> {
+    let places: Vec<DVec2> = places.iter().map(|place| place.at).collect();
+    let way = smoothed(&places, DIRECTION);
+    let one = |k: usize| {
+        let along = (way[(k + AHEAD).min(way.len() - 1)] - way[k.saturating_sub(AHEAD)]) * grid.frame.cell;
+        // Across on the ground, and one cell long.
+        let across = (along.perp() / grid.frame.cell).try_normalize()?;
+        let sign = if follows == Follows::Valley { 1.0 } else { -1.0 };
+        let height = |cells: f64| sign * grid.smooth(places[k] + across * cells);
+        Some(across * bottom(height, reach)?)
+    };
+    (0..places.len()).map(one).collect()
+}
+
+/// Where a height is least, followed down from 0, no farther than a reach to either side.
+fn bottom(height: impl Fn(f64) -> f32, reach: f64) -> Option<f64> {
+    let step = reach / f64::from(STEPS);
+    let turn = if height(step) < height(-step) { step } else { -step };
+    let [mut before, mut here] = [height(-turn), height(0.0)];
+    for k in 1..=STEPS {
+        let next = height(f64::from(k) * turn);
         if next < here {
             [before, here] = [here, next];
             continue;
         }
         // The bottom of the parabola through the three; none where one of them is a void, or all are one flat.
         let bend = f64::from(before - 2.0 * here + next);
-        let is_bottom = before > here && next >= here;
         let off = f64::from(before - next) / (2.0 * bend);
-        return if is_bottom { place(f64::from(turn) * (f64::from(step - 1) + off)) } else { at };
+        return (before > here && next >= here).then_some((f64::from(k - 1) + off) * turn);
     }
-    // It falls all the way: no valley here.
-    at
+    // It falls all the way.
+    None
+}
+
+/// Moves that take along those that have none.
+fn spread(moves: &[Option<DVec2>]) -> Vec<DVec2> {
+    let weights = gaussian(SPREAD);
+    let reach = weights.len() / 2;
+    let one = |k: usize| {
+        let first = k.saturating_sub(reach);
+        let near = moves[first..(k + reach + 1).min(moves.len())].iter().zip(&weights[first + reach - k..]);
+        let add = |(sum, total): (DVec2, f64), (by, weight): (&Option<DVec2>, &f64)| match by {
+            Some(by) => (sum + by.clamp_length_max(MOVE) * *weight, total + weight),
+            None => (sum, total + weight * STAYS),
+        };
+        let (sum, total) = near.fold((DVec2::ZERO, 0.0), add);
+        sum / total
+    };
+    (0..moves.len()).map(one).collect()
+}
+
+/// Weights about the middle, to twice the deviation.
+fn gaussian(deviation: f64) -> Vec<f64> {
+    let reach = (2.0 * deviation) as i32;
+    (-reach..=reach).map(|k| (-(f64::from(k) / deviation).powi(2) / 2.0).exp()).collect()
 }
 
 /// Places half a cell apart, about, on the polyline.
@@ -95,7 +145,7 @@ fn resampled(places: &[Place]) -> Vec<Place> {
         while next * total < (done + length) * count {
             let share = if length > 0.0 { (next * total / count - done) / length } else { 0.0 };
             let node = pair[0].node + (pair[1].node - pair[0].node) * share;
-            out.push(Place { at: pair[0].at.lerp(pair[1].at, share), node });
+            out.push(Place { at: pair[0].at.lerp(pair[1].at, share), node, is_lowest: pair[0].is_lowest });
             next += 1.0;
         }
         done += length;
@@ -107,8 +157,8 @@ fn resampled(places: &[Place]) -> Vec<Place> {
 
 /// The places smoothed along the way; beyond its ends it goes on as its mirror image, so they stay.
 fn smoothed(places: &[DVec2], deviation: f64) -> Vec<DVec2> {
-    let reach = (2.0 * deviation) as isize;
-    let weights: Vec<f64> = (-reach..=reach).map(|k| (-(k as f64 / deviation).powi(2) / 2.0).exp()).collect();
+    let weights = gaussian(deviation);
+    let reach = (weights.len() / 2) as isize;
     let sum: f64 = weights.iter().sum();
     let last = places.len() as isize - 1;
     let at = |k: isize| match k {

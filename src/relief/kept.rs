@@ -1,0 +1,188 @@
+//! Lines of a held DEM, kept in the cache by its heights: a file of its own for each kind.
+//!
+//! ```text
+//! header | lines | points | hash of all before
+//! ```
+//!
+//! Cost: a hash of the heights; 16 bytes a line, 40 a point. Not handled: filed DEMs.
+
+use std::io::{self, ErrorKind, Read};
+
+use bytemuck::{Pod, Zeroable};
+use glam::DVec2;
+use xxhash_rust::xxh3::{Xxh3, xxh3_64};
+
+use super::whole::{ChannelArea, Relief};
+use super::{LineKind, SurfaceLine, SurfacePoint};
+use crate::cache::{Cache, Hearing, Kept, Key, Kind, Sheet, not_kept};
+use crate::dem::Dem;
+use crate::error::Result;
+
+/// Raise it when the lines of the same heights come out otherwise, or when the bytes below mean something else.
+const FORMAT: u32 = 1;
+const KIND: Kind =
+    Kind { name: "creases", format: FORMAT, words: ["what was found of creases", "what is kept of creases"] };
+/// The line that none joins.
+const NONE: [u32; 2] = [u32::MAX; 2];
+
+/// Lines that are found by the relief alone.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Crease {
+    /// Where water runs; beds begin with so much land.
+    Drainage(ChannelArea),
+    /// Where it parts.
+    Ridges,
+}
+
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+struct Header {
+    lines: u64,
+    points: u64,
+}
+
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+struct Line {
+    points: u32,
+    joins: [u32; 2],
+    order: u32,
+}
+
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+struct Point {
+    at: [f64; 2],
+    across: [f32; 3],
+    length: f32,
+    drop: f32,
+    /// So that no byte is unknown.
+    zero: f32,
+}
+
+impl Crease {
+    fn kind(self) -> LineKind {
+        match self {
+            Self::Drainage(_) => LineKind::Drainage,
+            Self::Ridges => LineKind::Ridge,
+        }
+    }
+
+    /// What tells it from others.
+    fn code(self) -> [u64; 2] {
+        match self {
+            Self::Drainage(ChannelArea::Auto) => [0, 0],
+            Self::Drainage(ChannelArea::SquareMetres(area)) => [1, area.to_bits()],
+            Self::Ridges => [2, 0],
+        }
+    }
+
+    fn lines(self, relief: &Relief) -> Result<Vec<SurfaceLine>> {
+        match self {
+            Self::Drainage(area) => Ok(relief.drainage(area)),
+            Self::Ridges => relief.ridges(),
+        }
+    }
+}
+
+impl Cache {
+    /// The lines of a held DEM whose heights are exaggerated by a factor, of each kind that is asked for: known or found.
+    ///
+    /// # Errors
+    /// [`Error::Limit`](crate::error::Error::Limit) for a filed DEM; those of [`Relief`].
+    pub fn creases(
+        &self,
+        dem: &Dem,
+        exaggeration: f64,
+        creases: &[Crease],
+        hearing: Hearing<'_>,
+    ) -> Result<Vec<Vec<SurfaceLine>>> {
+        let heights = digest(dem, exaggeration)?;
+        // Of what is not known, found once.
+        let mut relief = None;
+        let mut of_kind = |crease: &Crease| {
+            let mut hash = Xxh3::new();
+            hash.update(&heights.to_le_bytes());
+            crease.code().iter().for_each(|code| hash.update(&code.to_le_bytes()));
+            let key = Key { kind: KIND, hash: hash.digest128(), of: dem.label() };
+            self.get(
+                &key,
+                hearing,
+                |kept| recall(kept, crease.kind()),
+                |sheet, _| {
+                    let relief = match &mut relief {
+                        Some(relief) => relief,
+                        none => none.insert(Relief::of(dem, exaggeration)?),
+                    };
+                    let lines = crease.lines(relief)?;
+                    if let Some(error) = sheet.and_then(|sheet| write(sheet, &lines).err()) {
+                        (hearing.warn)(&not_kept(&key, &error));
+                    }
+                    Ok(lines)
+                },
+            )
+        };
+        creases.iter().map(&mut of_kind).collect()
+    }
+}
+
+/// Of all that the lines of a DEM depend on.
+fn digest(dem: &Dem, exaggeration: f64) -> Result<u128> {
+    let samples = dem.held()?;
+    let mut hash = Xxh3::new();
+    hash.update(bytemuck::cast_slice(samples.heights()));
+    hash.update(bytemuck::cast_slice(samples.valid()));
+    let numbers = [dem.columns() as f64, dem.rows() as f64, dem.cell().x, dem.cell().y, exaggeration];
+    hash.update(bytemuck::bytes_of(&numbers));
+    Ok(hash.digest128())
+}
+
+/// Writes and publishes lines.
+fn write(mut sheet: Sheet, lines: &[SurfaceLine]) -> Result<Kept> {
+    let points: usize = lines.iter().map(|line| line.points.len()).sum();
+    let header = Header { lines: lines.len() as u64, points: points as u64 };
+    let line = |line: &SurfaceLine| Line {
+        points: line.points.len() as u32,
+        joins: line.joins.unwrap_or(NONE),
+        order: u32::from(line.order),
+    };
+    let point = |point: &SurfacePoint| {
+        let SurfacePoint { at, across, length, drop } = *point;
+        Point { at: at.to_array(), across, length, drop, zero: 0.0 }
+    };
+    let mut bytes = bytemuck::bytes_of(&header).to_vec();
+    bytes.extend_from_slice(bytemuck::cast_slice(&lines.iter().map(line).collect::<Vec<_>>()));
+    let points: Vec<Point> = lines.iter().flat_map(|line| &line.points).map(point).collect();
+    bytes.extend_from_slice(bytemuck::cast_slice(&points));
+    let hash = xxh3_64(&bytes);
+    sheet.write(&bytes);
+    sheet.write(&hash.to_le_bytes());
+    sheet.publish()
+}
+
+/// Reads lines of a kind. Fails where the bytes are not those that were written.
+fn recall(mut kept: Kept, kind: LineKind) -> io::Result<Vec<SurfaceLine>> {
+    let damaged = || io::Error::from(ErrorKind::InvalidData);
+    let mut bytes = Vec::new();
+    kept.file.by_ref().take(kept.bytes).read_to_end(&mut bytes)?;
+    let (bytes, hash) = bytes.split_last_chunk::<8>().ok_or_else(damaged)?;
+    if xxh3_64(bytes) != u64::from_le_bytes(*hash) {
+        return Err(damaged());
+    }
+    let (header, rest) = bytes.split_at_checked(size_of::<Header>()).ok_or_else(damaged)?;
+    let header: Header = bytemuck::pod_read_unaligned(header);
+    let size = (header.lines as usize).checked_mul(size_of::<Line>()).ok_or_else(damaged)?;
+    let (lines, points) = rest.split_at_checked(size).ok_or_else(damaged)?;
+    let mut points = points.chunks_exact(size_of::<Point>()).map(bytemuck::pod_read_unaligned::<Point>);
+    let point = |point: Point| {
+        let Point { at, across, length, drop, .. } = point;
+        SurfacePoint { at: DVec2::from_array(at), across, length, drop }
+    };
+    let line = |line: &[u8]| {
+        let Line { points: count, joins, order } = bytemuck::pod_read_unaligned(line);
+        let points: Vec<SurfacePoint> = points.by_ref().take(count as usize).map(point).collect();
+        let joins = Some(joins).filter(|joins| *joins != NONE);
+        SurfaceLine { kind, order: order as u8, points, closed: false, joins }
+    };
+    Ok(lines.chunks_exact(size_of::<Line>()).map(line).collect())
+}
