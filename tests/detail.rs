@@ -3,9 +3,8 @@
 use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
 use hachure::line::Land;
-use hachure::line::detail::{OnPage, Shown};
+use hachure::line::detail::From;
 use hachure::relief::{LineKind, SurfaceLine, SurfacePoint};
-use hachure::view::{Camera, Perspective};
 
 use crate::tolerances::FADE_STEP;
 
@@ -31,10 +30,8 @@ fn stream(from: DVec2, to: DVec2, depth: [f32; 2], joins: Option<[u32; 2]>) -> S
     SurfaceLine { kind: LineKind::Drainage, order: 4, points: (0..=steps).map(point).collect(), closed: false, joins }
 }
 
-fn shown(lines: &[SurfaceLine], eye: DVec3) -> Vec<Shown> {
-    let camera = Camera { eye, azimuth: 0.0, altitude: -20.0, fov: 60.0, width: 800, height: 600 };
-    let perspective = Perspective::new(&camera, 1.0);
-    Land::new(&plain(), 1.0, lines.to_vec()).shown(|world| OnPage::seen(world, &perspective))
+fn shown(lines: &[SurfaceLine], eye: DVec3) -> Vec<Vec<f32>> {
+    Land::new(&plain(), 1.0, lines.to_vec()).shown(From::Eye(eye, 693.0))
 }
 
 #[test]
@@ -44,13 +41,13 @@ fn a_branch_that_is_drawn_reaches_its_junction() {
     let branch = stream(DVec2::new(40.0, 60.0), DVec2::new(100.0, 100.0), [30.0, 0.0], Some([0, 40]));
     let twig = stream(DVec2::new(45.0, 80.0), DVec2::new(47.0, 72.0), [0.3, 0.0], Some([1, 10]));
     let shown = shown(&[trunk, branch, twig], DVec3::new(0.0, -3000.0, 1200.0));
-    let [trunk, branch, twig] = [0, 1, 2].map(|i| &shown[i].weights);
+    let [trunk, branch, twig] = [0, 1, 2].map(|i| &shown[i]);
     assert!(branch[0] > 0.5 && branch.is_sorted() && trunk.is_sorted(), "{branch:?}");
     assert!(trunk[39] < 0.1 && trunk[40] >= branch[branch.len() - 1], "{:?}", &trunk[38..42]);
     assert!(twig.iter().all(|weight| *weight == 0.0), "no relief, no line");
     // The same without the branch: the trunk begins farther down.
     let alone = self::shown(&[stream(DVec2::new(100.0, 60.0), DVec2::new(100.0, 160.0), [0.0, 3.0], None)], EYE);
-    assert!(alone[0].weights[40] < 0.5);
+    assert!(alone[0][40] < 0.5);
 }
 
 const EYE: DVec3 = DVec3::new(0.0, -3000.0, 1200.0);
@@ -58,8 +55,7 @@ const EYE: DVec3 = DVec3::new(0.0, -3000.0, 1200.0);
 #[test]
 fn lines_fade_with_distance_and_never_pop() {
     let branch = stream(DVec2::new(60.0, 80.0), DVec2::new(100.0, 100.0), [12.0, 20.0], None);
-    let weights =
-        |share: f64| shown(&[branch.clone()], EYE * share * 0.5).pop().map_or(Vec::new(), |shown| shown.weights);
+    let weights = |share: f64| shown(&[branch.clone()], EYE * share * 0.5).pop().unwrap_or_default();
     let (mut last, mut ratio, mut largest) = (weights(1.0), 1.0_f64, 0.0_f32);
     assert!(last.iter().all(|weight| *weight > 0.9), "whole from near");
     while !last.is_empty() && ratio < 1e4 {
@@ -84,11 +80,8 @@ fn own_lines_are_drawn_whatever_the_relief_and_rivers_through_plains() {
     let (brook, mut river) = (flat(80.0, 60.0), flat(110.0, 150.0));
     river.points.iter_mut().for_each(|point| point.length += 17_000.0);
     let shown = shown(&[own, brook, river], EYE);
-    let widest = |i: usize| shown[i].weights.iter().copied().fold(0.0, f32::max);
-    assert!(
-        widest(0) > 0.4 && shown[0].weights.iter().all(|weight| *weight == widest(0)),
-        "order 1 is fine, and whole"
-    );
+    let widest = |i: usize| shown[i].iter().copied().fold(0.0, f32::max);
+    assert!(widest(0) > 0.4 && shown[0].iter().all(|weight| *weight == widest(0)), "order 1 is fine, and whole");
     assert!(widest(1) == 0.0, "a brook without a bed: {}", widest(1));
     assert!(widest(2) > 0.9, "a river without one: {}", widest(2));
 }

@@ -6,7 +6,9 @@
 //! no weaker there. Every ramp is continuous in the eye: lines fade, none pops. The ramps are those that a study of two DEMs of
 //! 30 m found.
 //!
-//! Cost: a projection of each point of each line that may fill some pixels. Does not handle: land that hides a line, which is
+//! What is seen is told by angles about the eye, not by the page: a line is drawn as strongly wherever the eye looks.
+//!
+//! Cost: a look at each point of each line that may fill some pixels. Does not handle: land that hides a line, which is
 //! looked at later.
 
 use glam::{DVec2, DVec3, FloatExt};
@@ -15,7 +17,6 @@ use rayon::prelude::*;
 use super::along::fade;
 use crate::dem::Dem;
 use crate::relief::{LineKind, SurfaceLine, SurfacePoint};
-use crate::view::Perspective;
 
 /// Lengths of a branch on the page up to which it is left out, and from which it is whole, px.
 const LENGTH: [f64; 2] = [10.0, 120.0];
@@ -44,43 +45,55 @@ const RIDGE_WIDTH: [f64; 2] = [60.0, 500.0];
 /// Lines on the land of a DEM, with where their points lie in its world.
 #[derive(Debug, Clone, Default)]
 pub struct Land {
-    /// The lines.
     lines: Vec<SurfaceLine>,
     /// Of each line each point: metres of the exaggerated world, on the surface between samples.
     world: Vec<Vec<DVec3>>,
+    /// Of each line: what it lies in.
+    spheres: Vec<Sphere>,
     /// Exaggerated metres for one of the land.
     exaggeration: f64,
     /// Metres of a cell.
     cell: f64,
 }
 
-/// Where a point of the world stands on a page.
+/// What a line lies in.
+#[derive(Debug, Clone, Copy, Default)]
+struct Sphere {
+    middle: DVec3,
+    radius: f64,
+    /// Of the line, m.
+    length: f64,
+}
+
+/// Where lines are looked at from. What is seen from an eye is the same wherever it looks.
 #[derive(Debug, Clone, Copy)]
-pub struct OnPage {
-    /// Px from its top left corner.
-    pub place: DVec2,
-    /// Near / distance along the view axis.
-    pub depth: f64,
-    /// Pixels that a metre across the view takes there.
-    pub scale: f64,
+pub enum From {
+    /// An eye in the exaggerated world that sees so many pixels for a unit of angle in the middle of its page.
+    Eye(DVec3, f64),
+    /// Straight above, so many pixels for a metre.
+    Above(f64),
 }
 
-impl OnPage {
-    /// In perspective; `None` behind the near plane.
-    pub fn seen(world: DVec3, perspective: &Perspective) -> Option<Self> {
-        let ahead = perspective.distance(world) > perspective.near();
-        let (place, depth) = perspective.project(world);
-        ahead.then(|| Self { place, depth, scale: perspective.scale(depth) })
+impl From {
+    /// Where a place of the world stands about what sees it, px, and how many pixels a metre across the view takes there.
+    fn sees(self, world: DVec3) -> (DVec3, f64) {
+        match self {
+            Self::Eye(eye, focal) => {
+                let scale = focal / world.distance(eye).max(f64::MIN_POSITIVE);
+                ((world - eye) * scale, scale)
+            }
+            Self::Above(scale) => (world.truncate().extend(0.0) * scale, scale),
+        }
     }
-}
 
-/// How a page shows a line: of each of its points.
-#[derive(Debug, Clone, Default)]
-pub struct Shown {
-    /// How strongly, 0 to 1; empty for a line that it does not show.
-    pub weights: Vec<f32>,
-    /// Where; `None` of what stands on no page.
-    pub places: Vec<Option<OnPage>>,
+    /// Most pixels that a line takes.
+    fn most(self, line: &Sphere) -> f64 {
+        let scale = match self {
+            Self::Eye(eye, focal) => focal / (line.middle.distance(eye) - line.radius).max(f64::MIN_POSITIVE),
+            Self::Above(scale) => scale,
+        };
+        line.length * scale
+    }
 }
 
 impl Land {
@@ -91,8 +104,9 @@ impl Land {
             let world = DVec2::new(west, north) + point.at * dem.cell() * DVec2::new(1.0, -1.0);
             world.extend(height(dem, point.at))
         };
-        let world = lines.iter().map(|line| line.points.iter().map(place).collect()).collect();
-        Self { lines, world, exaggeration, cell: dem.cell().min_element() }
+        let world: Vec<Vec<DVec3>> = lines.iter().map(|line| line.points.iter().map(place).collect()).collect();
+        let spheres = world.iter().map(|points| Sphere::about(points)).collect();
+        Self { lines, world, spheres, exaggeration, cell: dem.cell().min_element() }
     }
 
     /// The lines, and where their points lie, metres of the exaggerated world.
@@ -100,15 +114,14 @@ impl Land {
         self.lines.iter().zip(self.world.iter().map(Vec::as_slice))
     }
 
-    /// How a page shows each line, given where it shows points of the world.
-    pub fn shown(&self, on_page: impl Fn(DVec3) -> Option<OnPage> + Sync) -> Vec<Shown> {
-        let of_line = |i: usize| self.alone(i, &on_page);
-        let mut shown: Vec<Shown> = (0..self.lines.len()).into_par_iter().map(of_line).collect();
+    /// How strongly each point of each line is shown, 0 to 1; nothing of lines that are not.
+    pub fn shown(&self, from: From) -> Vec<Vec<f32>> {
+        let mut shown: Vec<(Vec<f32>, f64)> =
+            (0..self.lines.len()).into_par_iter().map(|i| self.alone(i, from)).collect();
         // Branches stand behind what they join.
-        for i in (0..self.lines.len()).rev() {
-            let line = &self.lines[i];
-            let weights = &mut shown[i].weights;
-            if !matches!(line.kind, LineKind::Drainage | LineKind::Ridge) || weights.is_empty() {
+        for (i, line) in self.lines.iter().enumerate().rev() {
+            let weights = &mut shown[i].0;
+            if !is_branch(line) || weights.is_empty() {
                 continue;
             }
             let mut strongest = 0.0_f32;
@@ -116,40 +129,42 @@ impl Land {
                 strongest = strongest.max(*weight);
                 *weight = strongest;
             }
-            let joined = line.joins.map(|at| at.map(|at| at as usize));
-            let onto = joined.and_then(|[onto, at]| shown.get_mut(onto)?.weights.get_mut(at));
+            let onto = line.joins.map(|at| at.map(|at| at as usize));
+            let onto = onto.and_then(|[onto, at]| shown.get_mut(onto)?.0.get_mut(at));
             onto.into_iter().for_each(|weight| *weight = weight.max(strongest));
         }
-        let width = |(line, shown): (&SurfaceLine, &mut Shown)| {
-            let width = width(line, shown) as f32;
-            shown.weights.iter_mut().for_each(|weight| *weight *= width);
+        let wide = |(line, (mut weights, length)): (&SurfaceLine, (Vec<f32>, f64))| {
+            let width = width(line, length) as f32;
+            weights.iter_mut().for_each(|weight| *weight *= width);
+            weights
         };
-        self.lines.par_iter().zip(&mut shown).for_each(width);
-        shown
+        self.lines.iter().zip(shown).map(wide).collect()
     }
 
-    /// A line by its own merit.
-    fn alone(&self, i: usize, on_page: &impl Fn(DVec3) -> Option<OnPage>) -> Shown {
+    /// A line by its own merit, and how long it is seen, px.
+    fn alone(&self, i: usize, from: From) -> (Vec<f32>, f64) {
         let (line, world) = (&self.lines[i], &self.world[i]);
-        let places: Vec<Option<OnPage>> = world.iter().map(|point| on_page(*point)).collect();
-        let steps: Vec<f64> = places.windows(2).map(|pair| step(pair[0], pair[1])).collect();
+        let least = if is_branch(line) { LENGTH[0] } else { PLAIN_LENGTH[0] };
+        if from.most(&self.spheres[i]) <= least {
+            return (Vec::new(), 0.0);
+        }
+        let (places, scales): (Vec<DVec3>, Vec<f64>) = world.iter().map(|point| from.sees(*point)).unzip();
+        let steps: Vec<f64> = places.windows(2).map(|pair| pair[0].distance(pair[1])).collect();
         let length: f64 = steps.iter().sum();
-        let scale = |at: Option<OnPage>| at.map_or(0.0, |at| at.scale);
-        let by_length = match line.kind {
-            LineKind::Shore | LineKind::Own => fade(PLAIN_LENGTH, length),
-            LineKind::Drainage | LineKind::Ridge => {
-                let falls = line.points.iter().zip(&places);
-                let falls = falls.map(|(point, at)| f64::from(point.drop) * self.exaggeration * scale(*at));
-                fade(LENGTH, length).min(fade(DROP, falls.fold(0.0, f64::max)))
-            }
+        let by_length = if is_branch(line) {
+            let falls = line.points.iter().zip(&scales);
+            let falls = falls.map(|(point, scale)| f64::from(point.drop) * self.exaggeration * scale);
+            fade(LENGTH, length).min(fade(DROP, falls.fold(0.0, f64::max)))
+        } else {
+            fade(PLAIN_LENGTH, length)
         };
         if by_length <= 0.0 {
-            return Shown::default();
+            return (Vec::new(), length);
         }
-        let beside = |(point, at): (&SurfacePoint, &Option<OnPage>)| self.beside(line.kind, point, scale(*at));
-        let beside: Vec<f64> = line.points.iter().zip(&places).map(beside).collect();
+        let beside = |(point, scale): (&SurfacePoint, &f64)| self.beside(line.kind, point, *scale);
+        let beside: Vec<f64> = line.points.iter().zip(&scales).map(beside).collect();
         let weights = averaged(&beside, &steps).into_iter().map(|beside| beside.min(by_length) as f32).collect();
-        Shown { weights, places }
+        (weights, length)
     }
 
     /// What the land beside a point says for drawing it, where so many pixels are a metre.
@@ -158,7 +173,7 @@ impl Land {
             return 1.0;
         }
         let [near, middle, far] = ASIDE_CELLS;
-        let cells = (ASIDE / scale.max(1e-12) / self.cell).clamp(near, far);
+        let cells = (ASIDE / scale.max(f64::MIN_POSITIVE) / self.cell).clamp(near, far);
         let [a, b, c] = point.across.map(f64::from);
         let across = match cells <= middle {
             true => a.lerp(b, (cells - near) / (middle - near)),
@@ -171,19 +186,28 @@ impl Land {
     }
 }
 
-/// Width of a line as a share of its pen's.
-fn width(line: &SurfaceLine, shown: &Shown) -> f64 {
+impl Sphere {
+    fn about(points: &[DVec3]) -> Self {
+        let low = points.iter().copied().reduce(DVec3::min).unwrap_or_default();
+        let high = points.iter().copied().reduce(DVec3::max).unwrap_or_default();
+        let length = points.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
+        Self { middle: low.midpoint(high), radius: low.distance(high) / 2.0, length }
+    }
+}
+
+/// Whether a line is drawn for the relief that it tells of, and is of a tree.
+fn is_branch(line: &SurfaceLine) -> bool {
+    matches!(line.kind, LineKind::Drainage | LineKind::Ridge)
+}
+
+/// Width of a line that is seen so long, px, as a share of its pen's.
+fn width(line: &SurfaceLine, length: f64) -> f64 {
     let share = match line.kind {
         LineKind::Drainage | LineKind::Own => (f64::from(line.order) - 1.0) / (WHOLE_ORDER - 1.0),
-        LineKind::Ridge => fade(RIDGE_WIDTH, shown.places.windows(2).map(|pair| step(pair[0], pair[1])).sum()),
+        LineKind::Ridge => fade(RIDGE_WIDTH, length),
         LineKind::Shore => 1.0,
     };
     LEAST_WIDTH.lerp(1.0, share.clamp(0.0, 1.0))
-}
-
-/// From one point to the next on the page, px; nothing where one of them is behind the eye.
-fn step(a: Option<OnPage>, b: Option<OnPage>) -> f64 {
-    a.zip(b).map_or(0.0, |(a, b)| a.place.distance(b.place))
 }
 
 /// Values at points averaged along a line over about [`SOFT`] px to both sides, by its steps.

@@ -5,11 +5,11 @@
 //! rounded to odd numbers of their units: no facet's edge passes there. Cost: a look-up for each pixel of line. Does not handle:
 //! lines over voids, which end there.
 
-use glam::{DVec2, Vec3};
+use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 
 use super::curve::{Bound, Curve, CurvePoint, Place, Sight, Stretch};
-use super::detail::{Land, OnPage, Shown};
+use super::detail::{From, Land};
 use super::{Line, identity::CELL};
 use crate::gpu::uniforms::{Segment, code, seen};
 use crate::relief::{LineKind, SurfaceLine};
@@ -43,10 +43,17 @@ struct Run {
 impl Laid {
     /// What a page shows of lines.
     pub fn new(land: &Land, perspective: &Perspective) -> Self {
-        let shown = land.shown(|world| OnPage::seen(world, perspective));
-        let lines: Vec<(&SurfaceLine, Shown)> = land.iter().map(|(line, _)| line).zip(shown).collect();
-        let runs = lines.par_iter().flat_map_iter(|(line, shown)| runs(line, shown, perspective.size()));
-        let mut runs: Vec<Run> = runs.collect();
+        let shown = land.shown(From::Eye(perspective.eye(), perspective.focal()));
+        let lines: Vec<_> = land.iter().zip(shown).filter(|(_, weights)| !weights.is_empty()).collect();
+        let of_line = |((line, world), weights): &((&SurfaceLine, &[DVec3]), Vec<f32>)| {
+            let place = |point: &DVec3| {
+                let ahead = perspective.distance(*point) > perspective.near();
+                ahead.then(|| perspective.project(*point))
+            };
+            let places: Vec<_> = world.iter().map(place).collect();
+            runs(line, &places, weights, perspective.size())
+        };
+        let mut runs: Vec<Run> = lines.par_iter().flat_map_iter(of_line).collect();
         let mut count = 0;
         runs.retain(|run| {
             count += run.places.len();
@@ -86,22 +93,22 @@ pub(super) fn line_of(kind: LineKind) -> Line {
     }
 }
 
-/// The parts of a line that a page shows.
-fn runs(line: &SurfaceLine, shown: &Shown, page: DVec2) -> Vec<Run> {
+/// The parts of a line that a page shows, given where its points stand, with their depths, and how strongly they are shown.
+fn runs(line: &SurfaceLine, places: &[Option<(DVec2, f64)>], weights: &[f32], page: DVec2) -> Vec<Run> {
     let new = || Run { line: line_of(line.kind), places: Vec::new(), weights: Vec::new(), closed: false };
     let (mut runs, mut run) = (Vec::new(), new());
     let mut finish = |run: &mut Run| {
         let whole = std::mem::replace(run, new());
         runs.extend((whole.places.len() > 1).then_some(whole));
     };
-    let n = shown.weights.len();
+    let n = weights.len();
     let stretches = if line.closed { n } else { n.saturating_sub(1) };
     let bounds = [DVec2::splat(-BEYOND), page + BEYOND];
     for i in 0..stretches {
         let ends = [i, (i + 1) % n];
-        let weights = ends.map(|end| f64::from(shown.weights[end]));
-        let ahead = shown.places[ends[0]].zip(shown.places[ends[1]]).filter(|_| weights != [0.0; 2]);
-        let on_page = ahead.and_then(|(a, b)| Some((a, b, share_within(bounds, a.place, b.place)?)));
+        let shown = ends.map(|end| f64::from(weights[end]));
+        let ahead = places[ends[0]].zip(places[ends[1]]).filter(|_| shown != [0.0; 2]);
+        let on_page = ahead.and_then(|(a, b)| Some((a, b, share_within(bounds, a.0, b.0)?)));
         let Some((a, b, [enter, leave])) = on_page else {
             finish(&mut run);
             continue;
@@ -109,15 +116,15 @@ fn runs(line: &SurfaceLine, shown: &Shown, page: DVec2) -> Vec<Run> {
         if enter > 0.0 {
             finish(&mut run);
         }
-        let steps = (a.place.distance(b.place) * (leave - enter) / STEP).ceil().max(1.0);
+        let steps = (a.0.distance(b.0) * (leave - enter) / STEP).ceil().max(1.0);
         for k in 0..=steps as usize {
             let share = enter + (leave - enter) * k as f64 / steps;
             // Depth is linear on the page; the way on the map is not.
-            let share = share * b.depth / (a.depth + (b.depth - a.depth) * share);
+            let share = share * b.1 / (a.1 + (b.1 - a.1) * share);
             let place = on_lattice(between(line, i, share));
             if run.places.last() != Some(&place) {
                 run.places.push(place);
-                run.weights.push((weights[0] + (weights[1] - weights[0]) * share) as f32);
+                run.weights.push((shown[0] + (shown[1] - shown[0]) * share) as f32);
             }
         }
         if leave < 1.0 {

@@ -8,14 +8,14 @@
 use glam::{DVec2, DVec3, UVec2};
 use rustc_hash::FxHashMap;
 
-use super::curve::Place;
-use super::detail::{Land, OnPage, Shown};
+use super::detail::{From, Land};
 use super::identity::{Held, key, names};
 use super::laid::{line_of, on_lattice};
 use super::simplify::needed;
 use super::{Chain, ChainPoint, Economy, Id, Line, Lines, Recession, economised};
 use crate::dem::Dem;
 use crate::error::Result;
+use crate::relief::SurfacePoint;
 use crate::surface::rim::{RimEdge, rim};
 
 /// Points that lie within this of the rest are left out, px: those between two corners.
@@ -67,9 +67,8 @@ impl Overhead {
 
     /// Lines on the land, `min_gap` px apart.
     pub fn land(&self, land: &Land, min_gap: f64) -> Vec<Chain> {
-        let on_page =
-            |world: DVec3| Some(OnPage { place: self.place(world.truncate()), depth: 1.0, scale: self.px_per_metre });
-        economised(&of_land(land, &land.shown(on_page)), &Economy { min_jump: 0.0, min_gap })
+        let chains = self.of_land(land, &land.shown(From::Above(self.px_per_metre)));
+        economised(&chains, &Economy { min_jump: 0.0, min_gap })
     }
 
     fn middle(&self) -> DVec2 {
@@ -77,35 +76,31 @@ impl Overhead {
         DVec2::new(west + east, south + north) / 2.0
     }
 
+    /// The chains of lines on the land, as strong as they are shown.
+    fn of_land(&self, land: &Land, shown: &[Vec<f32>]) -> Vec<Chain> {
+        let (mut held, mut chains) = (Vec::new(), Vec::new());
+        for ((line, world), weights) in land.iter().zip(shown).filter(|(_, weights)| !weights.is_empty()) {
+            let point = |(world, weight): (&DVec3, &f32)| {
+                let (place, line) = (self.place(world.truncate()), line_of(line.kind));
+                ChainPoint { place, line, depth: 1.0, behind: 1.0, world: *world, crowd: 0, weight: *weight }
+            };
+            let points: Vec<ChainPoint> = world.iter().zip(weights).map(point).collect();
+            let holds = |(pair, point): (&[ChainPoint], &SurfacePoint)| {
+                let way = pair[1].place - pair[0].place;
+                Held { key: key(on_lattice(point.at), way), length: way.length() }
+            };
+            held.push(points.windows(2).zip(&line.points).map(holds).collect::<Vec<_>>());
+            chains.push(Chain { id: None, points, closed: line.closed });
+        }
+        chains.iter_mut().zip(names(&held)).for_each(|(chain, id)| chain.id = id.map(Id::of_land));
+        chains
+    }
+
     /// Where a place of the world stands, px.
     fn place(&self, world: DVec2) -> DVec2 {
         let frame = UVec2::from(self.size).as_dvec2() / 2.0;
         frame + (world - self.middle()) * DVec2::new(1.0, -1.0) * self.px_per_metre
     }
-}
-
-/// The chains of lines on the land.
-fn of_land(land: &Land, shown: &[Shown]) -> Vec<Chain> {
-    let mut held = Vec::new();
-    let mut chains: Vec<Chain> = Vec::new();
-    for ((line, world), shown) in land.iter().zip(shown).filter(|(_, shown)| !shown.weights.is_empty()) {
-        let point = |(i, world): (usize, &DVec3)| {
-            let on_page = shown.places[i]?;
-            let (line, depth) = (line_of(line.kind), on_page.depth as f32);
-            let weight = shown.weights[i];
-            Some(ChainPoint { place: on_page.place, line, depth, behind: depth, world: *world, crowd: 0, weight })
-        };
-        let points: Vec<ChainPoint> = world.iter().enumerate().filter_map(point).collect();
-        let places: Vec<Place> = line.points.iter().map(|point| on_lattice(point.at)).collect();
-        let holds = |pair: &[ChainPoint], at: Place| Held {
-            key: key(at, pair[1].place - pair[0].place),
-            length: pair[0].place.distance(pair[1].place),
-        };
-        held.push(points.windows(2).zip(places).map(|(pair, at)| holds(pair, at)).collect());
-        chains.push(Chain { id: None, points, closed: line.closed });
-    }
-    chains.iter_mut().zip(names(&held)).for_each(|(chain, id)| chain.id = id.map(Id::of_land));
-    chains
 }
 
 /// Rim edges as rings of samples, land on the left as seen from above, in the order of their first samples.

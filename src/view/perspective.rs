@@ -38,9 +38,9 @@ impl Perspective {
         self.size
     }
 
-    /// Pixels that a metre across the view takes at this depth.
-    pub fn scale(&self, depth: f64) -> f64 {
-        self.focal * depth / self.near
+    /// Pixels for each unit of tangent.
+    pub fn focal(&self) -> f64 {
+        self.focal
     }
 
     /// Metres along the view axis to the near plane.
