@@ -68,6 +68,7 @@ mod prepared;
 mod pyramids;
 mod quadtrees;
 mod reflection;
+mod relief;
 mod report;
 mod resample;
 mod same_bytes;

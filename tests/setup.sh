@@ -1,6 +1,6 @@
 # Sourced by tests/run.sh behind examples/setup.sh: a browser, in which the tests look at a report, GDAL's tools, which
 # errors name as remedies and the tests run, poppler, a stranger to whom our PDFs are shown, vpype, which judges the order
-# of a plot, and ffmpeg, which makes motion pictures.
+# of a plot, topotoolbox, which judges where water runs, and ffmpeg, which makes motion pictures.
 browse() {
     for browser in chromium chromium-browser google-chrome; do
         command -v "$browser" >/dev/null 2>&1 && return 0
@@ -31,6 +31,14 @@ judge() {
         echo "no vpype: tests of the order of plotting by a stranger are skipped; install it (pip, or pipx) to run them"
     fi
 }
+hydrology() {
+    [ -x target/topotoolbox/bin/python3 ] && return 0
+    echo "installing topotoolbox in target/topotoolbox"
+    if ! python3 -m venv target/topotoolbox || ! target/topotoolbox/bin/pip install --quiet --disable-pip-version-check topotoolbox; then
+        rm -rf target/topotoolbox
+        echo "no topotoolbox: tests of channels by a stranger are skipped; install it (pip) to run them"
+    fi
+}
 films() {
     command -v ffmpeg >/dev/null 2>&1 && command -v ffprobe >/dev/null 2>&1 && return 0
     if ! command -v apt-get >/dev/null 2>&1 || ! install_packages ffmpeg; then
@@ -41,4 +49,5 @@ browse
 remedies
 poppler
 judge
+hydrology
 films

@@ -549,3 +549,68 @@ pub const LEAP: f64 = 0.12;
 /// Example: .055 where it is twice as far as all others; the depth of the nearest twentieth would go from one ridge to the next,
 /// .4 and more.
 pub const RECESSION_STEP: f64 = 0.08;
+
+/// How near a line has to come to a valley's bottom or a crest, cells.
+///
+/// Example: of cells of 30 m, 12 m to either side.
+pub const BOTTOM_CELLS: f64 = 0.4;
+
+/// How far lines that come so near may be from it on average, cells.
+///
+/// Example: of cells of 30 m, 9 m.
+pub const BOTTOM_MEAN_CELLS: f64 = 0.3;
+
+/// Least share of the bottom, or crest, with a line so near.
+///
+/// Example: of a valley of 200 cells, 180.
+pub const BOTTOM_SHARE: f64 = 0.9;
+
+/// How far from all bottoms a line is elsewhere, cells.
+///
+/// Example: two lines beside a meander, 1 cell from it, are not; a spur's of a valley that has none is.
+pub const ELSEWHERE_CELLS: f64 = 2.0;
+
+/// Most length of lines elsewhere, as a share of that of all bottoms.
+///
+/// Example: 20 cells beside a valley of 200.
+pub const ELSEWHERE_SHARE: f64 = 0.1;
+
+/// Most cells of line a cell of a rough plane, where none belongs.
+///
+/// Example: 225 cells of line on 150 x 150 cells; on rough land there are 10 times as many.
+pub const PLANE_SHARE: f64 = 0.01;
+
+/// Most samples whose water goes over a higher pass than it could, as a share of all: where a way would have crossed another.
+///
+/// Example: 6 of 6 300.
+pub const OVER_THE_LOWEST_PASS: f64 = 0.001;
+
+/// Longest gap between points of a line of the land, cells: half a cell, and what bends to a joint.
+///
+/// Example: over the last 3 cells a line may be moved by 2.
+pub const LINE_SPACING: f64 = 2.0;
+
+/// Most places where ridges and drainage cross, a ridge.
+///
+/// Example: 4 of 374 ridges of the sample, at their outer ends: both are moved by cells where a valley's side is narrow.
+pub const CREASES_CROSS: f64 = 0.02;
+
+/// Most turns by over 30 degrees between pieces of half a cell, as a share of all.
+///
+/// Example: 300 of 15 000, at joints; stairs of the grid turn by 45 at every second.
+pub const BENT: f64 = 0.02;
+
+/// Longest time for flow and areas of a million samples, s: four times what one idle core should take.
+///
+/// Example: .16 s.
+pub const RELIEF_SECONDS: f64 = 1.0;
+
+/// Most memory that takes beside the heights, bytes a sample.
+///
+/// Example: catchments or areas 4, lengths 4, directions, parents or what waits 1 each, the front.
+pub const RELIEF_BYTES: f64 = 16.0;
+
+/// Least share of channels with one of a stranger's within a sample, and the other way.
+///
+/// Example: of 723 samples of west-temple 651.
+pub const STRANGERS_CHANNELS: f64 = 0.9;

@@ -1,6 +1,7 @@
-//! A forest cut into branches: at each junction the longest goes on, the others end.
+//! A forest cut into branches: at each junction the one with the most land above it goes on, the others end.
 //!
-//! Cost: a few passes over the nodes. The branches come longest first, so each after the one it joins.
+//! By length the bed at the head of a valley would end where a longer rill comes down its side. Cost: a few passes over the nodes. The
+//! largest branches come first, so each after the one it joins.
 
 use super::channels::Channels;
 
@@ -13,15 +14,15 @@ pub struct Branch {
     pub joins: Option<u32>,
 }
 
-/// The branches; `length` is of a node, more than that of any above it.
-pub fn branches(channels: &Channels, length: impl Fn(usize) -> f32) -> Vec<Branch> {
+/// The branches; `size` is of a node, more than that of any above it.
+pub fn branches(channels: &Channels, size: impl Fn(usize) -> u32) -> Vec<Branch> {
     let nodes = channels.samples.len();
     // The node above that goes on, where there is one.
     let mut main: Vec<Option<u32>> = vec![None; nodes];
     for node in 0..nodes {
         if let Some(below) = channels.below(node) {
-            let is_longer = main[below].is_none_or(|other| length(node) > length(other as usize));
-            if is_longer {
+            let is_larger = main[below].is_none_or(|other| size(node) > size(other as usize));
+            if is_larger {
                 main[below] = Some(node as u32);
             }
         }
@@ -34,7 +35,7 @@ pub fn branches(channels: &Channels, length: impl Fn(usize) -> f32) -> Vec<Branc
         Branch { nodes, joins }
     };
     let mut branches: Vec<Branch> = (0..nodes).filter(|node| main[*node].is_none()).map(from).collect();
-    let end = |branch: &Branch| branch.nodes.last().map_or(0.0, |last| length(*last as usize));
-    branches.sort_by(|a, b| end(b).total_cmp(&end(a)));
+    let end = |branch: &Branch| branch.nodes.last().map_or(0, |last| size(*last as usize));
+    branches.sort_by_key(|branch| std::cmp::Reverse(end(branch)));
     branches
 }

@@ -24,7 +24,7 @@ pub struct Node {
     pub order: u8,
 }
 
-/// The lines of branches, longest first; `node` tells what is known of one of the branch of a number.
+/// The lines of branches, largest first; `node` tells what is known of one of the branch of a number.
 pub fn lines(
     grid: &Grid,
     branches: &[Branch],

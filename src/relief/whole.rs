@@ -86,13 +86,13 @@ impl Relief {
         }
     }
 
-    /// The lines along which water runs, the longest first, each after the one it joins.
+    /// The lines along which water runs, the largest first, each after the one it joins.
     pub fn drainage(&self, area: ChannelArea) -> Vec<SurfaceLine> {
         let least = self.channel_cells(area);
         let channels = Channels::of(&self.flow, &self.area, least);
         let orders = channels.orders(&self.area, least).strahler;
         let sample = |node: u32| channels.samples[node as usize] as usize;
-        let branches = branches(&channels, |node| self.area.length[sample(node as u32)]);
+        let branches = branches(&channels, |node| self.area.cells[sample(node as u32)]);
         let source = |node: u32| self.grid.smoothed[self.source(sample(node))];
         let tops: Vec<f32> =
             branches.iter().map(|branch| branch.nodes.first().map_or(f32::NAN, |node| source(*node))).collect();
@@ -104,7 +104,7 @@ impl Relief {
         lines(&self.grid, &branches, Follows::Valley, node)
     }
 
-    /// The lines along which water parts, the longest first, each after the one it joins.
+    /// The lines along which water parts, the largest first, each after the one it joins.
     ///
     /// They are where water would gather on the land turned upside down, from which it leaves at the highest sample.
     ///
@@ -122,7 +122,7 @@ impl Relief {
         let goes_on = |i: usize| flow.direction(i).is_some_and(|k| !beds.crosses(i, k));
         let crests = Channels::among(&flow, belongs, goes_on);
         let sample = |node: u32| crests.samples[node as usize] as usize;
-        let branches = branches(&crests, |node| area.length[sample(node as u32)]);
+        let branches = branches(&crests, |node| area.cells[sample(node as u32)]);
         let steps = frame.steps();
         let node = |_: usize, node: u32| {
             let i = sample(node);
@@ -138,7 +138,7 @@ impl Relief {
     /// Where water runs in beds, as ridges are told by.
     fn beds(&self) -> Beds<'_> {
         let channels = Channels::of(&self.flow, &self.area, CELLS);
-        let branches = branches(&channels, |node| self.area.length[channels.samples[node] as usize]);
+        let branches = branches(&channels, |node| self.area.cells[channels.samples[node] as usize]);
         Beds::new(&self.flow, &self.area, &self.grid.smoothed, channels, &branches)
     }
 
