@@ -78,7 +78,7 @@ fn own(places: &[DVec2], closed: bool) -> SurfaceLine {
 
 fn renderer(lines: Vec<SurfaceLine>) -> Renderer {
     let surface = Arc::new(Surface::new(RIDGE.dem(|_, _| true)));
-    let land = Arc::new(Land::new(surface.dem(), 1.0, lines));
+    let land = Arc::new(Land::new(surface.dem(), 1.0, lines).expect("lines"));
     let mut renderer = Renderer::new(gpu().clone(), surface).expect("a renderer");
     renderer.set_land(Some(land));
     renderer

@@ -31,7 +31,7 @@ fn stream(from: DVec2, to: DVec2, depth: [f32; 2], joins: Option<[u32; 2]>) -> S
 }
 
 fn shown(lines: &[SurfaceLine], eye: DVec3) -> Vec<Vec<f32>> {
-    Land::new(&plain(), 1.0, lines.to_vec()).shown(From::Eye(eye, 693.0))
+    Land::new(&plain(), 1.0, lines.to_vec()).expect("lines").shown(From::Eye(eye, 693.0))
 }
 
 #[test]

@@ -9,7 +9,7 @@ use crate::dem::Dem;
 use crate::error::{Error, Message, Result, Setting};
 use crate::ink::Style;
 use crate::line::Land;
-use crate::relief::{ChannelArea, Crease, LandWanted, SurfaceLine, kept};
+use crate::relief::{ChannelArea, Crease, FlowLines, LandWanted, SurfaceLine};
 
 /// The flags, as typed.
 #[derive(Debug, Clone, clap::Args)]
@@ -85,15 +85,15 @@ impl LandArguments {
     ) -> Result<Land> {
         let mut lines = self.lines.read(dem, allow_remote, talk)?;
         let found = |crease: &Crease| match crease {
-            Crease::Drainage => Some(kept::Crease::Drainage(wanted.channel_area)),
-            Crease::Ridges => Some(kept::Crease::Ridges),
+            Crease::Drainage => Some(FlowLines::Drainage(wanted.channel_area)),
+            Crease::Ridges => Some(FlowLines::Ridges),
             Crease::Shores => None,
         };
-        let asked: Vec<kept::Crease> = wanted.creases.iter().filter_map(found).collect();
+        let asked: Vec<FlowLines> = wanted.creases.iter().filter_map(found).collect();
         let warn = |message: &Message| talk.warn(&told(message));
         let hearing = Hearing { warn: &warn, progress: &|done| talk.progress("looking for creases", 0.2 + 0.1 * done) };
         cache.creases(dem, exaggeration, &asked, hearing)?.into_iter().for_each(|more| append(&mut lines, more));
-        Ok(Land::new(dem, exaggeration, lines))
+        Land::new(dem, exaggeration, lines)
     }
 }
 

@@ -16,7 +16,8 @@ use rayon::prelude::*;
 
 use super::along::fade;
 use crate::dem::Dem;
-use crate::relief::{LineKind, SurfaceLine, SurfacePoint};
+use crate::error::Result;
+use crate::relief::{LineKind, SurfaceLine, SurfacePoint, spacing};
 
 /// Lengths of a branch on the page up to which it is left out, and from which it is whole, px.
 const LENGTH: [f64; 2] = [10.0, 120.0];
@@ -98,15 +99,20 @@ impl From {
 
 impl Land {
     /// Lines on the land of a DEM whose heights are exaggerated by this factor.
-    pub fn new(dem: &Dem, exaggeration: f64, lines: Vec<SurfaceLine>) -> Self {
+    ///
+    /// # Errors
+    /// As [`Dem::spaced`].
+    pub fn new(dem: &Dem, exaggeration: f64, lines: Vec<SurfaceLine>) -> Result<Self> {
+        let (spacing, heights) = (spacing(dem), Heights::of(dem)?);
         let [west, .., north] = dem.extent();
         let place = |point: &SurfacePoint| {
             let world = DVec2::new(west, north) + point.at * dem.cell() * DVec2::new(1.0, -1.0);
-            world.extend(height(dem, point.at))
+            world.extend(heights.at(point.at))
         };
         let world: Vec<Vec<DVec3>> = lines.iter().map(|line| line.points.iter().map(place).collect()).collect();
         let spheres = world.iter().map(|points| Sphere::about(points)).collect();
-        Self { lines, world, spheres, exaggeration, cell: dem.cell().min_element() }
+        let cell = dem.cell().min_element() * spacing as f64;
+        Ok(Self { lines, world, spheres, exaggeration, cell })
     }
 
     /// The lines, and where their points lie, metres of the exaggerated world.
@@ -231,14 +237,43 @@ fn averaged(values: &[f64], steps: &[f64]) -> Vec<f64> {
     sums.into_iter().map(|[sum, mass]| sum / mass).collect()
 }
 
-/// Exaggerated metres of the land between its samples, of those that are there.
-fn height(dem: &Dem, at: DVec2) -> f64 {
-    let (cell, share) = (at.floor(), at.fract());
-    let corners = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(x, y)| {
-        let weight = if x == 1 { share.x } else { 1.0 - share.x } * if y == 1 { share.y } else { 1.0 - share.y };
-        let [c, r] = [cell.x as usize + x, cell.y as usize + y];
-        dem.height(c, r).filter(|_| weight > 0.0).map_or([0.0; 2], |height| [f64::from(height) * weight, weight])
-    });
-    let [sum, weight] = corners.into_iter().fold([0.0; 2], |a, b| [a[0] + b[0], a[1] + b[1]]);
-    if weight > 0.0 { sum / weight } else { 0.0 }
+/// Heights of a DEM to tell distances by: of one that stays in its file every k-th.
+enum Heights<'a> {
+    Held(&'a Dem),
+    Spaced { spacing: f64, columns: usize, heights: Vec<f32> },
+}
+
+impl<'a> Heights<'a> {
+    fn of(dem: &'a Dem) -> Result<Self> {
+        if !dem.is_filed() {
+            return Ok(Self::Held(dem));
+        }
+        let spacing = spacing(dem);
+        let size = [dem.columns(), dem.rows()].map(|samples| samples.div_ceil(spacing));
+        let heights = dem.spaced([0, 0], spacing, size)?;
+        Ok(Self::Spaced { spacing: spacing as f64, columns: size[0], heights })
+    }
+
+    /// Exaggerated metres between samples, of those that are there.
+    fn at(&self, at: DVec2) -> f64 {
+        let at = if let Self::Spaced { spacing, .. } = self { at / *spacing } else { at };
+        let (cell, share) = (at.floor(), at.fract());
+        let corners = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(x, y)| {
+            let weight = if x == 1 { share.x } else { 1.0 - share.x } * if y == 1 { share.y } else { 1.0 - share.y };
+            let height = self.sample(cell.x as usize + x, cell.y as usize + y).filter(|_| weight > 0.0);
+            height.map_or([0.0; 2], |height| [f64::from(height) * weight, weight])
+        });
+        let [sum, weight] = corners.into_iter().fold([0.0; 2], |a, b| [a[0] + b[0], a[1] + b[1]]);
+        if weight > 0.0 { sum / weight } else { 0.0 }
+    }
+
+    fn sample(&self, c: usize, r: usize) -> Option<f32> {
+        match self {
+            Self::Held(dem) => dem.height(c, r),
+            Self::Spaced { columns, heights, .. } => {
+                let inside = c < *columns;
+                heights.get(r * columns + c).copied().filter(|height| inside && height.is_finite())
+            }
+        }
+    }
 }

@@ -33,7 +33,12 @@ impl Grid {
                 *onto = height.map_or(f32::NAN, |height| (f64::from(height) / exaggeration) as f32);
             }
         }
-        Ok(Self { smoothed: smoothed(frame, &heights), frame, heights })
+        Ok(Self::new(frame, heights))
+    }
+
+    /// Of framed heights, NaN at voids.
+    pub fn new(frame: Frame, heights: Vec<f32>) -> Self {
+        Self { smoothed: smoothed(frame, &heights), frame, heights }
     }
 
     /// Metres at a place between samples, linear between them; NaN beside a void.

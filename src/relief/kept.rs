@@ -1,10 +1,12 @@
-//! Lines of a held DEM, kept in the cache by its heights: a file of its own for each kind.
+//! Lines of a DEM that flow tells, kept in the cache by its heights: a file of its own for each kind.
+//!
+//! Those of a DEM that stays in its file are found on blocks of samples ([`coarse`](super::coarse)).
 //!
 //! ```text
 //! header | lines | points | hash of all before
 //! ```
 //!
-//! Cost: a hash of the heights; 16 bytes a line, 40 a point. Not handled: filed DEMs.
+//! Cost: a hash of the heights; 16 bytes a line, 40 a point.
 
 use std::io::{self, ErrorKind, Read};
 
@@ -12,6 +14,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::DVec2;
 use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
+use super::coarse::{lowest_and_highest, spacing};
 use super::whole::{ChannelArea, Relief};
 use super::{LineKind, SurfaceLine, SurfacePoint};
 use crate::cache::{Cache, Hearing, Kept, Key, Kind, Sheet, not_kept};
@@ -27,7 +30,7 @@ const NONE: [u32; 2] = [u32::MAX; 2];
 
 /// Lines that are found by the relief alone.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Crease {
+pub enum FlowLines {
     /// Where water runs; beds begin with so much land.
     Drainage(ChannelArea),
     /// Where it parts.
@@ -60,7 +63,7 @@ struct Point {
     zero: f32,
 }
 
-impl Crease {
+impl FlowLines {
     fn kind(self) -> LineKind {
         match self {
             Self::Drainage(_) => LineKind::Drainage,
@@ -86,55 +89,85 @@ impl Crease {
 }
 
 impl Cache {
-    /// The lines of a held DEM whose heights are exaggerated by a factor, of each kind that is asked for: known or found.
+    /// The lines of a DEM whose heights are exaggerated by a factor, of each kind that is asked for: known or found.
     ///
     /// # Errors
-    /// [`Error::Limit`](crate::error::Error::Limit) for a filed DEM; those of [`Relief`].
+    /// Those of [`Relief`] and of reading the samples.
     pub fn creases(
         &self,
         dem: &Dem,
         exaggeration: f64,
-        creases: &[Crease],
+        creases: &[FlowLines],
         hearing: Hearing<'_>,
     ) -> Result<Vec<Vec<SurfaceLine>>> {
         let heights = digest(dem, exaggeration)?;
         // Of what is not known, found once.
-        let mut relief = None;
-        let mut of_kind = |crease: &Crease| {
+        let mut reliefs = None;
+        let mut of_kind = |crease: &FlowLines| {
+            let mut find = |sheet: Option<(Sheet, &Key)>, progress: &dyn Fn(f64)| {
+                let (lowest, highest) = match &mut reliefs {
+                    Some(reliefs) => reliefs,
+                    none => none.insert(both(dem, exaggeration, progress)?),
+                };
+                let relief = match crease {
+                    FlowLines::Drainage(_) => lowest,
+                    FlowLines::Ridges => highest.as_mut().unwrap_or(lowest),
+                };
+                let lines = on_dem(crease.lines(relief)?, dem);
+                let kept = sheet.map(|(sheet, key)| (write(sheet, &lines), key));
+                if let Some((Err(error), key)) = kept {
+                    (hearing.warn)(&not_kept(key, &error));
+                }
+                Ok(lines)
+            };
+            // Files that are not on the disk may be others next time.
+            let Some(heights) = heights else { return find(None, hearing.progress) };
             let mut hash = Xxh3::new();
             hash.update(&heights.to_le_bytes());
             crease.code().iter().for_each(|code| hash.update(&code.to_le_bytes()));
             let key = Key { kind: KIND, hash: hash.digest128(), of: dem.label() };
-            self.get(
-                &key,
-                hearing,
-                |kept| recall(kept, crease.kind()),
-                |sheet, _| {
-                    let relief = match &mut relief {
-                        Some(relief) => relief,
-                        none => none.insert(Relief::of(dem, exaggeration)?),
-                    };
-                    let lines = crease.lines(relief)?;
-                    if let Some(error) = sheet.and_then(|sheet| write(sheet, &lines).err()) {
-                        (hearing.warn)(&not_kept(&key, &error));
-                    }
-                    Ok(lines)
-                },
-            )
+            let make = |sheet: Option<Sheet>, progress: &dyn Fn(f64)| find(sheet.map(|sheet| (sheet, &key)), progress);
+            self.get(&key, hearing, |kept| recall(kept, crease.kind()), make)
         };
         creases.iter().map(&mut of_kind).collect()
     }
 }
 
+/// Where water runs on a DEM and, of a filed one, where it would on the highest samples of its blocks.
+fn both(dem: &Dem, exaggeration: f64, progress: &dyn Fn(f64)) -> Result<(Relief, Option<Relief>)> {
+    if !dem.is_filed() {
+        return Ok((Relief::of(dem, exaggeration)?, None));
+    }
+    let [lowest, highest] = lowest_and_highest(dem, exaggeration, progress)?;
+    Ok((Relief::on(lowest)?, Some(Relief::on(highest)?)))
+}
+
+/// Lines that were found on blocks of a DEM, on its samples.
+fn on_dem(mut lines: Vec<SurfaceLine>, dem: &Dem) -> Vec<SurfaceLine> {
+    let (side, last) = (spacing(dem) as f64, DVec2::new(dem.columns() as f64, dem.rows() as f64) - 1.0);
+    if side > 1.0 {
+        let points = lines.iter_mut().flat_map(|line| &mut line.points);
+        points.for_each(|point| point.at = ((point.at + 0.5) * side - 0.5).min(last));
+    }
+    lines
+}
+
 /// Of all that the lines of a DEM depend on.
-fn digest(dem: &Dem, exaggeration: f64) -> Result<u128> {
-    let samples = dem.held()?;
+fn digest(dem: &Dem, exaggeration: f64) -> Result<Option<u128>> {
     let mut hash = Xxh3::new();
-    hash.update(bytemuck::cast_slice(samples.heights()));
-    hash.update(bytemuck::cast_slice(samples.valid()));
+    match dem.held() {
+        Ok(samples) => {
+            hash.update(bytemuck::cast_slice(samples.heights()));
+            hash.update(bytemuck::cast_slice(samples.valid()));
+        }
+        Err(_) => match dem.stamp() {
+            Some(stamp) => hash.update(&stamp.to_le_bytes()),
+            None => return Ok(None),
+        },
+    }
     let numbers = [dem.columns() as f64, dem.rows() as f64, dem.cell().x, dem.cell().y, exaggeration];
     hash.update(bytemuck::bytes_of(&numbers));
-    Ok(hash.digest128())
+    Ok(Some(hash.digest128()))
 }
 
 /// Writes and publishes lines.

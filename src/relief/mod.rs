@@ -9,13 +9,14 @@ pub mod area;
 pub mod bits;
 pub mod branches;
 pub mod channels;
+mod coarse;
 mod crease;
 pub mod flood;
 pub mod flow;
 pub mod frame;
 pub mod grid;
 mod heap;
-pub mod kept;
+mod kept;
 pub mod lines;
 pub mod net;
 mod own;
@@ -31,7 +32,9 @@ pub mod whole;
 
 use glam::DVec2;
 
+pub use coarse::spacing;
 pub use crease::{Crease, LandWanted};
+pub use kept::FlowLines;
 pub use own::own_lines;
 pub use whole::{ChannelArea, Relief};
 

@@ -46,7 +46,14 @@ impl Relief {
     /// # Errors
     /// [`Error::Limit`](crate::error::Error::Limit) for a filed one.
     pub fn of(dem: &Dem, exaggeration: f64) -> Result<Self> {
-        let grid = Grid::of(dem, exaggeration)?;
+        Self::on(Grid::of(dem, exaggeration)?)
+    }
+
+    /// Of these heights.
+    ///
+    /// # Errors
+    /// [`Error::Mistake`](crate::error::Error::Mistake) where the flow goes round in a circle.
+    pub fn on(grid: Grid) -> Result<Self> {
         let sea = sea(grid.frame, &grid.heights);
         let flow = Flow::of(grid.frame, &grid.smoothed, Ends::Rim(&sea));
         let area = Area::of(&flow, &sea)?;

@@ -5,15 +5,15 @@ use std::cell::RefCell;
 use hachure::cache::{Cache, Hearing};
 use hachure::cli::words::told;
 use hachure::dem::Dem;
-use hachure::relief::{ChannelArea, Crease, SurfaceLine};
+use hachure::relief::{ChannelArea, FlowLines, SurfaceLine};
 use tempfile::TempDir;
 
 use super::rough;
 
-const BOTH: [Crease; 2] = [Crease::Drainage(ChannelArea::Auto), Crease::Ridges];
+const BOTH: [FlowLines; 2] = [FlowLines::Drainage(ChannelArea::Auto), FlowLines::Ridges];
 
 /// The lines, and what was said.
-fn creases(cache: &Cache, dem: &Dem, exaggeration: f64, creases: &[Crease]) -> (Vec<Vec<SurfaceLine>>, Vec<String>) {
+fn creases(cache: &Cache, dem: &Dem, exaggeration: f64, creases: &[FlowLines]) -> (Vec<Vec<SurfaceLine>>, Vec<String>) {
     let said = RefCell::new(Vec::new());
     let warn = |message: &hachure::error::Message| said.borrow_mut().push(told(message));
     let lines = cache.creases(dem, exaggeration, creases, Hearing { warn: &warn, progress: &|_| () }).expect("creases");
@@ -45,17 +45,17 @@ fn each_is_kept_by_all_that_it_depends_on() {
     let (folder, dem) = (TempDir::new().expect("a folder"), rough(5, [80, 70]));
     let cache = Cache::in_folder(folder.path().to_owned());
     let mut count = 0;
-    let mut is_new = |dem: &Dem, exaggeration: f64, crease: Crease| {
+    let mut is_new = |dem: &Dem, exaggeration: f64, crease: FlowLines| {
         creases(&cache, dem, exaggeration, &[crease]);
         let before = std::mem::replace(&mut count, files(&folder).len());
         assert_eq!(count, before + 1, "{crease:?}, {exaggeration}");
     };
-    is_new(&dem, 1.0, Crease::Ridges);
-    is_new(&dem, 2.0, Crease::Ridges);
-    is_new(&rough(6, [80, 70]), 1.0, Crease::Ridges);
-    is_new(&dem, 1.0, Crease::Drainage(ChannelArea::Auto));
-    is_new(&dem, 1.0, Crease::Drainage(ChannelArea::SquareMetres(1e4)));
-    is_new(&dem, 1.0, Crease::Drainage(ChannelArea::SquareMetres(2e4)));
+    is_new(&dem, 1.0, FlowLines::Ridges);
+    is_new(&dem, 2.0, FlowLines::Ridges);
+    is_new(&rough(6, [80, 70]), 1.0, FlowLines::Ridges);
+    is_new(&dem, 1.0, FlowLines::Drainage(ChannelArea::Auto));
+    is_new(&dem, 1.0, FlowLines::Drainage(ChannelArea::SquareMetres(1e4)));
+    is_new(&dem, 1.0, FlowLines::Drainage(ChannelArea::SquareMetres(2e4)));
 }
 
 #[test]
