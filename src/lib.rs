@@ -31,12 +31,13 @@
 //! |---|---|---|---|
 //! | read | raster files | [`Dem`](dem::Dem): a north-up grid of metres, voids marked | [`geo::read()`], CPU |
 //! | surface | the grid | [`Surface`](surface::Surface): one normal a sample, cubic PN triangles between them | CPU, once a DEM |
+//! | land | the grid, vector files | [`SurfaceLine`](relief::SurfaceLine)s: drainage, ridges, shores, own lines, where they are asked for | [`Cache::creases`](cache::Cache::creases), CPU, kept |
 //! | view | what is [`Fixed`](view::Fixed) of it, or nothing | [`Camera`](view::Camera): eye, directions, page | CPU |
 //! | flight | a way over the land | the camera of each: [`Flight`](view::Flight) | CPU |
 //! | plan | what is asked ([`Plan`](plan::Plan): method, level, border), a camera | [`Frame`](plan::Frame): lattice, batches, passes, what is left out | CPU |
 //! | upload | surface and frame | [`Renderer`](render::Renderer): buffers and compiled passes | what is not there yet |
 //! | frame | plan and camera | the mask, on the device: tessellate, facing, rasterize, silhouette, border | [`Renderer::frame`](render::Renderer::frame), GPU |
-//! | curves | the frame | [`Curve`](line::Curve)s on the surface: contours and rims, linked; each stretch seen or not | [`Renderer::curves`](render::Renderer::curves), GPU, CPU |
+//! | curves | the frame | [`Curve`](line::Curve)s on the surface: contours and rims, linked, and lines of the land; each stretch seen or not | [`Renderer::curves`](render::Renderer::curves), GPU, CPU |
 //! | read back | the mask | [`Drawn`](render::Drawn): ink, kind, sub-pixel place and depth a pixel | [`Renderer::read`](render::Renderer::read) |
 //! | page | plan and camera | [`Page`](render::Page): ink and visible chains, frame and read-back for each piece of a page of any size | [`Renderer::page`](render::Renderer::page) |
 //! | line | the page | [`Lines`](line::Lines): chains on the page and in the world, with weights; or traced from the ink | [`Page::lines`](render::Page::lines), CPU |

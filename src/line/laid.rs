@@ -11,7 +11,9 @@ use rayon::prelude::*;
 use super::curve::{Bound, Curve, CurvePoint, Place, Sight, Stretch};
 use super::detail::{From, Land};
 use super::{Line, identity::CELL};
+use crate::error::{Error, Result, Setting};
 use crate::gpu::uniforms::{Segment, code, seen};
+use crate::message;
 use crate::relief::{LineKind, SurfaceLine};
 use crate::view::Perspective;
 use crate::view::cut::share_within;
@@ -42,7 +44,10 @@ struct Run {
 
 impl Laid {
     /// What a page shows of lines.
-    pub fn new(land: &Land, perspective: &Perspective) -> Self {
+    ///
+    /// # Errors
+    /// [`Error::Limit`] where they are longer than a device numbers their points.
+    pub fn new(land: &Land, perspective: &Perspective) -> Result<Self> {
         let shown = land.shown(From::Eye(perspective.eye(), perspective.focal()));
         let lines: Vec<_> = land.iter().zip(shown).filter(|(_, weights)| !weights.is_empty()).collect();
         let of_line = |((line, world), weights): &((&SurfaceLine, &[DVec3]), Vec<f32>)| {
@@ -53,13 +58,13 @@ impl Laid {
             let places: Vec<_> = world.iter().map(place).collect();
             runs(line, &places, weights, perspective.size())
         };
-        let mut runs: Vec<Run> = lines.par_iter().flat_map_iter(of_line).collect();
-        let mut count = 0;
-        runs.retain(|run| {
-            count += run.places.len();
-            count <= MOST
-        });
-        Self { places: runs.iter().flat_map(|run| run.places.iter().copied()).collect(), runs }
+        let runs: Vec<Run> = lines.par_iter().flat_map_iter(of_line).collect();
+        let places: Vec<Place> = runs.iter().flat_map(|run| run.places.iter().copied()).collect();
+        if places.len() > MOST {
+            let what = format!("lines of the land are {} px long on the page, {MOST} can be laid", places.len());
+            return Err(Error::limit(what, message!["use a smaller ", Setting::Size, ", or fewer ", Setting::Creases]));
+        }
+        Ok(Self { places, runs })
     }
 
     /// The curves of these lines, by the points that the device found on the page; the others of `segments` play no part.

@@ -36,7 +36,7 @@ impl Renderer {
         else {
             return Ok(Laid::default());
         };
-        let laid = Laid::new(&land, &self.perspective(frame));
+        let laid = Laid::new(&land, &self.perspective(frame))?;
         self.curves.lay(&self.gpu, &laid.places)?;
         self.stages.fit(&self.gpu, frame, &self.scene, &self.page, &self.curves)?;
         Ok(laid)
