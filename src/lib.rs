@@ -31,7 +31,7 @@
 //! |---|---|---|---|
 //! | read | raster files | [`Dem`](dem::Dem): a north-up grid of metres, voids marked | [`geo::read()`], CPU |
 //! | surface | the grid | [`Surface`](surface::Surface): one normal a sample, cubic PN triangles between them | CPU, once a DEM |
-//! | land | the grid, vector files | [`SurfaceLine`](relief::SurfaceLine)s: drainage, ridges, shores, own lines, where they are asked for | [`Cache::creases`](cache::Cache::creases), CPU, kept |
+//! | relief | heights without exaggeration, vector files | [`SurfaceLine`](relief::SurfaceLine)s: [`Relief`](relief::Relief), kept by [`Cache::creases`](cache::Cache::creases), and [`own_lines`](relief::own_lines) | CPU, where they are asked for |
 //! | view | what is [`Fixed`](view::Fixed) of it, or nothing | [`Camera`](view::Camera): eye, directions, page | CPU |
 //! | flight | a way over the land | the camera of each: [`Flight`](view::Flight) | CPU |
 //! | plan | what is asked ([`Plan`](plan::Plan): method, level, border), a camera | [`Frame`](plan::Frame): lattice, batches, passes, what is left out | CPU |

@@ -22,7 +22,7 @@ impl Area {
     /// Of a flow; what `sea` holds is no rim.
     ///
     /// # Errors
-    /// [`Error::Mistake`] where the flow goes round in a circle.
+    /// [`Error::Mistake`] where the flow goes round in a circle or ends in a pit.
     pub fn of(flow: &Flow, sea: &Bits) -> Result<Self> {
         const DONE: u8 = u8::MAX;
         let frame = flow.frame();
@@ -31,10 +31,11 @@ impl Area {
         let mut length = vec![0.0_f32; frame.samples()];
         let mut cut = Bits::none(frame.samples());
         let mut waits = vec![0_u8; frame.samples()];
-        let mut land = 0;
+        let [mut land, mut stuck] = [0_usize; 2];
         for i in frame.indices().filter(|i| flow.is_land(*i)) {
             cells[i] = 1;
             land += 1;
+            stuck += usize::from(flow.is_stuck(i));
             if let Some(down) = flow.down(i) {
                 waits[down] += 1;
             }
@@ -58,8 +59,9 @@ impl Area {
                 i = down;
             }
         }
-        if given != land {
-            return Err(Error::mistake(format!("water of {} samples goes round in a circle", land - given)));
+        if given != land || stuck > 0 {
+            let what = format!("water of {} samples goes round in a circle and stands still in {stuck}", land - given);
+            return Err(Error::mistake(what));
         }
         Ok(Self { cells, length, cut })
     }

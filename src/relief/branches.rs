@@ -1,7 +1,7 @@
 //! A forest cut into branches: at each junction the one with the most land above it goes on, the others end.
 //!
-//! By length the bed at the head of a valley would end where a longer rill comes down its side. Cost: a few passes over the nodes. The
-//! largest branches come first, so each after the one it joins.
+//! By length the bed at the head of a valley would end where a longer rill comes down its side. Cost: a few passes over the
+//! nodes. The largest branches come first, so each after the one it joins.
 
 use super::channels::Channels;
 
@@ -38,4 +38,18 @@ pub fn branches(channels: &Channels, size: impl Fn(usize) -> u32) -> Vec<Branch>
     let end = |branch: &Branch| branch.nodes.last().map_or(0, |last| size(*last as usize));
     branches.sort_by_key(|branch| std::cmp::Reverse(end(branch)));
     branches
+}
+
+/// Those of at least so many nodes, and those that one of them joins.
+pub fn lasting(branches: Vec<Branch>, channels: &Channels, least: usize) -> Vec<Branch> {
+    let mut joined = vec![false; channels.samples.len()];
+    let mut left: Vec<Branch> = Vec::new();
+    for branch in branches.into_iter().rev() {
+        if branch.nodes.len() >= least || branch.nodes.iter().any(|node| joined[*node as usize]) {
+            branch.joins.iter().for_each(|node| joined[*node as usize] = true);
+            left.push(branch);
+        }
+    }
+    left.reverse();
+    left
 }

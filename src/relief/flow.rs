@@ -112,7 +112,12 @@ impl Flow {
         Some(usize::from(self.to[i])).filter(|k| *k < 8)
     }
 
-    /// From where water comes.
+    /// Whether water ends here where it must not: at a pit that was not left.
+    pub fn is_stuck(&self, i: usize) -> bool {
+        self.to[i] == NONE
+    }
+
+    /// Numbers of the neighbours from which water comes, and where they are.
     pub fn donors(&self, i: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
         let around = self.steps.iter().enumerate().map(move |(k, step)| (k, i.wrapping_add(*step)));
         around.filter(|(k, from)| usize::from(self.to[*from]) == (k + 4) % 8)

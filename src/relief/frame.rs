@@ -62,8 +62,18 @@ impl Frame {
         AROUND.map(|[c, r]| (DVec2::new(c as f64, r as f64) * self.cell).length())
     }
 
-    /// Side of a square of a cell's area, metres.
+    /// Square metres of a cell.
+    pub fn area(self) -> f64 {
+        self.cell.x * self.cell.y
+    }
+
+    /// Side of a square of that area, metres.
     pub fn side(self) -> f64 {
-        (self.cell.x * self.cell.y).sqrt()
+        self.area().sqrt()
+    }
+
+    /// The nearest place on the map of the DEM that is not outside.
+    pub fn within(self, at: DVec2) -> DVec2 {
+        at.clamp(DVec2::ZERO, DVec2::new(self.size[0] as f64, self.size[1] as f64) - 1.0)
     }
 }

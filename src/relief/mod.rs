@@ -4,31 +4,31 @@
 //! All are [`SurfaceLine`]s: polylines on the map of a DEM that lie on its surface, with what of the relief about each point tells
 //! whether a page can show it.
 
-pub mod across;
+mod across;
 pub mod area;
 pub mod bits;
-pub mod branches;
+mod branches;
 pub mod channels;
 mod coarse;
 mod crease;
-pub mod flood;
+mod flood;
 pub mod flow;
 pub mod frame;
 pub mod grid;
 mod heap;
 mod kept;
-pub mod lines;
-pub mod net;
+mod lines;
+mod net;
 mod own;
-pub mod parting;
-pub mod prune;
+mod parting;
+mod prune;
 mod smooth;
-pub mod steepest;
+mod steepest;
 pub mod threshold;
-pub mod tops;
-pub mod trace;
-pub mod water;
-pub mod whole;
+mod tops;
+mod trace;
+mod water;
+mod whole;
 
 use glam::DVec2;
 

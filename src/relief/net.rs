@@ -1,9 +1,8 @@
 //! Lines that do not cross: each ends where it comes near one that lies already.
 //!
 //! Lines are laid one after the other. A line whose beginning is near another begins where it has left that; it ends on the first
-//! that it comes near to, after which it would run beside it, no matter which one its water meets in the end. Cost: a look at a few cells a place; 4
-//! bytes a cell while they are laid.
-//! Not handled: a line that comes near itself.
+//! that it comes near to, after which it would run beside it, no matter which one its water meets in the end. Cost: a look at a
+//! few cells a place; 4 bytes a cell while they are laid. Not handled: a line that comes near itself.
 
 use glam::DVec2;
 

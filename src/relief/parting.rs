@@ -1,7 +1,7 @@
 //! How far the waters on two sides of a ridge run before they meet.
 //!
-//! Both are followed down to where they run in beds, and from there by whole branches: the one whose branch ends with less land above it
-//! goes on, for what lies below has more (lowest common ancestor by paths; Sleator and Tarjan 1983). Cost: a few steps a ridge's
+//! Both are followed down to where they run in beds, and from there by whole branches: the one whose branch ends with less land
+//! above it goes on, for what lies below has more (lowest common ancestor by paths; Sleator and Tarjan 1983). Cost: a few steps a ridge's
 //! sample. Waters that meet before both run in beds were one all the time: else any two rills side by side would part.
 //! Those that never meet, on coasts and at the DEM's edge, part as far as the shorter of them runs: faces that drain straight to
 //! the sea have no beds. Not handled: waters that meet beyond the DEM's edge.

@@ -1,8 +1,9 @@
-//! Lines without what nobody would draw: beginnings that are neither in a valley nor on a ridge, stumps, and what runs beside others.
+//! Lines without what nobody would draw: beginnings that are neither in a valley nor on a ridge, stumps, and what runs beside
+//! others.
 //!
-//! A line begins where another joins it, where it is long, or where it begins to show: the land rises, or falls, to both sides at once, and
-//! by a hundredth and by a tenth of how much the line does, so contours bend by six degrees, at one of three distances. Without that
-//! water that runs down a plane side by side would be as many lines. Cost: a pass over the points.
+//! A line begins where another joins it, where it is long, or where it begins to show: the land rises, or falls, to both sides at
+//! once, and at one of three distances by a hundredth and by a tenth of how much the line does, so contours bend by six
+//! degrees. Without that water that runs down a plane side by side would be as many lines. Cost: a pass over the points.
 
 use super::grid::Grid;
 use super::trace::SPACING;

@@ -3,8 +3,9 @@
 //! Directions of eight neighbours run askew on wide valleys, by cells. So, a few times: across the way the smoothed surface is
 //! followed down as long as it falls; places move there, those without a bottom across as their neighbours do; and all are
 //! smoothed along the way. At last they are put on the bottom itself, and smoothed by a Gaussian that moves none far. Both ends
-//! are free. Places come half a cell apart. Cost: some 50 heights a place, more in wide valleys. Not handled: bends narrower than two
-//! cells, which are cut by a part of a cell.
+//! are free. Places come half a cell apart. Cost: some 50 heights a place, more in wide
+//! valleys. Not handled: bends narrower than two cells, which are cut by a part of a cell; places beside voids, which may lie
+//! up to half a cell within.
 
 use glam::DVec2;
 
@@ -17,6 +18,16 @@ pub enum Follows {
     Valley,
     /// The highest.
     Crest,
+}
+
+impl Follows {
+    /// What makes of heights those of which the lowest are followed.
+    pub fn sign(self) -> f32 {
+        match self {
+            Self::Valley => 1.0,
+            Self::Crest => -1.0,
+        }
+    }
 }
 
 /// A place of a curve.
@@ -37,20 +48,21 @@ const REACH: [f64; 6] = [6.0, 6.0, 4.0, 2.0, 1.0, 0.5];
 const STEPS: i32 = 8;
 /// How far a place moves at a time, cells; the widest looks are left out where none moves half as far.
 const MOVE: f64 = 2.0;
-/// Standard deviation of how moves spread along the way, and of the smoothing after it, places.
-const SPREAD: f64 = 3.0;
+/// Standard deviation of how moves spread along the way, places a cell of reach, and of the smoothing after it, places: wide moves
+/// are those of long stretches, or lines would bulge into hollows beside them.
+const SPREAD: f64 = 2.0;
 const SMOOTH: f64 = 2.0;
-/// What no bottom across weighs when moves spread: little, so the others take it along.
-const STAYS: f64 = 0.1;
+/// What a place without a bottom across weighs when moves spread.
+const STAYS: f64 = 0.5;
 /// Standard deviation of the last smoothing, places, and how far that may move a place, cells.
 const LAST: f64 = 2.5;
 const HOLD: f64 = 0.4;
-/// Standard deviation of the smoothing after which a direction is taken, places, and over how many before and after one: where the bed is
-/// steep and wide, the lowest place across a way that is askew is not that of the valley.
+/// Standard deviation of the smoothing after which a direction is taken, places, and over how many before and after one: where
+/// the bed is steep and wide, the lowest place across a way that is askew is not that of the valley.
 const DIRECTION: f64 = 5.0;
 const AHEAD: usize = 6;
 
-/// The curve of at least two nodes.
+/// The curve of at least two nodes; one place, where they are at one corner of the grid.
 pub fn trace(grid: &Grid, nodes: &[DVec2], follows: Follows) -> Vec<Place> {
     let nodes = nodes.iter().enumerate().map(|(k, at)| Place { at: *at, node: k as f64, is_lowest: false });
     let mut places: Vec<Place> = nodes.collect();
@@ -62,8 +74,13 @@ pub fn trace(grid: &Grid, nodes: &[DVec2], follows: Follows) -> Vec<Place> {
         places = resampled(&places);
         let moves = moves(grid, &places, reach, follows);
         farthest = moves.iter().flatten().map(|by| by.length()).fold(0.0, f64::max);
-        let spread = spread(&moves);
-        let moved: Vec<DVec2> = places.iter().zip(spread).map(|(place, by)| place.at + by).collect();
+        let height = |at: DVec2| follows.sign() * grid.smooth(at);
+        // Taken along, but not over a crest, or out of the valley that a crest stands over.
+        let moved = |((place, by), own): ((&Place, DVec2), &Option<DVec2>)| {
+            let is_up = own.is_none() && height(place.at + by) > height(place.at);
+            if is_up { place.at } else { place.at + by }
+        };
+        let moved: Vec<DVec2> = places.iter().zip(spread(&moves, reach)).zip(&moves).map(moved).collect();
         places.iter_mut().zip(smoothed(&moved, SMOOTH)).for_each(|(place, at)| place.at = at);
     }
     places = resampled(&places);
@@ -74,7 +91,10 @@ pub fn trace(grid: &Grid, nodes: &[DVec2], follows: Follows) -> Vec<Place> {
         place.at = *bottom + (smooth - *bottom).clamp_length_max(HOLD);
         place.is_lowest = by.is_some();
     }
-    resampled(&places)
+    places = resampled(&places);
+    places.iter_mut().for_each(|place| place.at = grid.frame.within(place.at));
+    places.dedup_by_key(|place| place.at);
+    places
 }
 
 /// By how much each place lies off the lowest place across the way, or the highest; `None` where there is none within reach.
@@ -85,8 +105,7 @@ fn moves(grid: &Grid, places: &[Place], reach: f64, follows: Follows) -> Vec<Opt
         let along = (way[(k + AHEAD).min(way.len() - 1)] - way[k.saturating_sub(AHEAD)]) * grid.frame.cell;
         // Across on the ground, and one cell long.
         let across = (along.perp() / grid.frame.cell).try_normalize()?;
-        let sign = if follows == Follows::Valley { 1.0 } else { -1.0 };
-        let height = |cells: f64| sign * grid.smooth(places[k] + across * cells);
+        let height = |cells: f64| follows.sign() * grid.smooth(places[k] + across * cells);
         Some(across * bottom(height, reach)?)
     };
     (0..places.len()).map(one).collect()
@@ -113,12 +132,12 @@ fn bottom(height: impl Fn(f64) -> f32, reach: f64) -> Option<f64> {
 }
 
 /// Moves that take along those that have none.
-fn spread(moves: &[Option<DVec2>]) -> Vec<DVec2> {
-    let weights = gaussian(SPREAD);
-    let reach = weights.len() / 2;
+fn spread(moves: &[Option<DVec2>], reach: f64) -> Vec<DVec2> {
+    let weights = gaussian(SPREAD * reach.max(1.5));
+    let half = weights.len() / 2;
     let one = |k: usize| {
-        let first = k.saturating_sub(reach);
-        let near = moves[first..(k + reach + 1).min(moves.len())].iter().zip(&weights[first + reach - k..]);
+        let first = k.saturating_sub(half);
+        let near = moves[first..(k + half + 1).min(moves.len())].iter().zip(&weights[first + half - k..]);
         let add = |(sum, total): (DVec2, f64), (by, weight): (&Option<DVec2>, &f64)| match by {
             Some(by) => (sum + by.clamp_length_max(MOVE) * *weight, total + weight),
             None => (sum, total + weight * STAYS),

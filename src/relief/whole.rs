@@ -3,7 +3,7 @@
 use super::SurfaceLine;
 use super::area::Area;
 use super::bits::Bits;
-use super::branches::branches;
+use super::branches::{branches, lasting};
 use super::channels::Channels;
 use super::flow::{Ends, Flow};
 use super::grid::Grid;
@@ -20,6 +20,8 @@ use crate::error::Result;
 const CELLS: u32 = 25;
 /// Most samples that the land may tell: where it tells more it is not of one kind, and its valleys would go undrawn.
 const MOST_CELLS: u32 = 100;
+/// Samples of a branch that comes to be a line of its own, if none joins it.
+const LEAST: usize = 5;
 
 /// How much land makes a channel.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -44,7 +46,8 @@ impl Relief {
     /// Of a held DEM whose heights are exaggerated by a factor.
     ///
     /// # Errors
-    /// [`Error::Limit`](crate::error::Error::Limit) for a filed one.
+    /// [`Error::Limit`](crate::error::Error::Limit) for a filed one, [`Error::Mistake`](crate::error::Error::Mistake) where water
+    /// has no end.
     pub fn of(dem: &Dem, exaggeration: f64) -> Result<Self> {
         Self::on(Grid::of(dem, exaggeration)?)
     }
@@ -89,7 +92,7 @@ impl Relief {
     pub fn channel_cells(&self, area: ChannelArea) -> u32 {
         match area {
             ChannelArea::Auto => found(&self.trials()).map_or(CELLS, |trial| trial.cells.clamp(CELLS, MOST_CELLS)),
-            ChannelArea::SquareMetres(area) => (area / self.grid.frame.side().powi(2)).ceil().max(1.0) as u32,
+            ChannelArea::SquareMetres(area) => (area / self.grid.frame.area()).ceil().max(1.0) as u32,
         }
     }
 
@@ -99,7 +102,7 @@ impl Relief {
         let channels = Channels::of(&self.flow, &self.area, least);
         let orders = channels.orders(&self.area, least).strahler;
         let sample = |node: u32| channels.samples[node as usize] as usize;
-        let branches = branches(&channels, |node| self.area.cells[sample(node as u32)]);
+        let branches = lasting(branches(&channels, |node| self.area.cells[sample(node as u32)]), &channels, LEAST);
         let source = |node: u32| self.grid.smoothed[self.source(sample(node))];
         let tops: Vec<f32> =
             branches.iter().map(|branch| branch.nodes.first().map_or(f32::NAN, |node| source(*node))).collect();
@@ -129,7 +132,7 @@ impl Relief {
         let goes_on = |i: usize| flow.direction(i).is_some_and(|k| !beds.crosses(i, k));
         let crests = Channels::among(&flow, belongs, goes_on);
         let sample = |node: u32| crests.samples[node as usize] as usize;
-        let branches = branches(&crests, |node| area.cells[sample(node as u32)]);
+        let branches = lasting(branches(&crests, |node| area.cells[sample(node as u32)]), &crests, LEAST);
         let steps = frame.steps();
         let node = |_: usize, node: u32| {
             let i = sample(node);

@@ -63,7 +63,7 @@ fn meander() -> (Dem, Vec<DVec2>) {
         let away = bed.iter().map(|place| place.distance_squared(at)).fold(f64::INFINITY, f64::min);
         CELL * (2.0 * (1.0 - (-away / 18.0).exp()) - 0.03 * at.x)
     });
-    (land, bed.into_iter().filter(|place| (20.0..199.0).contains(&place.x)).collect())
+    (land, bed.into_iter().filter(|place| (8.0..199.0).contains(&place.x)).collect())
 }
 
 /// A round cone of 30 % with eight grooves and eight ribs, its top in the middle.

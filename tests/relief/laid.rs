@@ -80,8 +80,8 @@ fn a_line_that_crosses_is_noticed() {
     assert!(!crossings(&drainage, &drainage).is_empty());
 }
 
-/// What is wrong with how lines join and grow.
-fn faults(lines: &[SurfaceLine]) -> Vec<String> {
+/// What is wrong with how lines of a DEM of a size join and grow.
+fn faults(lines: &[SurfaceLine], size: DVec2) -> Vec<String> {
     let mut faults = Vec::new();
     for (k, line) in lines.iter().enumerate() {
         let mut fault = |what: &str| faults.push(format!("line {k}: {what}"));
@@ -93,6 +93,9 @@ fn faults(lines: &[SurfaceLine]) -> Vec<String> {
         }
         if line.points.windows(2).any(|pair| pair[0].at.distance(pair[1].at) > LINE_SPACING) {
             fault("a gap");
+        }
+        if line.points.iter().any(|point| point.at != point.at.clamp(DVec2::ZERO, size - 1.0)) {
+            fault("outside");
         }
         if let Some([trunk, point]) = line.joins {
             let trunk = lines.get(trunk as usize).filter(|_| (trunk as usize) < k);
@@ -107,9 +110,11 @@ fn faults(lines: &[SurfaceLine]) -> Vec<String> {
 
 #[test]
 fn lines_join_to_the_last_bit_and_grow() {
-    for lines in lines().into_iter().flatten() {
-        assert_eq!(faults(&lines), Vec::<String>::new());
-        assert!(lines.iter().any(|line| line.joins.is_some()));
+    for (kinds, size) in lines().into_iter().zip([[500.0, 500.0], [120.0, 90.0], [90.0, 120.0]]) {
+        for lines in kinds {
+            assert_eq!(faults(&lines, size.into()), Vec::<String>::new());
+            assert!(lines.iter().any(|line| line.joins.is_some()));
+        }
     }
 }
 
@@ -119,10 +124,11 @@ fn a_joint_that_is_off_is_noticed() {
     let joined = drainage.iter().position(|line| line.joins.is_some()).expect("a joint");
     let last = drainage[joined].points.last_mut().expect("a point");
     last.at.x = f64::from_bits(last.at.x.to_bits() + 1);
-    assert_eq!(faults(&drainage), [format!("line {joined}: its joint")]);
+    assert_eq!(faults(&drainage, DVec2::splat(500.0)), [format!("line {joined}: its joint")]);
     drainage[joined].joins = None;
     drainage[joined].points[0].length = f32::INFINITY;
-    assert_eq!(faults(&drainage), [format!("line {joined}: does not grow")]);
+    assert_eq!(faults(&drainage, DVec2::splat(500.0)), [format!("line {joined}: does not grow")]);
+    assert!(faults(&drainage, DVec2::splat(400.0)).iter().any(|fault| fault.ends_with("outside")));
 }
 
 /// Largest share of turns, from a segment to the next, by more than 30 degrees.
