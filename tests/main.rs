@@ -74,6 +74,7 @@ mod seen;
 mod sequences;
 mod sheets;
 mod shell;
+mod shores;
 mod silhouettes;
 mod smoothest;
 mod spires;

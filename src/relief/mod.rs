@@ -1,14 +1,18 @@
-//! Lines on the land that do not depend on the eye: where water gathers and runs, where it parts, where land meets water, and
-//! lines that users give.
+//! Lines and places on the land that do not depend on the eye: where water gathers and runs, where it parts, where land meets
+//! water, peaks, and lines that users give.
 //!
-//! All are [`SurfaceLine`]s: polylines on the map of a DEM that lie on its surface, with what of the relief about each point tells
+//! All lines are [`SurfaceLine`]s: polylines on the map of a DEM that lie on its surface, with what of the relief about each point tells
 //! whether a page can show it.
 
+mod flat_water;
 mod own;
+mod shores;
 
 use glam::DVec2;
 
+pub use flat_water::FlatWater;
 pub use own::own_lines;
+pub use shores::Shores;
 
 /// What a line of the land is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
