@@ -58,6 +58,7 @@ mod overhead;
 mod overwritten;
 mod own_lines;
 mod page_curves;
+mod peaks;
 mod pieces;
 mod plots;
 mod pool;

@@ -6,12 +6,14 @@
 
 mod flat_water;
 mod own;
+mod peaks;
 mod shores;
 
 use glam::DVec2;
 
 pub use flat_water::FlatWater;
 pub use own::own_lines;
+pub use peaks::{Base, Peak, peaks};
 pub use shores::Shores;
 
 /// What a line of the land is.
