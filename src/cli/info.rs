@@ -3,6 +3,7 @@
 use super::talk::Talk;
 use super::terrain::{TerrainArguments, words};
 use super::words::told;
+use super::{peaks, values};
 use crate::cache::Cache;
 use crate::error::Result;
 use crate::geo;
@@ -10,7 +11,11 @@ use crate::geo;
 /// The end of `hachure info --help`.
 const EXAMPLES: &str = "\
 Examples:
-  hachure info dem/golden-gate.tif";
+  hachure info dem/golden-gate.tif
+  hachure info dem/golden-gate.tif --peaks 5";
+
+/// Peaks that are listed where nobody says how many.
+const PEAKS: &str = "20";
 
 /// Flags of `hachure info`.
 #[derive(Debug, clap::Args)]
@@ -18,15 +23,22 @@ Examples:
 pub struct InfoArguments {
     #[command(flatten)]
     terrain: TerrainArguments,
+    #[arg(
+        long, value_name = "N", value_parser = values::peaks, num_args = 0..=1, default_missing_value = PEAKS,
+        help = format!("Also list the N most prominent peaks, with the saddles that part them from higher ground [N unless told otherwise: {PEAKS}]")
+    )]
+    peaks: Option<usize>,
 }
 
-/// Prints size, CRS, extent, cell, range, voids, and what was converted and assumed.
+/// Prints size, CRS, extent, cell, range, voids, what was converted and assumed, and peaks.
 ///
 /// # Errors
-/// As [`geo::info()`].
+/// As [`geo::info()`]; for peaks of a DEM that stays in its files [`Error::Limit`](crate::error::Error::Limit).
 pub fn run(arguments: &InfoArguments, talk: &Talk) -> Result<()> {
     let terrain = &arguments.terrain;
     let options = terrain.options(1.0, Cache::none());
-    let info = geo::info(&terrain.dems, &options, &|stage, share| talk.progress(words(stage), share))?;
-    talk.answer(&info.told(told))
+    let (info, dem) = geo::info_and_dem(&terrain.dems, &options, &|stage, share| talk.progress(words(stage), share))?;
+    // Peaks first: where they cannot be told, nothing is.
+    let peaks = arguments.peaks.map(|count| peaks::told(&dem, count)).transpose()?;
+    talk.answer(&[Some(info.told(told)), peaks].into_iter().flatten().collect::<Vec<_>>().join("\n"))
 }

@@ -13,7 +13,7 @@ use crate::relief::{self, SurfaceLine};
 pub struct LinesArguments {
     /// Also draw lines of your own on the land: all lines and rims of areas in a vector file (GeoPackage, GeoJSON, KML, GPX,
     /// Shapefile …), FILE:LAYER of one of its layers; several times for several. The whole number in an attribute order,
-    /// strahler, stream_order, ord_stra or class says how much a line weighs, 1 where there is none
+    /// strahler, stream_order, ord_stra or class says how much a line weighs; 1 where there is none
     #[arg(long = "lines", value_name = "FILE[:LAYER]", help_heading = "Style")]
     lines: Vec<PathBuf>,
 }

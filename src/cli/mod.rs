@@ -29,6 +29,7 @@ pub mod merge;
 pub mod norths;
 pub mod outputs;
 pub mod page;
+mod peaks;
 pub mod plan;
 pub mod progress;
 pub mod scene;

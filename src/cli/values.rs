@@ -65,6 +65,9 @@ const MOST_GAP_MM: f64 = 100.0;
 /// Frames of a flight that somebody draws.
 pub const MOST_FRAMES: u32 = 1_000_000;
 
+/// Most peaks that are listed.
+const MOST_PEAKS: usize = 1_000_000;
+
 /// Frames a second that somebody shows.
 const FPS: [f64; 2] = [0.1, 240.0];
 
@@ -289,6 +292,12 @@ pub fn level_choice(text: &str) -> Result<LevelChoice, String> {
         return Ok(LevelChoice::Auto);
     }
     level(text).map(LevelChoice::Of).map_err(|want| format!("{want}, or auto"))
+}
+
+/// How many peaks.
+pub fn peaks(text: &str) -> Result<usize, String> {
+    let count = text.parse().ok().filter(|count| (1..=MOST_PEAKS).contains(count));
+    count.ok_or_else(|| format!("want how many peaks, from 1 to {MOST_PEAKS}, after the DEM"))
 }
 
 /// Largest deviation of facets on the page.

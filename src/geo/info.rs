@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use glam::{DMat2, DVec2};
 
 use super::{ReadOptions, Reading, Stage};
-use crate::dem::{Crs, History, convergence_in_words};
+use crate::dem::{Crs, Dem, History, convergence_in_words};
 use crate::error::{Message, Result, shown};
 
 /// What GDAL calls systems that nobody named.
@@ -63,6 +63,14 @@ impl Info {
 /// # Errors
 /// Those of [`read_all`](super::read_all()).
 pub fn info(paths: &[PathBuf], options: &ReadOptions, progress: &dyn Fn(Stage, f64)) -> Result<Info> {
+    info_and_dem(paths, options, progress).map(|(info, _)| info)
+}
+
+/// The same, and the DEM, which has the files' own heights where it stays in them.
+///
+/// # Errors
+/// Those of [`info()`].
+pub fn info_and_dem(paths: &[PathBuf], options: &ReadOptions, progress: &dyn Fn(Stage, f64)) -> Result<(Info, Dem)> {
     let reading = Reading::new(paths, options)?;
     let (driver, source) = (reading.format().to_owned(), reading.warped_from());
     let dem = reading.finish_as_read(progress)?;
@@ -73,7 +81,7 @@ pub fn info(paths: &[PathBuf], options: &ReadOptions, progress: &dyn Fn(Stage, f
     let middle = DVec2::new((west + east) / 2.0, (south + north) / 2.0);
     let lonlat = dem.georeference().lonlat(middle)?;
     let globe = dem.georeference().globe()?;
-    Ok(Info {
+    let info = Info {
         paths: paths.to_owned(),
         driver,
         source,
@@ -89,7 +97,8 @@ pub fn info(paths: &[PathBuf], options: &ReadOptions, progress: &dyn Fn(Stage, f
         before_smoothing: dem.is_filed() && (options.generalise.is_some() || !dem.history().steps().is_empty()),
         voids: survey.voids,
         history,
-    })
+    };
+    Ok((info, dem))
 }
 
 impl Display for Info {

@@ -19,7 +19,7 @@ mod without;
 
 pub use elevation_unit::ElevationUnit;
 pub use encoding::Encoding;
-pub use info::{Info, info};
+pub use info::{Info, info, info_and_dem};
 pub use nodata::Nodata;
 pub use own::{OwnLayer, OwnLine, OwnLines};
 pub use read::{Order, ReadOptions, Stage, read, read_all};

@@ -1,7 +1,7 @@
-//! Lines on the land that do not depend on the eye: where water gathers and runs, where it parts, where land meets water, and
-//! lines that users give.
+//! Lines and places on the land that do not depend on the eye: where water gathers and runs, where it parts, where land meets
+//! water, peaks, and lines that users give.
 //!
-//! All are [`SurfaceLine`]s: polylines on the map of a DEM that lie on its surface, with what of the relief about each point tells
+//! All lines are [`SurfaceLine`]s: polylines on the map of a DEM that lie on its surface, with what of the relief about each point tells
 //! whether a page can show it.
 
 mod across;
@@ -11,6 +11,7 @@ mod branches;
 pub mod channels;
 mod coarse;
 mod crease;
+mod flat_water;
 mod flood;
 pub mod flow;
 pub mod frame;
@@ -21,7 +22,9 @@ mod lines;
 mod net;
 mod own;
 mod parting;
+mod peaks;
 mod prune;
+mod shores;
 mod smooth;
 mod steepest;
 pub mod threshold;
@@ -34,8 +37,11 @@ use glam::DVec2;
 
 pub use coarse::spacing;
 pub use crease::{Crease, LandWanted};
+pub use flat_water::FlatWater;
 pub use kept::FlowLines;
 pub use own::own_lines;
+pub use peaks::{Base, Peak, peaks};
+pub use shores::Shores;
 pub use whole::{ChannelArea, Relief};
 
 /// What a line of the land is.

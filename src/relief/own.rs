@@ -57,17 +57,17 @@ fn system<'a>(named: Option<&'a Crs>, dem: &'a Dem) -> &'a Crs {
 /// Parts of a line, and whether each is closed: the last one goes on in the first where a closed line begins on the land.
 fn joined(mut parts: Vec<Vec<DVec2>>, line: &OwnLine) -> Vec<(Vec<DVec2>, bool)> {
     let mut closed = false;
-    if line.closed && parts.first().and_then(|part| part.first()) == parts.last().and_then(|part| part.last()) {
-        if let Some(mut last) = parts.pop() {
-            last.pop();
-            closed = parts.is_empty();
-            match parts.first_mut() {
-                Some(first) => {
-                    last.append(first);
-                    *first = last;
-                }
-                None => parts.push(last),
+    let goes_on =
+        line.closed && parts.first().and_then(|part| part.first()) == parts.last().and_then(|part| part.last());
+    if let Some(mut last) = if goes_on { parts.pop() } else { None } {
+        last.pop();
+        closed = parts.is_empty();
+        match parts.first_mut() {
+            Some(first) => {
+                last.append(first);
+                *first = last;
             }
+            None => parts.push(last),
         }
     }
     parts.into_iter().map(|part| (part, closed)).collect()

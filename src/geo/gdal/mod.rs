@@ -58,7 +58,6 @@ mod tracks;
 mod vectors;
 mod vrt;
 mod vsi;
-mod water;
 mod weights;
 mod write;
 mod xml;

@@ -11,11 +11,11 @@ use xxhash_rust::xxh3::{Xxh3, xxh3_128};
 
 use super::part::Part;
 use super::steps::Steps;
-use super::water::Water;
 use crate::cache::{Kept, Key, Kind, Sheet};
 use crate::dem::Window;
 use crate::dem::focal::Focal;
 use crate::dem::smoothest::{HALO, smoothest};
+use crate::dem::water::Water;
 use crate::error::Result;
 
 /// Raise it when the same numbers have other steps, other water or another smoothest surface, or when the bytes below mean

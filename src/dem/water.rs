@@ -15,11 +15,11 @@ mod regions;
 
 use regions::{Ending, NONE, Regions};
 
-use crate::dem::Window;
+use super::Window;
 
 /// Which samples of a window are flat water: runs of columns, row by row.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(super) struct Water {
+pub struct Water {
     /// First column and that beyond the last.
     runs: Vec<[u32; 2]>,
     /// Where the runs of each row begin, and where they end.
@@ -27,7 +27,7 @@ pub(super) struct Water {
 }
 
 /// It in the making, from the rows of a window.
-pub(super) struct WaterBuilder {
+pub struct WaterBuilder {
     width: usize,
     row: u32,
     above: Vec<Run>,
@@ -70,12 +70,17 @@ impl Water {
     pub fn level(&self, window: Window, half: &mut [f32]) {
         let [from, to] = [window.first[0], window.first[0] + window.size[0]];
         for (r, half) in half.chunks_exact_mut(window.size[0].max(1)).enumerate() {
-            let runs = self.rows.get(window.first[1] + r..window.first[1] + r + 2);
-            let runs = runs.map_or(&[][..], |rows| &self.runs[rows[0] as usize..rows[1] as usize]);
-            for [first, end] in runs.iter().map(|run| run.map(|c| (c as usize).clamp(from, to) - from)) {
+            for [first, end] in
+                self.row(window.first[1] + r).iter().map(|run| run.map(|c| (c as usize).clamp(from, to) - from))
+            {
                 half[first..end].fill(0.0);
             }
         }
+    }
+
+    /// First columns of the water of a row, and those beyond its last ones.
+    pub fn row(&self, r: usize) -> &[[u32; 2]] {
+        self.rows.get(r..r + 2).map_or(&[], |rows| &self.runs[rows[0] as usize..rows[1] as usize])
     }
 
     /// Where the runs of each row begin, and the runs.
