@@ -65,7 +65,7 @@ fn creases_stand_in_layers_of_their_own_and_leave_the_rest_as_it_is() {
             .collect::<Vec<_>>()
     };
     let without = strokes("none.svg");
-    assert!(without.len() > 2 && without == strokes("all.svg"));
+    assert!(without.len() >= 2 && without == strokes("all.svg"));
     // Passes over lines on the land run only where there are some.
     let passes = |name: &str| String::from_utf8(read(name)).expect("JSON").contains("\"lay\"");
     assert!(passes("all.json") && !passes("none.json"));
@@ -177,7 +177,8 @@ fn mistakes_are_told_before_the_work() {
 fn creases_of_a_dem_in_its_file_lie_where_those_of_a_held_one_do() {
     let place = Place::new();
     valley(&place);
-    let route = ["draw", "valley.asc", "--plan", "--scale", "1:20000", "--creases", "drainage,ridges"];
+    let route =
+        ["draw", "valley.asc", "--plan", "--scale", "1:20000", "--creases", "drainage,ridges", "--cache", "kept"];
     let held = place.run(&[&route[..], &["-o", "held.svg"]].concat());
     let filed = place.run(&[&route[..], &["-o", "filed.svg", "--memory", "1KiB"]].concat());
     assert!(held.status.success() && filed.status.success(), "{} {}", stderr(&held), stderr(&filed));

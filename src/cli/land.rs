@@ -9,7 +9,7 @@ use crate::dem::Dem;
 use crate::error::{Error, Message, Result, Setting};
 use crate::ink::Style;
 use crate::line::Land;
-use crate::relief::{ChannelArea, Crease, FlowLines, LandWanted, SurfaceLine};
+use crate::relief::{ChannelArea, Crease, FlowLines, LandWanted, Shores, SurfaceLine};
 
 /// The flags, as typed.
 #[derive(Debug, Clone, clap::Args)]
@@ -73,7 +73,7 @@ impl LandArguments {
     /// The lines that are wanted of a DEM whose heights are exaggerated by this factor.
     ///
     /// # Errors
-    /// As [`Cache::creases`] and [`LinesArguments::read`].
+    /// As [`Cache::creases`], [`Shores::of`] and [`LinesArguments::read`].
     pub fn land(
         &self,
         wanted: &LandWanted,
@@ -92,7 +92,13 @@ impl LandArguments {
         let asked: Vec<FlowLines> = wanted.creases.iter().filter_map(found).collect();
         let warn = |message: &Message| talk.warn(&told(message));
         let hearing = Hearing { warn: &warn, progress: &|done| talk.progress("looking for creases", 0.2 + 0.1 * done) };
-        cache.creases(dem, exaggeration, &asked, hearing)?.into_iter().for_each(|more| append(&mut lines, more));
+        let mut found = cache.creases(dem, exaggeration, &asked, hearing)?;
+        if wanted.creases.contains(&Crease::Shores) {
+            let shores = Shores::of(dem, exaggeration)?;
+            found.iter_mut().flatten().for_each(|line| shores.water.blank(line));
+            found.push(shores.lines);
+        }
+        found.into_iter().for_each(|more| append(&mut lines, more));
         Land::new(dem, exaggeration, lines)
     }
 }

@@ -141,7 +141,9 @@ impl Land {
         }
         let wide = |(line, (mut weights, length)): (&SurfaceLine, (Vec<f32>, f64))| {
             let width = width(line, length) as f32;
-            weights.iter_mut().for_each(|weight| *weight *= width);
+            for (weight, point) in weights.iter_mut().zip(&line.points) {
+                *weight *= if point.across[0].is_nan() { 0.0 } else { width };
+            }
             weights
         };
         self.lines.iter().zip(shown).map(wide).collect()
@@ -175,8 +177,10 @@ impl Land {
 
     /// What the land beside a point says for drawing it, where so many pixels are a metre.
     fn beside(&self, kind: LineKind, point: &SurfacePoint, scale: f64) -> f64 {
-        if point.across[0].is_infinite() {
-            return 1.0;
+        match point.across[0] {
+            across if across.is_infinite() => return 1.0,
+            across if across.is_nan() => return 0.0,
+            _ => {}
         }
         let [near, middle, far] = ASIDE_CELLS;
         let cells = (ASIDE / scale.max(f64::MIN_POSITIVE) / self.cell).clamp(near, far);

@@ -79,7 +79,8 @@ pub struct SurfacePoint {
     /// Column and row of the DEM, fractional.
     pub at: DVec2,
     /// How far the land on both sides stands over a valley, or lies below a ridge, on the side where it is less, 3, 6 and 12 cells
-    /// away; metres without exaggeration, below 0 where it is no valley or ridge. Infinite of lines that no relief need show.
+    /// away; metres without exaggeration, below 0 where it is no valley or ridge. Infinite of lines that no relief need show,
+    /// not a number under flat water, where none is drawn.
     pub across: [f32; 3],
     /// From here up along water to the farthest source, or of the flow that a ridge parts; metres. Grows along the line.
     pub length: f32,

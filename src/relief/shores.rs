@@ -77,6 +77,18 @@ impl Shores {
     }
 }
 
+impl FlatWater {
+    /// Blanks what of a line lies in the water.
+    pub fn blank(&self, line: &mut SurfaceLine) {
+        for point in &mut line.points {
+            let [c, r] = point.at.round().to_array().map(|at| at.max(0.0) as usize);
+            if self.is_water(c, r) {
+                point.across = [f32::NAN; 3];
+            }
+        }
+    }
+}
+
 impl Grid<'_> {
     /// For each side of a cell that a shore crosses, the sides that it crosses before and after it.
     fn links(&self) -> FxHashMap<u32, [u32; 2]> {
