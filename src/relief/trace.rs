@@ -4,8 +4,7 @@
 //! followed down as long as it falls; places move there, those without a bottom across as their neighbours do; and all are
 //! smoothed along the way. At last they are put on the bottom itself, and smoothed by a Gaussian that moves none far. Both ends
 //! are free. Places come half a cell apart. Cost: some 50 heights a place, more in wide
-//! valleys. Not handled: bends narrower than two cells, which are cut by a part of a cell; places beside voids, which may lie
-//! up to half a cell within.
+//! valleys. Not handled: bends narrower than two cells, which are cut by a part of a cell.
 
 use glam::DVec2;
 
@@ -92,7 +91,13 @@ pub fn trace(grid: &Grid, nodes: &[DVec2], follows: Follows) -> Vec<Place> {
         place.is_lowest = by.is_some();
     }
     places = resampled(&places);
-    places.iter_mut().for_each(|place| place.at = grid.frame.within(place.at));
+    for place in &mut places {
+        place.at = grid.frame.within(place.at);
+        // Beside a void there is no surface but at the sample.
+        if grid.height(place.at).is_nan() {
+            place.at = place.at.round();
+        }
+    }
     places.dedup_by_key(|place| place.at);
     places
 }

@@ -5,8 +5,12 @@ use std::collections::BinaryHeap;
 
 use glam::DVec2;
 use hachure::dem::Dem;
-use hachure::relief::Relief;
+use hachure::error::Error;
+use hachure::geo::{ReadOptions, read};
+use hachure::relief::channels::Channels;
 use hachure::relief::flow::Flow;
+use hachure::relief::frame::Frame;
+use hachure::relief::{ChannelArea, Relief};
 
 use super::{dem, rough, sample};
 use crate::tolerances::OVER_THE_LOWEST_PASS;
@@ -84,9 +88,8 @@ fn water_ends_at_rims_and_in_the_sea_alone() {
 }
 
 /// Pairs of directions that cross between four samples.
-fn crossings(flow: &Flow) -> usize {
-    let frame = flow.frame();
-    let is = |from: usize, to: usize| flow.down(from) == Some(to) || flow.down(to) == Some(from);
+fn crossings(frame: Frame, down: impl Fn(usize) -> Option<usize>) -> usize {
+    let is = |from: usize, to: usize| down(from) == Some(to) || down(to) == Some(from);
     let crossing = |i: &usize| {
         let [nw, ne, sw, se] = [*i, i + 1, i + frame.stride(), i + frame.stride() + 1];
         is(nw, se) && is(ne, sw)
@@ -97,8 +100,51 @@ fn crossings(flow: &Flow) -> usize {
 #[test]
 fn no_two_directions_cross() {
     for (name, dem) in lands() {
-        assert_eq!(crossings(Relief::of(&dem, 1.0).expect("a relief").flow()), 0, "{name}");
+        let relief = Relief::of(&dem, 1.0).expect("a relief");
+        assert_eq!(crossings(relief.flow().frame(), |i| relief.flow().down(i)), 0, "{name}");
     }
+}
+
+#[test]
+fn directions_that_cross_are_noticed() {
+    let relief = Relief::of(&rough(1, [90, 70]), 1.0).expect("a relief");
+    let (frame, flow) = (relief.flow().frame(), relief.flow());
+    let is_diagonal = |i: &usize| flow.down(*i) == Some(i + frame.stride() + 1) && flow.is_land(i + 1);
+    let nw = frame.indices().find(is_diagonal).expect("a diagonal");
+    let crossed = |i: usize| if i == nw + 1 { Some(nw + frame.stride()) } else { flow.down(i) };
+    assert_eq!(crossings(frame, crossed), 1);
+}
+
+/// The least that the highest sample can be on a way from each to an end, by Dijkstra's shortest paths.
+fn levels(flow: &Flow, heights: &[f32]) -> Vec<f32> {
+    let frame = flow.frame();
+    let mut levels = vec![f32::INFINITY; frame.samples()];
+    let mut front = BinaryHeap::new();
+    let order = |height: f32| Reverse((height * 1e4) as i64);
+    for i in frame.indices().filter(|i| flow.is_land(*i) && flow.down(*i).is_none()) {
+        levels[i] = heights[i];
+        front.push((order(heights[i]), i));
+    }
+    while let Some((_, i)) = front.pop() {
+        for next in frame.steps().map(|step| i.wrapping_add(step)) {
+            let level = heights[next].max(levels[i]);
+            if flow.is_land(next) && level < levels[next] {
+                levels[next] = level;
+                front.push((order(level), next));
+            }
+        }
+    }
+    levels
+}
+
+/// Share of the samples whose water goes higher than a level of each.
+fn higher(flow: &Flow, heights: &[f32], levels: &[f32]) -> f64 {
+    let land: Vec<usize> = flow.frame().indices().filter(|i| flow.is_land(*i)).collect();
+    let is_higher = |i: &&usize| {
+        let highest = way(flow, **i).expect("an end").into_iter().map(|i| heights[i]).fold(f32::MIN, f32::max);
+        highest > levels[**i]
+    };
+    land.iter().filter(is_higher).count() as f64 / land.len() as f64
 }
 
 #[test]
@@ -106,33 +152,64 @@ fn water_leaves_over_the_lowest_pass() {
     for (name, dem) in lands() {
         let relief = Relief::of(&dem, 1.0).expect("a relief");
         let (flow, heights) = (relief.flow(), &relief.grid().smoothed);
-        let frame = flow.frame();
-        // The least that the highest sample can be on a way from each to an end, by Dijkstra's shortest paths.
-        let mut levels = vec![f32::INFINITY; frame.samples()];
-        let mut front = BinaryHeap::new();
-        let order = |height: f32| Reverse((height * 1e4) as i64);
-        for i in frame.indices().filter(|i| flow.is_land(*i) && flow.down(*i).is_none()) {
-            levels[i] = heights[i];
-            front.push((order(heights[i]), i));
-        }
-        while let Some((_, i)) = front.pop() {
-            for step in frame.steps() {
-                let next = i.wrapping_add(step);
-                let level = heights[next].max(levels[i]);
-                if flow.is_land(next) && level < levels[next] {
-                    levels[next] = level;
-                    front.push((order(level), next));
-                }
-            }
-        }
-        let land: Vec<usize> = frame.indices().filter(|i| flow.is_land(*i)).collect();
-        let is_higher = |i: &&usize| {
-            let highest = way(flow, **i).expect("an end").into_iter().map(|i| heights[i]).fold(f32::MIN, f32::max);
-            highest > levels[**i]
-        };
-        let higher = land.iter().filter(is_higher).count();
-        assert!(higher as f64 <= OVER_THE_LOWEST_PASS * land.len() as f64, "{name}: {higher} of {}", land.len());
+        let share = higher(flow, heights, &levels(flow, heights));
+        assert!(share <= OVER_THE_LOWEST_PASS, "{name}: {share}");
     }
+}
+
+#[test]
+fn water_over_a_higher_pass_is_noticed() {
+    let relief = Relief::of(&rough(1, [90, 70]), 1.0).expect("a relief");
+    let (flow, heights) = (relief.flow(), &relief.grid().smoothed);
+    // As if one lower pass were there for all.
+    let lower: Vec<f32> = levels(flow, heights).iter().map(|level| level - 1.0).collect();
+    assert!(higher(flow, heights, &lower) > OVER_THE_LOWEST_PASS);
+}
+
+#[test]
+fn orders_are_those_that_a_slow_count_gives() {
+    for (name, dem) in lands() {
+        let relief = Relief::of(&dem, 1.0).expect("a relief");
+        let channels = Channels::of(relief.flow(), relief.area(), 10);
+        let orders = channels.orders(relief.area(), 10);
+        // All on small land, some on the sample.
+        for node in (0..channels.samples.len()).step_by(1 + channels.samples.len() / 300) {
+            let from: Vec<usize> =
+                (0..channels.down.len()).filter(|from| channels.below(*from) == Some(node)).collect();
+            let highest = from.iter().map(|from| orders.strahler[*from]).max().unwrap_or(0);
+            let equal = from.iter().filter(|from| orders.strahler[**from] == highest).count();
+            let strahler = if from.is_empty() { 1 } else { highest + u8::from(equal > 1) };
+            let shreve: u32 = from.iter().map(|from| orders.shreve[*from]).sum();
+            assert_eq!(
+                [u32::from(orders.strahler[node]), orders.shreve[node]],
+                [strahler.into(), shreve.max(1)],
+                "{name}"
+            );
+        }
+    }
+}
+
+#[test]
+fn channels_begin_where_they_are_told_to() {
+    let relief = Relief::of(&sample(), 1.0).expect("a relief");
+    let cells = |area: f64| relief.channel_cells(ChannelArea::SquareMetres(area));
+    let cell = relief.flow().frame().area();
+    assert_eq!([25.0, 25.5, 1.0, 0.0, -3.0, f64::NAN].map(|of| cells(of * cell)), [25, 26, 1, 1, 1, 1]);
+    assert!(relief.drainage(ChannelArea::SquareMetres(f64::INFINITY)).is_empty());
+    // As the falls of streams tell: |t| passes 2 there, and is less for the next.
+    let found = relief.channel_cells(ChannelArea::Auto);
+    let trials = relief.trials();
+    let k = trials.iter().position(|trial| trial.cells == found).expect("one that was tried");
+    println!("{trials:#?}");
+    assert!(trials[..k].iter().all(|trial| trial.t < -2.0) && trials[k..k + 2].iter().all(|trial| trial.t.abs() < 2.0));
+}
+
+#[test]
+fn a_filed_dem_is_refused() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("dem/golden-gate.tif");
+    let filed = read(&path, &ReadOptions { memory: 1 << 16, ..ReadOptions::default() }).expect("the sample");
+    assert!(filed.is_filed());
+    assert!(matches!(Relief::of(&filed, 1.0), Err(Error::Limit { .. })));
 }
 
 #[test]
@@ -143,10 +220,6 @@ fn areas_that_an_edge_may_cut_are_marked() {
     assert!(frame.indices().all(|i| relief.area().cut.has(i)), "water may come from beyond the edge");
     // Water comes from a summit within.
     let relief = Relief::of(&dem([21, 21], |at| -(at - 10.0).length()), 1.0).expect("a relief");
-    let cut = frame_count(&relief);
+    let cut = relief.flow().frame().indices().filter(|i| relief.area().cut.has(*i)).count();
     assert_eq!(cut, 80, "only the edge itself");
-}
-
-fn frame_count(relief: &Relief) -> usize {
-    relief.flow().frame().indices().filter(|i| relief.area().cut.has(*i)).count()
 }

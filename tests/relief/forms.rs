@@ -7,7 +7,7 @@ use glam::DVec2;
 use hachure::dem::Dem;
 use hachure::relief::{ChannelArea, Relief, SurfaceLine};
 
-use super::{CELL, dem, distance, length};
+use super::{CELL, dem, distance, length, rough};
 use crate::scenes::Random;
 use crate::tolerances::{BOTTOM_CELLS, BOTTOM_MEAN_CELLS, BOTTOM_SHARE, ELSEWHERE_CELLS, ELSEWHERE_SHARE, PLANE_SHARE};
 
@@ -172,5 +172,10 @@ fn a_rough_plane_has_few_lines() {
         let drawn: f64 = lines.iter().map(length).sum();
         println!("{} lines, {drawn} cells", lines.len());
         assert!(drawn <= PLANE_SHARE * 150.0 * 150.0, "{drawn} cells of lines");
+    }
+    // Land has more.
+    let relief = Relief::of(&rough(1, [150, 150]), 1.0).expect("a relief");
+    for lines in [relief.drainage(AREA), relief.ridges().expect("ridges")] {
+        assert!(lines.iter().map(length).sum::<f64>() > PLANE_SHARE * 150.0 * 150.0);
     }
 }
