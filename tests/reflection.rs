@@ -13,7 +13,7 @@ use hachure::gpu::Capacity;
 use hachure::gpu::pass::{parse, reflect};
 use hachure::gpu::sizes::{BLOCK, LARGEST_BINDING, fits, of_page, of_scene};
 use hachure::gpu::uniforms::{BatchUniform, ChunkUniform, Counts, SceneUniform, Segment, Tally, code, seen};
-use hachure::gpu::{CameraUniform, adjacency, border, candidates, compose, crossed, curves, facing, meet, pairs};
+use hachure::gpu::{CameraUniform, adjacency, border, candidates, compose, crossed, curves, facing, lay, meet, pairs};
 use hachure::gpu::{project, rasterize, rasterize_large, rim_segments, seam, segments, sight, tessellate};
 use hachure::gpu::{toward_away, turn, turning, walk, walk_rest, wanted};
 use hachure::line::{Kind, Pixel};
@@ -63,6 +63,7 @@ fn curve_shaders(keeps_vertices: bool) -> Vec<(&'static str, Cow<'static, str>)>
         ("crossed", crossed::SOURCE.into()),
         ("segments", segments::source(keeps_vertices).into()),
         ("rim_segments", rim_segments::source(keeps_vertices).into()),
+        ("lay", lay::source(keeps_vertices).into()),
         ("sight", sight::source(keeps_vertices).into()),
     ]
 }
@@ -166,6 +167,7 @@ fn shared_constants() -> Vec<(&'static str, f64)> {
         BATCH_CHUNKS,
         curves::AROUND,
         curves::SIDE_VERTICES,
+        code::LAID,
         code::AWAY_CORNER,
         code::OF_RIM,
         code::STARTS,

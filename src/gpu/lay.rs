@@ -18,5 +18,6 @@ pub fn source(keeps_vertices: bool) -> String {
 /// # Errors
 /// See [`Gpu::pass`].
 pub fn pass(gpu: &Gpu, keeps_vertices: bool, constants: &[(&str, f64)]) -> Result<Arc<Pass>> {
-    gpu.pass("lay", source(keeps_vertices), constants)
+    // It follows no cut.
+    gpu.pass("lay", source(keeps_vertices), &[constants, &[("defers", 0.0)]].concat())
 }
