@@ -18,6 +18,6 @@ pub fn source(keeps_vertices: bool) -> String {
 /// # Errors
 /// See [`Gpu::pass`].
 pub fn pass(gpu: &Gpu, keeps_vertices: bool, constants: &[(&str, f64)]) -> Result<Arc<Pass>> {
-    // It follows no cut.
+    // Nothing is left to another pass.
     gpu.pass("lay", source(keeps_vertices), &[constants, &[("defers", 0.0)]].concat())
 }
