@@ -55,7 +55,7 @@ const EYE: DVec3 = DVec3::new(0.0, -3000.0, 1200.0);
 #[test]
 fn lines_fade_with_distance_and_never_pop() {
     let branch = stream(DVec2::new(60.0, 80.0), DVec2::new(100.0, 100.0), [12.0, 20.0], None);
-    let weights = |share: f64| shown(&[branch.clone()], EYE * share * 0.5).pop().unwrap_or_default();
+    let weights = |share: f64| shown(std::slice::from_ref(&branch), EYE * share * 0.5).pop().unwrap_or_default();
     let (mut last, mut ratio, mut largest) = (weights(1.0), 1.0_f64, 0.0_f32);
     assert!(last.iter().all(|weight| *weight > 0.9), "whole from near");
     while !last.is_empty() && ratio < 1e4 {

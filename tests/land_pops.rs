@@ -40,8 +40,8 @@ fn frame(renderer: &mut Renderer, camera: &Camera) -> Frame {
     let drawn: Vec<Chain> = lines.chains.into_iter().filter(|chain| chain.line().is_of_land()).collect();
     let places = |point: &ChainPoint| point.place.to_array();
     // Points stand at most 4 px apart: between them there are more.
-    let seen = page.land.iter().flat_map(|chain| points(chain)).map(|point| places(&point)).collect();
-    let weights = drawn.iter().flat_map(|chain| points(chain));
+    let seen = page.land.iter().flat_map(points).map(|point| places(&point)).collect();
+    let weights = drawn.iter().flat_map(points);
     let weights = weights.map(|point| GeomWithData::new(places(&point), point.weight)).collect();
     Frame { perspective: page.perspective, seen: RTree::bulk_load(seen), weights: RTree::bulk_load(weights), drawn }
 }
