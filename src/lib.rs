@@ -65,7 +65,7 @@
 //! | [`dem`] | the grid: held in memory, or read as it is asked for |
 //! | [`geo`] | rasters and systems of coordinates; alone knows GDAL, without which (`--no-default-features`) it reads nothing |
 //! | [`surface`] | vertex normals, PN patches, the lattice and its IDs, bounds of chunks; what is kept of a DEM for them |
-//! | [`relief`] | lines on the land that do not depend on the eye: drainage, ridges, shores, own lines |
+//! | [`relief`] | lines on the land that do not depend on the eye: drainage, ridges, shores, peaks, own lines |
 //! | [`view`] | the camera, how it sees, a view where none is given, cameras along a way |
 //! | [`plan`] | what a frame needs, as data: lattice, batches, passes, pieces, what is left out; the registry of methods |
 //! | [`gpu`] | device, buffers, one adapter a pass; the mathematics stands in `shaders/` |

@@ -8,7 +8,7 @@ use clap::CommandFactory;
 use hachure::cli::Arguments;
 use hachure::cli::choices::default_share;
 use hachure::cli::viewpoint::{FOV, SIZE};
-use hachure::cli::{flight, page};
+use hachure::cli::{flight, info, page};
 use hachure::ink::{Sheet, Style};
 use hachure::plan::detail::ERROR_PX;
 
@@ -152,7 +152,10 @@ fn help_says_the_defaults_that_the_code_has() {
     let draw = [&[size()], &drawing[..]].concat();
     let seconds = ("duration", format!("those times, else {}", flight::DURATION));
     let fly = [&[seconds, ("fov", FOV.to_string()), size()], &drawing[..]].concat();
-    let expected = [draw, fly, vec![size()]].concat().into_iter().map(|(flag, value)| (flag.to_owned(), value));
+    let expected = [draw, fly, vec![size(), ("peaks", info::PEAKS.to_owned())]]
+        .concat()
+        .into_iter()
+        .map(|(flag, value)| (flag.to_owned(), value));
     assert_eq!(defaults(&Arguments::command()), expected.collect::<Vec<_>>());
     let arg = clap::Arg::new("x").long("x").help("Metres [default: 7]");
     assert_eq!(defaults(&clap::Command::new("c").arg(arg)), [("x".to_owned(), "7".to_owned())], "one is found");

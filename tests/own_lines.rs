@@ -1,27 +1,21 @@
 //! Lines of the user's own: from every format and system to the land, and what is said of wrong files.
 
+mod refused;
+mod voids;
+
 use std::path::Path;
 use std::process::Command;
 
-use clap::Parser;
+use gdal::DriverManager;
+use gdal::raster::Buffer;
+use gdal::spatial_ref::SpatialRef;
 use glam::DVec2;
-use hachure::cli::lines::LinesArguments;
-use hachure::cli::talk::{Lines, Talk, TalkArguments};
 use hachure::cli::words::line;
 use hachure::dem::{Crs, Dem};
-use hachure::geo::{OwnLayer, OwnLine, OwnLines, own_lines};
+use hachure::geo::{OwnLayer, OwnLine, OwnLines, ReadOptions, own_lines, read};
 use hachure::relief::{self, LineKind, SurfaceLine};
-use tempfile::TempDir;
 
 use crate::flights::{folder, sample, write};
-
-#[derive(Parser)]
-struct Typed {
-    #[command(flatten)]
-    lines: LinesArguments,
-    #[command(flatten)]
-    talk: TalkArguments,
-}
 
 /// A winding way over the sample, degrees.
 fn way() -> Vec<[f64; 2]> {
@@ -167,67 +161,6 @@ fn edges_are_straight_in_their_file() {
     assert_eq!(ends(&down, 1), [499.0, 0.0]);
 }
 
-/// A grid of 21 x 21 samples of cells of 10 m, with voids.
-fn grid(voids: &[[usize; 2]]) -> Dem {
-    let height = |i: usize| if voids.contains(&[i % 21, i / 21]) { f32::NAN } else { 5.0 };
-    Dem::from_heights(21, DVec2::splat(10.0), DVec2::new(1000.0, 2000.0), (0..21 * 21).map(height).collect())
-}
-
-/// Lines through columns and rows of [`grid`].
-fn given(lines: &[(&[[f64; 2]], bool)]) -> OwnLines {
-    let world = |place: &[f64; 2]| DVec2::new(1000.0 + 10.0 * place[0], 2000.0 - 10.0 * place[1]);
-    let of = |(line, closed): &(&[[f64; 2]], bool)| OwnLine {
-        places: line.iter().map(world).collect(),
-        closed: *closed,
-        order: 1,
-    };
-    let lines = lines.iter().map(of).collect();
-    OwnLines { layers: vec![OwnLayer { name: "a".into(), crs: None, lines, points_left_out: 0 }] }
-}
-
-fn on_grid(lines: &[(&[[f64; 2]], bool)], voids: &[[usize; 2]]) -> Vec<SurfaceLine> {
-    let dem = grid(voids);
-    let lines = relief::own_lines(Path::new("a"), &given(lines), &dem).unwrap_or_else(|e| panic!("{}", line(&e)));
-    lines.iter().for_each(|line| check(line, &dem));
-    lines
-}
-
-/// First and last place.
-fn ends(line: &SurfaceLine) -> [[f64; 2]; 2] {
-    [0, line.points.len() - 1].map(|i| (line.points[i].at * 1e9).round().to_array().map(|x| x / 1e9))
-}
-
-#[test]
-fn lines_end_where_the_land_does() {
-    let void = [[10, 10]];
-    let across = on_grid(&[(&[[-5.0, 3.5], [25.0, 3.5]], false)], &void);
-    assert_eq!((across.len(), ends(&across[0])), (1, [[0.0, 3.5], [20.0, 3.5]]), "the edge");
-    // Patches have three corners: of cell (9, 10) the one in the south-west is there.
-    let through = on_grid(&[(&[[2.0, 10.25], [18.0, 10.25]], false)], &void);
-    assert_eq!(
-        through.iter().map(ends).collect::<Vec<_>>(),
-        [[[2.0, 10.25], [9.25, 10.25]], [[11.0, 10.25], [18.0, 10.25]]]
-    );
-    let along = on_grid(&[(&[[2.0, 10.0], [18.0, 10.0]], false)], &void);
-    assert_eq!(along.iter().map(ends).collect::<Vec<_>>(), [[[2.0, 10.0], [9.0, 10.0]], [[11.0, 10.0], [18.0, 10.0]]]);
-    // Along the rim of a void, and of the DEM, there is land on one side.
-    let rim =
-        on_grid(&[(&[[9.0, 9.0], [9.0, 10.0], [10.0, 11.0]], false), (&[[20.0, 1.0], [20.0, 5.0]], false)], &void);
-    assert_eq!(rim.iter().map(ends).collect::<Vec<_>>(), [[[9.0, 9.0], [10.0, 11.0]], [[20.0, 1.0], [20.0, 5.0]]]);
-}
-
-#[test]
-fn closed_lines_stay_closed_or_are_cut_once_less() {
-    let square: &[[f64; 2]] = &[[5.0, 5.0], [15.0, 5.0], [15.0, 15.0], [5.0, 15.0]];
-    let whole = on_grid(&[(square, true)], &[]);
-    assert!(whole.len() == 1 && whole[0].closed && whole[0].points.len() == 40);
-    // Its first place lies amid what is left.
-    let cut = on_grid(&[(square, true)], &[[10, 15]]);
-    assert_eq!((cut.len(), ends(&cut[0]), cut[0].closed), (1, [[9.0, 15.0], [11.0, 15.0]], false));
-    let beyond = on_grid(&[(&[[5.0, 5.0], [25.0, 5.0], [25.0, 15.0], [5.0, 15.0]], true)], &[]);
-    assert_eq!((beyond.len(), ends(&beyond[0])), (1, [[20.0, 15.0], [20.0, 5.0]]));
-}
-
 #[test]
 fn areas_parts_layers_and_orders_are_taken() {
     let folder = folder();
@@ -278,100 +211,54 @@ fn areas_parts_layers_and_orders_are_taken() {
     }
 }
 
-fn typed(paths: &[&str]) -> Typed {
-    let flags = paths.iter().map(|path| format!("--lines={path}"));
-    Typed::try_parse_from(["draw".to_owned(), "-q".to_owned()].into_iter().chain(flags))
-        .unwrap_or_else(|e| panic!("{e}"))
-}
-
 #[test]
-fn the_flag_is_repeatable_and_names_what_was_asked() {
+fn dems_that_stay_in_their_files_have_the_same() {
     let folder = folder();
-    let road = |end: f64| feature("LineString", &format!("[[-122.5,37.8],[-122.49,{end}]]"), "");
-    let [one, other] = [37.81, 37.82].map(|end| write(&folder, &format!("{end}.geojson"), &road(end)));
-    let typed_two = typed(&[&one, &other]);
-    let talk = Talk::new(&typed_two.talk, Lines::Stdout);
-    assert_eq!(typed_two.lines.files(), [Path::new(&one), Path::new(&other)]);
-    assert!(!typed_two.lines.is_empty() && typed(&[]).lines.is_empty());
-    let lines = typed_two.lines.read(sample().dem(), false, &talk).unwrap_or_else(|e| panic!("{}", line(&e)));
-    assert_eq!(lines.len(), 2);
-    let asked = |paths: &[&str]| typed(paths).lines.open(false).unwrap_or_else(|e| panic!("{}", line(&e))).asked();
-    assert_eq!(asked(&[]), "");
-    assert_eq!(asked(&[&one, &other]), asked(&[&one, &other]));
-    assert_ne!(asked(&[&one, &other]), asked(&[&other, &one]), "the last lies on top");
-    let elsewhere = TempDir::new().expect("a folder");
-    let copy = |end| write(&elsewhere, "37.81.geojson", &road(end));
-    let layer = copy(37.81) + ":37.81";
-    assert_eq!((asked(&[&copy(37.81)]), typed(&[&layer]).lines.files()), (asked(&[&one]), vec![copy(37.81).into()]));
-    assert_ne!(asked(&[&copy(37.810001)]), asked(&[&one]), "other places");
+    let path = write(&folder, "way.geojson", &feature("LineString", &format!("{:?}", way()), ""));
+    let dem = concat!(env!("CARGO_MANIFEST_DIR"), "/dem/golden-gate.tif");
+    let filed = read(dem, &ReadOptions { memory: 1 << 16, ..Default::default() }).expect("the sample");
+    assert!(filed.is_filed());
+    assert_eq!(on(&path, &filed), placed(&path));
 }
 
-/// The line of an error about a file of lines.
-fn refused(path: &str, dem: &Dem) -> String {
-    let lines = own_lines(Path::new(path), false).and_then(|given| relief::own_lines(Path::new(path), &given, dem));
-    let said = line(&lines.expect_err(path));
-    assert!(!said.contains('\n'), "{said}");
-    said
+/// A file of lines by hand.
+fn given(crs: Option<Crs>, lines: Vec<OwnLine>) -> OwnLines {
+    OwnLines { layers: vec![OwnLayer { name: "a".into(), crs, lines, points_left_out: 0 }] }
 }
 
 #[test]
-fn wrong_files_are_refused_in_one_line() {
-    let (folder, dem) = (folder(), sample().dem());
-    let road = feature("LineString", "[[-122.5,37.8],[-122.49,37.81]]", "");
-    let far = feature("LineString", "[[10.5,47.8],[10.6,47.9]]", "");
-    for (name, text, words) in [
-        ("empty.geojson", "", &["is empty (0 bytes)"][..]),
-        ("nothing.geojson", &collection(&[]), &["holds no line and no area; give a file with lines"]),
-        ("points.geojson", &feature("Point", "[-122.5,37.8]", ""), &["holds points, no line and no area; "]),
-        (
-            "far.geojson",
-            &far,
-            &[
-                "lies outside the DEM: between 10.500000,47.800000 and 10.600000,47.900000 of WGS 84 (EPSG:4326), and the DEM between 536715.00,4180515.00 and 551685.00,4195485.00 metres of \"WGS 84 / UTM zone 10N (EPSG:32610)\"",
-                "; give lines over the DEM, x first, in the system that the file names",
-            ],
-        ),
-        (
-            "words.gpx",
-            "no lines at all",
-            &["is in no format of lines that hachure reads; give lines as GeoPackage, GeoJSON"],
-        ),
-        ("cut.geojson", "{\"type\":\"FeatureCollection\",\"features\":[{\"type\"", &["cannot be opened as lines ("]),
-    ] {
-        let said = refused(&write(&folder, name, text), dem);
-        assert!(words.iter().all(|words| said.contains(words)), "{name}: {said}");
+fn dems_in_feet_and_degrees_have_them_where_they_are() {
+    let folder = folder();
+    for (epsg, transform) in
+        [(2227, [5_950_000.0, 100.0, 0.0, 2_130_000.0, 0.0, -100.0]), (4326, [-122.6, 0.0003, 0.0, 37.9, 0.0, -0.0003])]
+    {
+        let path = folder.path().join(format!("{epsg}.tif"));
+        let driver = DriverManager::get_driver_by_name("GTiff").expect("a driver");
+        let mut file = driver.create_with_band_type::<f32, _>(&path, 90, 80, 1).expect("a file");
+        file.set_geo_transform(&transform).expect("a place");
+        file.set_spatial_ref(&SpatialRef::from_epsg(epsg).expect("a system")).expect("a system");
+        let mut buffer = Buffer::new((90, 80), (0..90 * 80_u16).map(|i| f32::from(i).sin() * 9.0 + 50.0).collect());
+        file.rasterband(1).expect("a band").write((0, 0), (90, 80), &mut buffer).expect("samples");
+        file.close().expect("a file");
+        let dem = read(&path, &ReadOptions::default()).unwrap_or_else(|e| panic!("{}", line(&e)));
+        // Of a file that names no system, and of one in degrees: the same line.
+        let place = |[c, r]: [f64; 2]| DVec2::new(transform[0] + c * transform[1], transform[3] + r * transform[5]);
+        let places = [[30.5, 40.5], [45.5, 33.5], [52.5, 42.5]].map(place);
+        let (globe, georeference) = (Crs::lonlat().expect("a register"), dem.georeference());
+        let world = places.map(|place| georeference.world_place(georeference.file(), place).expect("a place"));
+        let degrees = world.map(|world| georeference.place_in(&globe, world).expect("a place"));
+        for (crs, places) in [(None, places), (Some(globe), degrees)] {
+            let own = OwnLine { places: places.to_vec(), closed: false, order: 3 };
+            let found = relief::own_lines(Path::new("a"), &given(crs, vec![own]), &dem)
+                .unwrap_or_else(|e| panic!("{}", line(&e)));
+            assert_eq!((found.len(), found[0].order), (1, 3));
+            check(&found[0], &dem);
+            let wanted = world.map(|world| dem.grid_place(world));
+            let worst = wanted.iter().map(|place| away(*place, &self::places(&found[0]))).fold(0.0, f64::max);
+            assert!(worst < 1e-3, "{epsg}: {worst} cells");
+            if epsg == 2227 {
+                assert!(wanted[0].distance(DVec2::new(30.0, 40.0)) < 1e-6, "{}", wanted[0]);
+            }
+        }
     }
-    let good = write(&folder, "road.geojson", &road);
-    let raster = concat!(env!("CARGO_MANIFEST_DIR"), "/dem/golden-gate.tif");
-    for (path, words) in [
-        (format!("{good}:rails").as_str(), "has no layer rails; name one of its layers: road"),
-        (raster, "holds a raster, not lines"),
-        ("nowhere.gpkg", "nowhere.gpkg: there is no such file; "),
-        ("http://a.b/c.gpkg", "lies on a network; download it first, or add `--allow-remote`"),
-        ("PG:dbname=a", "is no file, but a connection"),
-    ] {
-        let said = refused(path, dem);
-        assert!(said.contains(words), "{said}");
-    }
-    // A GeoPackage that ends amid its pages.
-    let gpkg = folder.path().join("road.gpkg");
-    let many =
-        write(&folder, "many.geojson", &collection(&vec![feature("LineString", &format!("{:?}", way()), ""); 200]));
-    if ogr2ogr(&[], &gpkg, &many) {
-        let whole = std::fs::read(&gpkg).expect("a file");
-        std::fs::write(&gpkg, &whole[..whole.len() / 3]).expect("a file");
-        let said = refused(gpkg.to_str().expect("a name"), dem);
-        assert!(said.contains("is damaged or cut short (") || said.contains("cannot be opened as lines ("), "{said}");
-    }
-    let nowhere = grid(&[]);
-    assert!(
-        refused(&good, &nowhere)
-            .contains("lies in WGS 84 (EPSG:4326), and the DEM in no named system, of which nobody knows")
-    );
-    let all: Vec<[usize; 2]> = (0..21 * 21).map(|i| [i % 21, i / 21]).filter(|place| place[1] > 5).collect();
-    let in_void = relief::own_lines(Path::new("a"), &given(&[(&[[5.0, 9.0], [9.0, 9.0]], false)]), &grid(&all));
-    assert_eq!(
-        line(&in_void.expect_err("no land")),
-        "a: its lines lie in voids of the DEM alone; give lines over its land, or fill its voids"
-    );
 }

@@ -145,7 +145,7 @@ fn half_dome_and_mount_st_helens_are_found() {
         ("yosemite_utm11n_30m.tif", DVec2::new(-119.5332, 37.7459), 2682.0, 380.0..430.0, 20),
         ("sthelens_utm10n_10m.tif", DVec2::new(-122.1944, 46.1914), 2537.0, 1900.0..2000.0, 1),
     ] {
-        let dem = read(&folder.join(name), &ReadOptions::default()).expect(name);
+        let dem = read(folder.join(name), &ReadOptions::default()).expect(name);
         let found = peaks(&dem, rank, 1.0).expect("peaks");
         let near = |peak: &&Peak| {
             let place = dem

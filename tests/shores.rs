@@ -2,7 +2,6 @@
 
 use std::collections::HashMap;
 use std::f64::consts::TAU;
-use std::path::Path;
 
 use gdal::DriverManager;
 use gdal::raster::Buffer;
@@ -273,9 +272,18 @@ fn the_sample_has_its_bay_and_its_islands() {
 }
 
 #[test]
+fn a_plain_of_lava_has_few_lakes() {
+    let Some(folder) = shared_dems() else { return };
+    let dem = read(folder.join("inl_idaho_feet.tif"), &ReadOptions::default()).expect("a DEM");
+    let found = shores(&dem);
+    println!("{} lines, {} samples of water", found.lines.len(), found.water.count());
+    assert!((5..20).contains(&found.lines.len()), "{} lines", found.lines.len());
+}
+
+#[test]
 fn spirit_lake_is_one() {
     let Some(folder) = shared_dems() else { return };
-    let dem = read(Path::new(&folder.join("sthelens_utm10n_10m.tif")), &ReadOptions::default()).expect("a DEM");
+    let dem = read(folder.join("sthelens_utm10n_10m.tif"), &ReadOptions::default()).expect("a DEM");
     let found = shores(&dem);
     let longest = found.lines.iter().max_by(|a, b| a.points[0].length.total_cmp(&b.points[0].length)).expect("shores");
     let at = places(longest);

@@ -15,7 +15,7 @@ Examples:
   hachure info dem/golden-gate.tif --peaks 5";
 
 /// Peaks that are listed where nobody says how many.
-const PEAKS: &str = "20";
+pub const PEAKS: &str = "20";
 
 /// Flags of `hachure info`.
 #[derive(Debug, clap::Args)]
@@ -25,7 +25,7 @@ pub struct InfoArguments {
     terrain: TerrainArguments,
     #[arg(
         long, value_name = "N", value_parser = values::peaks, num_args = 0..=1, default_missing_value = PEAKS,
-        help = format!("Also list the N most prominent peaks, with the saddles that part them from higher ground [N unless told otherwise: {PEAKS}]")
+        help = format!("Also list the N most prominent peaks, with the saddles that part them from higher ground [default: {PEAKS}]")
     )]
     peaks: Option<usize>,
 }

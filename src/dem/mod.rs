@@ -22,7 +22,7 @@ mod systems;
 mod tiles;
 pub(crate) mod tiling;
 mod validity;
-pub(crate) mod water;
+pub mod water;
 mod whereabouts;
 mod window;
 

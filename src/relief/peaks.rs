@@ -2,7 +2,7 @@
 //!
 //! Method: the merge tree of the negated surface (Carr, Snoeyink, Axen 2003): samples join their 8 neighbours from the highest
 //! down in a union-find, equal ones in the order of their places; where two hills meet is the key saddle of the lower one.
-//! Cost: a sort of the samples and about 100 ns a sample more, on one core; 8 bytes a sample. Not handled: what lies beyond the
+//! Cost: some 200 ns a sample, half of it a sort on all cores, the rest on one; 8 bytes a sample. Not handled: what lies beyond the
 //! DEM: a peak at its edge may be a slope, and a way around may have a higher saddle.
 
 use std::cmp::Reverse;
