@@ -21,8 +21,13 @@ fn lay(@builtin(global_invocation_id) invocation: vec3<u32>) {
     if k >= arrayLength(&laid) || all(laid[k] == vec2<i32>(0)) {
         return;
     }
-    let at = laid[k];
-    let id = facet_at(at);
+    // On the edge of the land its facet lies on one side of the place.
+    var at = laid[k];
+    var id = NO_FACET;
+    for (var side = 0u; side < 4u && id == NO_FACET; side++) {
+        at = laid[k] - vec2<i32>(select(0, 2, (side & 1u) == 1u), select(0, 4, side >= 2u));
+        id = facet_at(at);
+    }
     if id == NO_FACET {
         return;
     }

@@ -177,3 +177,25 @@ fn a_line_over_the_edge_of_the_page_and_behind_the_eye_is_cut_there() {
     assert!(page(vec![behind], &camera).land.is_empty());
     assert!(page(Vec::new(), &camera).land.is_empty());
 }
+
+#[test]
+fn lines_run_on_beneath_the_eye_and_along_the_edge_of_the_land() {
+    // A road that passes the eye, points far apart: it reaches the foot of the page.
+    let eye = from_middle(DVec3::new(0.0, -500.0, 4.0));
+    let camera = look(eye, from_middle(DVec3::new(0.0, -300.0, 0.0)), 60.0, PAGE);
+    let mut road = own(&[DVec2::new(6.0, -620.0), DVec2::new(6.0, -200.0)], false);
+    road.points = [0, road.points.len() - 1].map(|end| road.points[end]).to_vec();
+    let land = page(vec![road], &camera).land;
+    let lowest = land.iter().flat_map(|chain| &chain.points).map(|point| point.place.y).fold(0.0, f64::max);
+    assert!(lowest > 286.0, "it ends {lowest} px down");
+    // Along all four sides of the DEM.
+    let camera = look(from_middle(DVec3::new(0.0, 0.0, 3000.0)), from_middle(DVec3::new(0.0, 1.0, 0.0)), 60.0, PAGE);
+    let half = RIDGE.half();
+    let corners = [[-half, -half], [half, -half], [half, half], [-half, half]].map(DVec2::from);
+    for (a, b) in corners.into_iter().zip(corners.into_iter().cycle().skip(1)) {
+        let land = page(vec![own(&[a, b], false)], &camera).land;
+        let ends = [a, b].map(|p| camera.project(from_middle(p.extend(0.0))).0);
+        let length: f64 = land.iter().map(Chain::length).sum();
+        assert!((length - ends[0].distance(ends[1])).abs() < 2.0, "{a} to {b}: {length} px");
+    }
+}

@@ -45,6 +45,12 @@ fn a_branch_that_is_drawn_reaches_its_junction() {
     assert!(branch[0] > 0.5 && branch.is_sorted() && trunk.is_sorted(), "{branch:?}");
     assert!(trunk[39] < 0.1 && trunk[40] >= branch[branch.len() - 1], "{:?}", &trunk[38..42]);
     assert!(twig.iter().all(|weight| *weight == 0.0), "no relief, no line");
+    // A trunk that falls too little to be drawn by itself carries its branches on all the same.
+    let mut flat = stream(DVec2::new(100.0, 60.0), DVec2::new(100.0, 160.0), [0.0; 2], None);
+    flat.points.iter_mut().for_each(|point| point.drop = 0.0);
+    let branch = stream(DVec2::new(40.0, 60.0), DVec2::new(100.0, 100.0), [30.0, 0.0], Some([0, 40]));
+    let shown = self::shown(&[flat, branch], EYE);
+    assert!(shown[0].len() == 101 && shown[0][39] == 0.0 && shown[0][40..].iter().all(|weight| *weight > 0.3));
     // The same without the branch: the trunk begins farther down.
     let alone = self::shown(&[stream(DVec2::new(100.0, 60.0), DVec2::new(100.0, 160.0), [0.0, 3.0], None)], EYE);
     assert!(alone[0][40] < 0.5);
@@ -78,7 +84,7 @@ fn own_lines_are_drawn_whatever_the_relief_and_rivers_through_plains() {
     let own = SurfaceLine { points: own.points.iter().map(of_own).collect(), ..own };
     // 1.2 km and 160 m of 20 m cells; a river of 20 km that is 3 km long here.
     let (brook, mut river) = (flat(80.0, 60.0), flat(110.0, 150.0));
-    river.points.iter_mut().for_each(|point| point.length += 17_000.0);
+    river.points.iter_mut().for_each(|point| (point.length, point.drop) = (point.length + 17_000.0, 0.5));
     let shown = shown(&[own, brook, river], EYE);
     let widest = |i: usize| shown[i].iter().copied().fold(0.0, f32::max);
     assert!(widest(0) > 0.4 && shown[0].iter().all(|weight| *weight == widest(0)), "order 1 is fine, and whole");

@@ -7,7 +7,7 @@ use hachure::geo::{ReadOptions, read};
 use hachure::ink::{Sheet, Style};
 use hachure::line::{Chain, ChainPoint, Land};
 use hachure::plan::{Curves, LandLines, Plan};
-use hachure::relief::{ChannelArea, Relief};
+use hachure::relief::{ChannelArea, LineKind, Relief, SurfaceLine, SurfacePoint};
 use hachure::render::Renderer;
 use hachure::surface::Surface;
 use hachure::view::{Camera, Fixed, Perspective, choose};
@@ -23,7 +23,7 @@ const HERE: f64 = 1.5;
 /// At the edge of the page nothing counts, px.
 const MARGIN: f64 = 3.0;
 
-/// The lines on the land of a frame: those that the eye may see, and how strongly they are drawn.
+/// The lines on the land of a frame: where the eye may see them, were they all drawn, and how strongly they are.
 struct Frame {
     perspective: Perspective,
     seen: RTree<[f64; 2]>,
@@ -31,16 +31,16 @@ struct Frame {
     weights: RTree<GeomWithData<[f64; 2], f32>>,
 }
 
-fn frame(renderer: &mut Renderer, camera: &Camera) -> Frame {
+fn frame([drawn, all]: &mut [Renderer; 2], camera: &Camera) -> Frame {
     let plan = Plan { curves: Curves::On, land: LandLines::On, ..Plan::default() };
-    let page = renderer.page(&plan, camera, |_| ()).expect("a page");
+    let [page, all] = [drawn, all].map(|renderer| renderer.page(&plan, camera, |_| ()).expect("a page"));
     let (style, size) = (Style::default(), [camera.width, camera.height]);
     let px_per_mm = Sheet::for_frame(size).placement(size).px_per_mm;
     let lines = page.lines(&style.economy(px_per_mm), style.tolerance * px_per_mm);
     let drawn: Vec<Chain> = lines.chains.into_iter().filter(|chain| chain.line().is_of_land()).collect();
     let places = |point: &ChainPoint| point.place.to_array();
     // Points stand at most 4 px apart: between them there are more.
-    let seen = page.land.iter().flat_map(points).map(|point| places(&point)).collect();
+    let seen = all.land.iter().flat_map(points).map(|point| places(&point)).collect();
     let weights = drawn.iter().flat_map(points);
     let weights = weights.map(|point| GeomWithData::new(places(&point), point.weight)).collect();
     Frame { perspective: page.perspective, seen: RTree::bulk_load(seen), weights: RTree::bulk_load(weights), drawn }
@@ -78,12 +78,23 @@ fn lost(from: &Frame, to: &Frame) -> [f64; 2] {
 }
 
 /// Drawn length that comes or goes from a frame to the next, and all, of a flight in steps of so many metres.
-fn comes_and_goes(renderer: &mut Renderer, first: &Camera, step: f64) -> [f64; 2] {
+fn comes_and_goes(renderers: &mut [Renderer; 2], first: &Camera, step: f64) -> [f64; 2] {
     let [.., forward] = first.axes();
     let at = |k: u32| Camera { eye: first.eye + forward * f64::from(k) * step, ..*first };
-    let frames: Vec<Frame> = (0..FRAMES).map(|k| frame(renderer, &at(k))).collect();
+    let frames: Vec<Frame> = (0..FRAMES).map(|k| frame(renderers, &at(k))).collect();
     let pairs = frames.windows(2).flat_map(|pair| [lost(&pair[0], &pair[1]), lost(&pair[1], &pair[0])]);
     pairs.fold([0.0; 2], |a, b| [a[0] + b[0], a[1] + b[1]])
+}
+
+/// The same lines as those that no relief need show.
+fn all_shown(lines: &[SurfaceLine]) -> Vec<SurfaceLine> {
+    let point = |point: &SurfacePoint| SurfacePoint { across: [f32::INFINITY; 3], ..*point };
+    let line = |line: &SurfaceLine| SurfaceLine {
+        kind: LineKind::Own,
+        points: line.points.iter().map(point).collect(),
+        ..line.clone()
+    };
+    lines.iter().map(line).collect()
 }
 
 #[test]
@@ -91,21 +102,31 @@ fn lines_on_the_land_do_not_pop() {
     let surface = Arc::new(Surface::new(read("dem/golden-gate.tif", &ReadOptions::default()).expect("the sample")));
     let camera = choose(surface.dem(), Fixed::default(), 60.0, 640, 360).expect("a view");
     let relief = Relief::of(surface.dem(), 1.0).expect("flow");
-    let mut renderer = Renderer::new(gpu().clone(), surface.clone()).expect("a renderer");
-    let mut sums = LAND_POPS.map(|_| [0.0; 2]);
-    for (what, lines) in
-        [("drainage", relief.drainage(ChannelArea::Auto)), ("ridges", relief.ridges().expect("ridges"))]
-    {
+    let mut lines = relief.drainage(ChannelArea::Auto);
+    let before = lines.len() as u32;
+    lines.extend(relief.ridges().expect("ridges").into_iter().map(|line| {
+        let joins = line.joins.map(|[onto, at]| [onto + before, at]);
+        SurfaceLine { joins, ..line }
+    }));
+    let renderer = |lines: Vec<SurfaceLine>| {
+        let mut renderer = Renderer::new(gpu().clone(), surface.clone()).expect("a renderer");
         renderer.set_land(Some(Arc::new(Land::new(surface.dem(), 1.0, lines).expect("lines"))));
-        for ((step, _), sums) in LAND_POPS.iter().zip(&mut sums) {
-            let [lost, all] = comes_and_goes(&mut renderer, &camera, *step);
-            println!("land: {:.3} % of {what} come or go a step of {step} m", 100.0 * lost / all);
-            assert!(all > 0.0, "{what} are drawn");
-            *sums = [sums[0] + lost, sums[1] + all];
-        }
+        renderer
+    };
+    let all = all_shown(&lines);
+    let mut renderers = [renderer(lines.clone()), renderer(all.clone())];
+    for (step, most) in LAND_POPS {
+        let [lost, all] = comes_and_goes(&mut renderers, &camera, step);
+        println!("land: {:.3} % of drawn length come or go a step of {step} m", 100.0 * lost / all);
+        assert!(all > 0.0 && lost / all <= most, "{}", lost / all);
     }
-    for ((step, most), [lost, all]) in LAND_POPS.iter().zip(sums) {
-        println!("land: {:.3} % of both come or go a step of {step} m", 100.0 * lost / all);
-        assert!(lost / all <= *most, "{}", lost / all);
-    }
+    // Negative control: every fourth line of the first frame is not in the second.
+    let first = frame(&mut renderers, &camera);
+    let without = lines.iter().enumerate().map(|(i, line)| match i % 4 {
+        0 => SurfaceLine { points: line.points[..2].to_vec(), joins: None, ..line.clone() },
+        _ => SurfaceLine { joins: None, ..line.clone() },
+    });
+    let second = frame(&mut [renderer(without.collect()), renderer(all)], &camera);
+    let [lost, all] = lost(&first, &second);
+    assert!(lost / all > LAND_POPS[0].1, "lines that are gone are not noticed: {}", lost / all);
 }

@@ -1,10 +1,12 @@
 //! Lines on the land: where water goes, where it parts, and the lines along both.
 
+mod coarse;
 mod costs;
 mod flow;
 mod forms;
 mod kept;
 mod laid;
+mod orders;
 mod stranger;
 
 use std::path::Path;

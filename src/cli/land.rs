@@ -65,7 +65,9 @@ impl LandArguments {
     /// [`Error::Setting`].
     pub fn refuse_for_traced(&self) -> Result<()> {
         let asks = self.creases.as_ref().is_some_and(|creases| !creases.0.is_empty());
-        let given = [(Setting::Creases, asks), (Setting::Lines, !self.lines.is_empty())];
+        let has_area = self.channel_area != ChannelArea::Auto;
+        let given =
+            [(Setting::Creases, asks), (Setting::ChannelArea, has_area), (Setting::Lines, !self.lines.is_empty())];
         let refuse = |setting| Error::setting(setting, "goes with contours only", "leave out --method");
         given.into_iter().find(|(_, given)| *given).map_or(Ok(()), |(setting, _)| Err(refuse(setting)))
     }
@@ -117,7 +119,8 @@ fn creases(text: &str) -> std::result::Result<Creases, String> {
     let names = Crease::ALL.map(Crease::name).join(", ");
     let known = |word: &str| Crease::ALL.into_iter().find(|crease| crease.name() == word);
     let listed = match text {
-        "none" => Some(Vec::new()),
+        // An empty list of a batch.
+        "none" | "" => Some(Vec::new()),
         text => text.split(',').map(|word| known(word.trim())).collect::<Option<Vec<_>>>(),
     };
     let mut creases = listed.ok_or_else(|| format!("want some of {names}, with commas between, or none"))?;

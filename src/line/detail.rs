@@ -37,6 +37,8 @@ const RIVER: [f64; 2] = [2000.0, 4000.0];
 const PLAIN_LENGTH: [f64; 2] = [2.0, 12.0];
 /// Along the page, what the land beside a line says is averaged over this to either side, px.
 const SOFT: f64 = 10.0;
+/// Weights up to which no pen shows a line, and from which it is as wide as it should be.
+const SEEN: [f64; 2] = [0.04, 0.12];
 /// Width of a stream of the first order as a share of that of one of the fourth.
 const LEAST_WIDTH: f64 = 0.6;
 const WHOLE_ORDER: f64 = 4.0;
@@ -135,16 +137,17 @@ impl Land {
                 strongest = strongest.max(*weight);
                 *weight = strongest;
             }
-            let onto = line.joins.map(|at| at.map(|at| at as usize));
-            let onto = onto.and_then(|[onto, at]| shown.get_mut(onto)?.0.get_mut(at));
-            onto.into_iter().for_each(|weight| *weight = weight.max(strongest));
+            let Some([onto, at]) = line.joins.map(|at| at.map(|at| at as usize)) else { continue };
+            // What it joins may not be worth drawing by itself.
+            shown[onto].0.resize(self.lines[onto].points.len(), 0.0);
+            shown[onto].0[at] = shown[onto].0[at].max(strongest);
         }
         let wide = |(line, (mut weights, length)): (&SurfaceLine, (Vec<f32>, f64))| {
-            let width = width(line, length) as f32;
             for (weight, point) in weights.iter_mut().zip(&line.points) {
-                *weight *= if point.across[0].is_nan() { 0.0 } else { width };
+                let seen = fade(SEEN, f64::from(*weight)) as f32;
+                *weight *= if point.across[0].is_nan() { 0.0 } else { seen * width(line, point, length) as f32 };
             }
-            weights
+            if weights.iter().all(|weight| *weight == 0.0) { Vec::new() } else { weights }
         };
         self.lines.iter().zip(shown).map(wide).collect()
     }
@@ -162,7 +165,8 @@ impl Land {
         let by_length = if is_branch(line) {
             let falls = line.points.iter().zip(&scales);
             let falls = falls.map(|(point, scale)| f64::from(point.drop) * self.exaggeration * scale);
-            fade(LENGTH, length).min(fade(DROP, falls.fold(0.0, f64::max)))
+            let by_drop = fade(DROP, falls.fold(0.0, f64::max));
+            fade(LENGTH, length).min(by_drop.max(line.points.last().map_or(0.0, |end| river(line.kind, end))))
         } else {
             fade(PLAIN_LENGTH, length)
         };
@@ -189,7 +193,7 @@ impl Land {
             true => a.lerp(b, (cells - near) / (middle - near)),
             false => b.lerp(c, (cells - middle) / (far - middle)),
         };
-        let river = if kind == LineKind::Drainage { fade(RIVER, point.length.into()) } else { 0.0 };
+        let river = river(kind, point);
         let by_slope = fade(SLOPE, across / (cells * self.cell)).max(river);
         let by_relief = fade(ACROSS, across * self.exaggeration * scale).min(fade(ACROSS_M, across));
         by_relief.max(river).min(by_slope)
@@ -210,10 +214,21 @@ fn is_branch(line: &SurfaceLine) -> bool {
     matches!(line.kind, LineKind::Drainage | LineKind::Ridge)
 }
 
-/// Width of a line that is seen so long, px, as a share of its pen's.
-fn width(line: &SurfaceLine, length: f64) -> f64 {
+/// How far a stream is a river here, which is drawn whatever the relief.
+fn river(kind: LineKind, point: &SurfacePoint) -> f64 {
+    if kind == LineKind::Drainage { fade(RIVER, point.length.into()) } else { 0.0 }
+}
+
+/// Width at a point of a line that is seen so long, px, as a share of its pen's: a stream is as broad at its end as its order
+/// says, and grows to that by its length.
+fn width(line: &SurfaceLine, point: &SurfacePoint, length: f64) -> f64 {
+    let by_order = (f64::from(line.order) - 1.0) / (WHOLE_ORDER - 1.0);
     let share = match line.kind {
-        LineKind::Drainage | LineKind::Own => (f64::from(line.order) - 1.0) / (WHOLE_ORDER - 1.0),
+        LineKind::Drainage => {
+            let end = line.points.last().map_or(1.0, |end| end.length).max(f32::MIN_POSITIVE);
+            by_order * f64::from(point.length / end).sqrt()
+        }
+        LineKind::Own => by_order,
         LineKind::Ridge => fade(RIDGE_WIDTH, length),
         LineKind::Shore => 1.0,
     };
@@ -263,7 +278,8 @@ impl<'a> Heights<'a> {
         let at = if let Self::Spaced { spacing, .. } = self { at / *spacing } else { at };
         let (cell, share) = (at.floor(), at.fract());
         let corners = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(x, y)| {
-            let weight = if x == 1 { share.x } else { 1.0 - share.x } * if y == 1 { share.y } else { 1.0 - share.y };
+            let weight =
+                (if x == 1 { share.x } else { 1.0 - share.x }) * (if y == 1 { share.y } else { 1.0 - share.y });
             let height = self.sample(cell.x as usize + x, cell.y as usize + y).filter(|_| weight > 0.0);
             height.map_or([0.0; 2], |height| [f64::from(height) * weight, weight])
         });

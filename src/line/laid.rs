@@ -50,19 +50,16 @@ impl Laid {
     pub fn new(land: &Land, perspective: &Perspective) -> Result<Self> {
         let shown = land.shown(From::Eye(perspective.eye(), perspective.focal()));
         let lines: Vec<_> = land.iter().zip(shown).filter(|(_, weights)| !weights.is_empty()).collect();
-        let of_line = |((line, world), weights): &((&SurfaceLine, &[DVec3]), Vec<f32>)| {
-            let place = |point: &DVec3| {
-                let ahead = perspective.distance(*point) > perspective.near();
-                ahead.then(|| perspective.project(*point))
-            };
-            let places: Vec<_> = world.iter().map(place).collect();
-            runs(line, &places, weights, perspective.size())
-        };
+        let of_line =
+            |((line, world), weights): &((&SurfaceLine, &[DVec3]), Vec<f32>)| runs(line, world, weights, perspective);
         let runs: Vec<Run> = lines.par_iter().flat_map_iter(of_line).collect();
         let places: Vec<Place> = runs.iter().flat_map(|run| run.places.iter().copied()).collect();
         if places.len() > MOST {
             let what = format!("lines of the land are {} px long on the page, {MOST} can be laid", places.len());
-            return Err(Error::limit(what, message!["use a smaller ", Setting::Size, ", or fewer ", Setting::Creases]));
+            return Err(Error::limit(
+                what,
+                message!["use a smaller ", Setting::Size, ", or fewer ", Setting::Creases, " or ", Setting::Lines],
+            ));
         }
         Ok(Self { places, runs })
     }
@@ -98,8 +95,8 @@ pub(super) fn line_of(kind: LineKind) -> Line {
     }
 }
 
-/// The parts of a line that a page shows, given where its points stand, with their depths, and how strongly they are shown.
-fn runs(line: &SurfaceLine, places: &[Option<(DVec2, f64)>], weights: &[f32], page: DVec2) -> Vec<Run> {
+/// The parts of a line that a page shows, given where its points lie in the world, and how strongly they are shown.
+fn runs(line: &SurfaceLine, world: &[DVec3], weights: &[f32], perspective: &Perspective) -> Vec<Run> {
     let new = || Run { line: line_of(line.kind), places: Vec::new(), weights: Vec::new(), closed: false };
     let (mut runs, mut run) = (Vec::new(), new());
     let mut finish = |run: &mut Run| {
@@ -108,31 +105,34 @@ fn runs(line: &SurfaceLine, places: &[Option<(DVec2, f64)>], weights: &[f32], pa
     };
     let n = weights.len();
     let stretches = if line.closed { n } else { n.saturating_sub(1) };
-    let bounds = [DVec2::splat(-BEYOND), page + BEYOND];
+    let bounds = [DVec2::splat(-BEYOND), perspective.size() + BEYOND];
     for i in 0..stretches {
         let ends = [i, (i + 1) % n];
         let shown = ends.map(|end| f64::from(weights[end]));
-        let ahead = places[ends[0]].zip(places[ends[1]]).filter(|_| shown != [0.0; 2]);
-        let on_page = ahead.and_then(|(a, b)| Some((a, b, share_within(bounds, a.0, b.0)?)));
-        let Some((a, b, [enter, leave])) = on_page else {
+        let ahead = ahead(ends.map(|end| world[end]), perspective).filter(|_| shown != [0.0; 2]);
+        let on_page = ahead.and_then(|ahead| {
+            let [a, b] = ahead.map(|share| perspective.project(world[ends[0]].lerp(world[ends[1]], share)));
+            Some((ahead, a, b, share_within(bounds, a.0, b.0)?))
+        });
+        let Some(([from, to], a, b, [enter, leave])) = on_page else {
             finish(&mut run);
             continue;
         };
-        if enter > 0.0 {
+        if enter > 0.0 || from > 0.0 {
             finish(&mut run);
         }
         let steps = (a.0.distance(b.0) * (leave - enter) / STEP).ceil().max(1.0);
         for k in 0..=steps as usize {
             let share = enter + (leave - enter) * k as f64 / steps;
             // Depth is linear on the page; the way on the map is not.
-            let share = share * b.1 / (a.1 + (b.1 - a.1) * share);
+            let share = from + (to - from) * share * b.1 / (a.1 + (b.1 - a.1) * share);
             let place = on_lattice(between(line, i, share));
             if run.places.last() != Some(&place) {
                 run.places.push(place);
                 run.weights.push((shown[0] + (shown[1] - shown[0]) * share) as f32);
             }
         }
-        if leave < 1.0 {
+        if leave < 1.0 || to < 1.0 {
             finish(&mut run);
         }
     }
@@ -143,6 +143,19 @@ fn runs(line: &SurfaceLine, places: &[Option<(DVec2, f64)>], weights: &[f32], pa
     }
     finish(&mut run);
     runs
+}
+
+/// The part of the way between two places of the world that lies beyond the near plane, as shares of it.
+fn ahead([a, b]: [DVec3; 2], perspective: &Perspective) -> Option<[f64; 2]> {
+    let near = perspective.near();
+    let [from, to] = [a, b].map(|end| perspective.distance(end));
+    let crossing = (near - from) / (to - from);
+    match (from >= near, to >= near) {
+        (true, true) => Some([0.0, 1.0]),
+        (true, false) => Some([0.0, crossing]),
+        (false, true) => Some([crossing, 1.0]),
+        (false, false) => None,
+    }
 }
 
 /// Whether a run goes all round a closed line.

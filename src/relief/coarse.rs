@@ -4,8 +4,10 @@
 //! block depends on its own samples alone. Memory: 8 bytes a block, and a band of the DEM. Cost: a look at every sample. Not
 //! handled: lines closer to each other than a few blocks.
 
+use glam::DVec2;
 use rayon::prelude::*;
 
+use super::SurfaceLine;
 use super::frame::Frame;
 use super::grid::Grid;
 use crate::dem::{Band, Dem};
@@ -24,13 +26,12 @@ pub fn spacing(dem: &Dem) -> usize {
     side
 }
 
-/// The lowest and the highest samples of the blocks of a DEM whose heights are exaggerated by a factor; tells `progress` the share
-/// done.
+/// The lowest and the highest samples of the blocks of `side` x `side` samples of a DEM whose heights are exaggerated by a factor;
+/// `side` is a power of two up to 64. Tells `progress` the share done.
 ///
 /// # Errors
 /// As [`Dem::window`] and [`Dem::check`].
-pub fn lowest_and_highest(dem: &Dem, exaggeration: f64, progress: &dyn Fn(f64)) -> Result<[Grid; 2]> {
-    let side = spacing(dem);
+pub fn lowest_and_highest(dem: &Dem, exaggeration: f64, side: usize, progress: &dyn Fn(f64)) -> Result<[Grid; 2]> {
     let size = [dem.columns(), dem.rows()].map(|samples| samples.div_ceil(side));
     let frame = Frame { size, cell: dem.cell() * side as f64 };
     let mut blocks = [f32::min, f32::max].map(|of| (of, vec![f32::NAN; frame.samples()]));
@@ -57,4 +58,11 @@ pub fn lowest_and_highest(dem: &Dem, exaggeration: f64, progress: &dyn Fn(f64)) 
     // What was read of files that changed meanwhile is of neither state.
     dem.check()?;
     Ok(blocks.map(|(_, heights)| Grid::new(frame, heights)))
+}
+
+/// Moves lines that were found on blocks of `side` x `side` samples of a DEM to its samples.
+pub fn on_samples(lines: &mut [SurfaceLine], dem: &Dem, side: usize) {
+    let (side, last) = (side as f64, DVec2::new(dem.columns() as f64, dem.rows() as f64) - 1.0);
+    let points = lines.iter_mut().flat_map(|line| &mut line.points);
+    points.for_each(|point| point.at = ((point.at + 0.5) * side - 0.5).clamp(DVec2::ZERO, last));
 }

@@ -14,7 +14,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::DVec2;
 use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
-use super::coarse::{lowest_and_highest, spacing};
+use super::coarse::{lowest_and_highest, on_samples, spacing};
 use super::whole::{ChannelArea, Relief};
 use super::{LineKind, SurfaceLine, SurfacePoint};
 use crate::cache::{Cache, Hearing, Kept, Key, Kind, Sheet, not_kept};
@@ -113,7 +113,10 @@ impl Cache {
                     FlowLines::Drainage(_) => lowest,
                     FlowLines::Ridges => highest.as_mut().unwrap_or(lowest),
                 };
-                let lines = on_dem(crease.lines(relief)?, dem);
+                let mut lines = crease.lines(relief)?;
+                if dem.is_filed() {
+                    on_samples(&mut lines, dem, spacing(dem));
+                }
                 let kept = sheet.map(|(sheet, key)| (write(sheet, &lines), key));
                 if let Some((Err(error), key)) = kept {
                     (hearing.warn)(&not_kept(key, &error));
@@ -138,18 +141,8 @@ fn both(dem: &Dem, exaggeration: f64, progress: &dyn Fn(f64)) -> Result<(Relief,
     if !dem.is_filed() {
         return Ok((Relief::of(dem, exaggeration)?, None));
     }
-    let [lowest, highest] = lowest_and_highest(dem, exaggeration, progress)?;
+    let [lowest, highest] = lowest_and_highest(dem, exaggeration, spacing(dem), progress)?;
     Ok((Relief::on(lowest)?, Some(Relief::on(highest)?)))
-}
-
-/// Lines that were found on blocks of a DEM, on its samples.
-fn on_dem(mut lines: Vec<SurfaceLine>, dem: &Dem) -> Vec<SurfaceLine> {
-    let (side, last) = (spacing(dem) as f64, DVec2::new(dem.columns() as f64, dem.rows() as f64) - 1.0);
-    if side > 1.0 {
-        let points = lines.iter_mut().flat_map(|line| &mut line.points);
-        points.for_each(|point| point.at = ((point.at + 0.5) * side - 0.5).min(last));
-    }
-    lines
 }
 
 /// Of all that the lines of a DEM depend on.

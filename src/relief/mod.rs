@@ -35,7 +35,7 @@ mod whole;
 
 use glam::DVec2;
 
-pub use coarse::spacing;
+pub use coarse::{lowest_and_highest, on_samples, spacing};
 pub use crease::{Crease, LandWanted};
 pub use flat_water::FlatWater;
 pub use kept::FlowLines;
