@@ -183,7 +183,7 @@ fn lines_run_on_beneath_the_eye_and_along_the_edge_of_the_land() {
     // A road that passes the eye, points far apart: it reaches the foot of the page.
     let eye = from_middle(DVec3::new(0.0, -500.0, 4.0));
     let camera = look(eye, from_middle(DVec3::new(0.0, -300.0, 0.0)), 60.0, PAGE);
-    let mut road = own(&[DVec2::new(6.0, -620.0), DVec2::new(6.0, -200.0)], false);
+    let mut road = own(&[DVec2::new(2.0, -620.0), DVec2::new(2.0, -200.0)], false);
     road.points = [0, road.points.len() - 1].map(|end| road.points[end]).to_vec();
     let land = page(vec![road], &camera).land;
     let lowest = land.iter().flat_map(|chain| &chain.points).map(|point| point.place.y).fold(0.0, f64::max);

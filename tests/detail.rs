@@ -27,7 +27,7 @@ fn stream(from: DVec2, to: DVec2, depth: [f32; 2], joins: Option<[u32; 2]>) -> S
         let length = (from.distance(at) * CELL) as f32;
         SurfacePoint { at, across: [across; 3], length, drop: length * 0.2 }
     };
-    SurfaceLine { kind: LineKind::Drainage, order: 4, points: (0..=steps).map(point).collect(), closed: false, joins }
+    SurfaceLine { kind: LineKind::Drainage, order: 1, points: (0..=steps).map(point).collect(), closed: false, joins }
 }
 
 fn shown(lines: &[SurfaceLine], eye: DVec3) -> Vec<Vec<f32>> {
@@ -63,7 +63,7 @@ fn lines_fade_with_distance_and_never_pop() {
     let branch = stream(DVec2::new(60.0, 80.0), DVec2::new(100.0, 100.0), [12.0, 20.0], None);
     let weights = |share: f64| shown(std::slice::from_ref(&branch), EYE * share * 0.5).pop().unwrap_or_default();
     let (mut last, mut ratio, mut largest) = (weights(1.0), 1.0_f64, 0.0_f32);
-    assert!(last.iter().all(|weight| *weight > 0.9), "whole from near");
+    assert!(last.iter().all(|weight| *weight > 0.59), "whole from near, as wide as the first order is");
     while !last.is_empty() && ratio < 1e4 {
         ratio *= 1.001;
         let next = weights(ratio);
@@ -89,5 +89,5 @@ fn own_lines_are_drawn_whatever_the_relief_and_rivers_through_plains() {
     let widest = |i: usize| shown[i].iter().copied().fold(0.0, f32::max);
     assert!(widest(0) > 0.4 && shown[0].iter().all(|weight| *weight == widest(0)), "order 1 is fine, and whole");
     assert!(widest(1) == 0.0, "a brook without a bed: {}", widest(1));
-    assert!(widest(2) > 0.9, "a river without one: {}", widest(2));
+    assert!(widest(2) > 0.59, "a river without one: {}", widest(2));
 }

@@ -131,7 +131,19 @@ fn every_style_draws_whole_rims() {
     let built_in = BuiltIn::ALL.map(|style| style.to_string());
     for style in built_in.iter().map(String::as_str).chain(["pens.toml"]) {
         let output = place.run(&[
-            "draw", "hill.asc", "-o", "a.svg", "--plan", "--scale", "1:2000", "--margin", "0", "--style", style,
+            "draw",
+            "hill.asc",
+            "-o",
+            "a.svg",
+            "--plan",
+            "--scale",
+            "1:2000",
+            "--margin",
+            "0",
+            "--creases",
+            "none",
+            "--style",
+            style,
         ]);
         assert!(output.status.success(), "{}", stderr(&output));
         let svg = fs::read_to_string(place.path("a.svg")).expect("a file");

@@ -199,7 +199,7 @@ impl Default for Pens {
             border: pen(0.24),
             shore: pen(0.18),
             drainage: pen(0.18),
-            ridge: pen(0.18),
+            ridge: pen(0.15),
             own: pen(0.24),
             hidden: pen(0.15),
         }

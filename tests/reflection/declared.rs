@@ -182,7 +182,7 @@ fn what_is_new_in_a_shader_is_noticed() {
     assert_eq!(strangers("const MOST_STEPS: u32 = 12u;"), ["MOST_STEPS"]);
     let tree = "struct Tree { root: u32 } @group(0) @binding(30) var<storage, read> trees: array<Tree>;";
     assert!(bound_structs(&parse(tree)).contains("Tree") && !bound_structs(&parse("")).contains("Tree"));
-    let (sources, passes) = (sources(&["gpu"]), ["seam", "walk_rest", "sight"]);
+    let (sources, passes) = (sources(&["gpu"]), ["seam", "walk_rest", "lay", "sight"]);
     assert_eq!(unset("seam", &parse(""), &sources, &passes), Vec::<&str>::new());
     assert_eq!(unset("seam", &parse("override most_steps: u32 = 1u;"), &sources, &passes), ["most_steps"]);
     assert_eq!(
