@@ -94,7 +94,11 @@ impl LandArguments {
         let asked: Vec<FlowLines> = wanted.creases.iter().filter_map(found).collect();
         let warn = |message: &Message| talk.warn(&told(message));
         let hearing = Hearing { warn: &warn, progress: &|done| talk.progress("looking for creases", 0.2 + 0.1 * done) };
-        let mut found = cache.creases(dem, exaggeration, &asked, hearing)?;
+        let mut found = match asked[..] {
+            // Nothing is looked at for lines of the user's own.
+            [] => Vec::new(),
+            _ => cache.creases(dem, exaggeration, &asked, hearing)?,
+        };
         if wanted.creases.contains(&Crease::Shores) {
             let shores = Shores::of(dem, exaggeration)?;
             found.iter_mut().flatten().for_each(|line| shores.water.blank(line));
