@@ -18,7 +18,7 @@ use crate::line::{InkRaster, Land};
 use crate::message;
 use crate::plan::PassName::Compose;
 use crate::plan::frame::Kept;
-use crate::plan::{Frame, LandLines, Piece, Plan};
+use crate::plan::{Frame, Piece, Plan};
 use crate::surface::Surface;
 use crate::view::{Camera, Perspective};
 
@@ -114,9 +114,6 @@ impl Renderer {
         scene.load(gpu, surface, frame)?;
         page.fit(gpu, frame.pieces.largest())?;
         curves.fit(gpu, frame)?;
-        if frame.plan.land == LandLines::On && curves.buffers().find("laid").is_none() {
-            curves.lay(gpu, &[])?;
-        }
         stages.fit(gpu, frame, scene, page, curves)
     }
 

@@ -345,3 +345,21 @@ fn what_economy_removes_of_truth_is_what_no_line_tells_any_more() {
     // Half a pixel beside a strong line a weak one is left out, and truth is told of all the same.
     assert_eq!(recall(&[chain(0.5, 20.0), chain(0.5, 60.5), chain(0.02, 60.0)]), 1.0);
 }
+
+#[test]
+fn ridges_keep_farther_from_silhouettes_than_streams_do() {
+    let crest = level(Line::Occluding, 1.0, 50.0, [0.0, 200.0]);
+    // So many gaps below a silhouette, full weight where it is alone.
+    let beside = |kind: Line, gaps: f64| {
+        let line = level(kind, 0.0, 50.0 + gaps * ECONOMY.min_gap, [0.0, 200.0]);
+        let [silhouette, line] = middles(&[crest.clone(), line])[..] else { panic!("two lines") };
+        assert_eq!(silhouette, 1.0, "it yields to nothing that lies on the land");
+        line
+    };
+    for (gaps, [stream, ridge]) in [(0.4, [0.0, 0.0]), (1.2, [1.0, 0.0]), (3.0, [1.0, 1.0])] {
+        assert_eq!([Line::Drainage, Line::Ridge].map(|kind| beside(kind, gaps)), [stream, ridge], "{gaps} gaps");
+    }
+    // Across, neither gives way.
+    let across = line(Line::Ridge, 0.0, &[(100.0, 10.0), (100.0, 90.0)]);
+    assert_eq!(middles(&[crest, across])[1], 1.0);
+}

@@ -1,6 +1,7 @@
 //! Flags of lines of the user's own that are drawn on the land.
 
 use std::path::PathBuf;
+use std::sync::OnceLock;
 
 use super::talk::Talk;
 use crate::dem::Dem;
@@ -16,6 +17,9 @@ pub struct LinesArguments {
     /// strahler, stream_order, ord_stra or class says how much a line weighs; 1 where there is none
     #[arg(long = "lines", value_name = "FILE[:LAYER]", help_heading = "Style")]
     lines: Vec<PathBuf>,
+    /// They, once they are read: what is named is what is drawn, whatever becomes of the files.
+    #[arg(skip)]
+    given: OnceLock<GivenLines>,
 }
 
 /// The lines of all files, before their DEM is read.
@@ -33,13 +37,17 @@ impl LinesArguments {
         self.lines.iter().map(|path| geo::with_layer(path).0).collect()
     }
 
-    /// Reads the files; those on a network only where these are allowed.
+    /// Reads the files, once; those on a network only where these are allowed.
     ///
     /// # Errors
     /// As [`geo::own_lines`].
-    pub fn open(&self, allow_remote: bool) -> Result<GivenLines> {
+    pub fn open(&self, allow_remote: bool) -> Result<&GivenLines> {
+        if let Some(given) = self.given.get() {
+            return Ok(given);
+        }
         let read = |path: &PathBuf| Ok((path.clone(), geo::own_lines(path, allow_remote)?));
-        self.lines.iter().map(read).collect::<Result<_>>().map(GivenLines)
+        let given = self.lines.iter().map(read).collect::<Result<_>>()?;
+        Ok(self.given.get_or_init(|| GivenLines(given)))
     }
 
     /// The lines on a DEM: [`Self::open`] and [`GivenLines::on`] at once.

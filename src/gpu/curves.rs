@@ -5,8 +5,8 @@ use super::device::Gpu;
 use super::sizes::{SEGMENT_BYTES, WORD_BYTES};
 use super::uniforms::{Segment, Tally};
 use crate::error::{Error, Result};
-use crate::plan::Frame;
 use crate::plan::batches::BATCH_CHUNKS;
+use crate::plan::{Frame, LandLines};
 use crate::surface::lattice::{CHUNK_QUADS, CHUNK_VERTICES};
 
 /// Words that tell what lies around a chunk.
@@ -47,12 +47,15 @@ pub struct CurveBuffers {
 }
 
 impl CurveBuffers {
-    /// Makes room for the chunks of a frame, if it has curves and unless there is.
+    /// Makes room for the chunks of a frame, if it has curves, and for lines on the land, if it has those, unless there is.
     ///
     /// # Errors
     /// [`Error::Limit`] when a buffer would exceed what every device binds; whatever the driver reports.
     pub fn fit(&mut self, gpu: &Gpu, frame: &Frame) -> Result<()> {
         let chunks = frame.lattice.chunks().len() as u32;
+        if frame.plan.land == LandLines::On && self.buffers.find("laid").is_none() {
+            self.lay(gpu, &[])?;
+        }
         if !frame.plan.has_curves() || (chunks <= self.chunks && self.buffers.find("segments").is_some()) {
             return Ok(());
         }
@@ -114,10 +117,12 @@ impl CurveBuffers {
             self.laid[1] = room;
             self.generation += 1;
         }
-        self.laid[0] = count;
+        let before = std::mem::replace(&mut self.laid[0], count);
         let buffer = self.buffers.get("laid")?;
-        let nothing = vec![[0; 2]; (self.laid[1] - count) as usize];
-        gpu.queue.write_buffer(buffer, 0, bytemuck::cast_slice(&[places, &nothing].concat()));
+        // What is left of those before is no point.
+        let nothing = vec![[0; 2]; before.saturating_sub(count) as usize];
+        gpu.queue.write_buffer(buffer, 0, bytemuck::cast_slice(places));
+        gpu.queue.write_buffer(buffer, size_of_val(places) as u64, bytemuck::cast_slice(&nothing));
         gpu.check()
     }
 
