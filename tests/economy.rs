@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use glam::{DVec2, DVec3};
+use hachure::line::ends::free;
 use hachure::line::{Chain, ChainPoint, Economy, Id, Line, economised};
 use hachure::measure::chains::drawn_recall;
 use hachure::truth::metrics::Judge;
@@ -362,4 +363,21 @@ fn ridges_keep_farther_from_silhouettes_than_streams_do() {
     // Across, neither gives way.
     let across = line(Line::Ridge, 0.0, &[(100.0, 10.0), (100.0, 90.0)]);
     assert_eq!(middles(&[crest, across])[1], 1.0);
+}
+
+#[test]
+fn silhouettes_end_on_nothing_that_lies_on_the_land() {
+    // One ends in the middle of another, from above.
+    let ending = |ends: Line, on: Line| {
+        let [ends, on] = [line(ends, 1.0, &[(100.0, 10.0), (100.0, 50.0)]), level(on, 1.0, 50.0, [20.0, 180.0])];
+        free(&[ends, on], [200, 200])[0]
+    };
+    assert_eq!(ending(Line::Occluding, Line::Occluding), [true, false]);
+    assert_eq!(ending(Line::Drainage, Line::Occluding), [true, false], "a stream ends on a silhouette");
+    assert_eq!(ending(Line::Drainage, Line::Drainage), [true, false]);
+    assert_eq!(
+        ending(Line::Occluding, Line::Drainage),
+        [true, true],
+        "and a silhouette is drawn as without the stream"
+    );
 }
