@@ -81,6 +81,7 @@ mod sheets;
 mod shell;
 mod shores;
 mod silhouettes;
+mod slopes;
 mod smoothest;
 mod spires;
 mod stepless;

@@ -614,3 +614,29 @@ pub const RELIEF_BYTES: f64 = 16.0;
 ///
 /// Example: of 723 samples of west-temple 651.
 pub const STRANGERS_CHANNELS: f64 = 0.9;
+
+/// How far slope lines may run from the gradient of the surface, degrees, and the least share of their length that runs no farther.
+///
+/// Example: where patches meet in a kink, a line bends within half a cell by up to 10 degrees.
+pub const DOWNHILL_DEGREES: f64 = 5.0;
+/// See [`DOWNHILL_DEGREES`].
+pub const DOWNHILL_SHARE: f64 = 0.95;
+
+/// How far points of slope lines may lie from the surface, cells: between vertices of level 64 it is taken to be flat.
+///
+/// Example: in cells of 30 m on a slope of 60 degrees, 9 cm.
+pub const ON_SURFACE: f64 = 0.003;
+
+/// By how much places with room for a spacing may lie nearer to each other, as a share of it: lines bend between the middles of
+/// pieces, and room is known at points alone.
+///
+/// Example: at 4 cells, places 3.8 cells apart.
+pub const SPACED_TOLERANCE: f64 = 0.05;
+
+/// Least share of the middles of lines that have another at most two spacings away.
+///
+/// Example: of 400 lines, 380.
+pub const SPACED_SHARE: f64 = 0.95;
+
+/// Longest time for all slope lines of a million samples down to a spacing of a cell, s: five times what two idle cores take.
+pub const SLOPE_SECONDS: f64 = 10.0;

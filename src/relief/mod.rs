@@ -25,6 +25,7 @@ mod parting;
 mod peaks;
 mod prune;
 mod shores;
+pub mod slope;
 mod smooth;
 mod steepest;
 pub mod threshold;

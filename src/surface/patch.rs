@@ -287,4 +287,14 @@ impl Patch {
             + p[4] * (a3 * a * c)
             + p[5] * (2.0 * a3 * b * c)
     }
+    /// How the point changes with each of the weights `[a, b, c]`, which count as independent: along a side of the patch it
+    /// changes as those of its two ends do apart.
+    pub fn derivatives(&self, [a, b, c]: [f64; 3]) -> [DVec3; 3] {
+        let p = &self.control;
+        let [aa, bb, cc, ab, bc, ca] = [a * a, b * b, c * c, 2.0 * a * b, 2.0 * b * c, 2.0 * c * a];
+        let of = |[i, j, k, l, m, n]: [usize; 6]| {
+            (p[i] * aa + p[j] * bb + p[k] * cc + p[l] * ab + p[m] * bc + p[n] * ca) * 3.0
+        };
+        [of([0, 2, 7, 1, 5, 4]), of([1, 3, 8, 2, 6, 5]), of([4, 6, 9, 5, 8, 7])]
+    }
 }

@@ -1,0 +1,164 @@
+//! All slope lines of a DEM, made where they are asked for.
+
+use std::collections::BTreeSet;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+use rustc_hash::FxHashMap;
+
+use super::block::made;
+use super::land::Land;
+use super::level::{BlockAt, Blocks, LEVELS};
+use super::{SlopeBlock, SlopeRules};
+use crate::error::Result;
+use crate::relief::{FlatWater, SurfaceLine};
+use crate::surface::lattice::{CELL_STEPS, CHUNK_QUADS};
+use crate::surface::{Pyramid, Surface};
+
+/// Points that are held; where there are more, blocks go that the last request did not need. 192 MB.
+const MOST_POINTS: usize = 6_000_000;
+
+/// All slope lines of a DEM: those of each block are made when they are first needed, and are the same whatever was asked
+/// before. Of a DEM that stays in its file lines run on the surface of every so-manieth sample, see
+/// [`spacing`](crate::relief::spacing), and spacings are told in cells of that.
+#[derive(Debug)]
+pub struct Slopes {
+    land: Land,
+    blocks: Blocks,
+    made: Mutex<Made>,
+}
+
+type Made = FxHashMap<BlockAt, Arc<SlopeBlock>>;
+
+impl Slopes {
+    /// Of a surface whose heights are multiplied by `exaggeration`; lines end at `stops`, drainage and ridges, and at the shores of
+    /// `water`, which is that of the DEM's samples. Makes no line yet.
+    ///
+    /// # Errors
+    /// As [`Surface::pyramid`] and, of a filed DEM, [`Dem::spaced`](crate::dem::Dem::spaced).
+    pub fn new(
+        surface: Arc<Surface>,
+        exaggeration: f64,
+        rules: SlopeRules,
+        stops: &[SurfaceLine],
+        water: Option<&FlatWater>,
+    ) -> Result<Self> {
+        let land = Land::new(surface, exaggeration, rules, stops, water)?;
+        land.surface.pyramid()?;
+        let dem = land.surface.dem();
+        let extent = DVec2::new(dem.columns() as f64, dem.rows() as f64) - 1.0;
+        let blocks = Blocks { unit: land.cell.min_element(), extent: extent * land.cell };
+        Ok(Self { land, blocks, made: Mutex::default() })
+    }
+
+    /// Blocks whose lines may be drawn, by level, row and column. `need` tells of a box of the exaggerated world (low and high
+    /// corner, metres) the least room with which a line in it is drawn, metres on the map; infinite where none is; for a box
+    /// inside another it tells no less than for that. A block is among them if its lines may have as much room as `need` tells
+    /// of the box that they are in. Those that are not known yet are made, on every core.
+    ///
+    /// # Errors
+    /// As [`Surface::pyramid`].
+    pub fn blocks(&self, need: &(dyn Fn([DVec3; 2]) -> f64 + Sync)) -> Result<Vec<Arc<SlopeBlock>>> {
+        let wanted = self.wanted(self.land.surface.pyramid()?, need);
+        // No lock is held while threads are at work: they might be asked for blocks themselves.
+        let mut known = self.lock().clone();
+        let missing = self.with_needed(&wanted, |at| !known.contains_key(&at));
+        let is_one_go = |a: &BlockAt, b: &BlockAt| (a.level, a.phase()) == (b.level, b.phase());
+        for go in missing.chunk_by(is_one_go) {
+            let make = |at: &BlockAt| {
+                let needed = self.blocks.needs(*at);
+                let needed: Vec<_> = needed.filter_map(|other| known.get(&other)).collect();
+                (*at, Arc::new(made(&self.land, &self.blocks, *at, needed.into_iter())))
+            };
+            let new: Vec<_> = go.par_iter().map(make).collect();
+            known.extend(new);
+        }
+        let blocks = wanted.iter().filter_map(|at| known.get(at).cloned()).collect();
+        if !missing.is_empty() {
+            self.keep(known, &wanted);
+        }
+        Ok(blocks)
+    }
+
+    /// How many points of lines are held.
+    pub fn points(&self) -> usize {
+        self.lock().values().map(|block| block.points()).sum()
+    }
+
+    /// Keeps what is known, or of too much what was wanted and that which it depends on.
+    fn keep(&self, known: Made, wanted: &[BlockAt]) {
+        let mut held = self.lock();
+        held.extend(known);
+        if held.values().map(|block| block.points()).sum::<usize>() > MOST_POINTS {
+            let needed: BTreeSet<BlockAt> = self.with_needed(wanted, |_| true).into_iter().collect();
+            held.retain(|at, _| needed.contains(at));
+        }
+    }
+
+    /// Blocks and all that they depend on, as far as they are sought, in the order in which they are made.
+    fn with_needed(&self, blocks: &[BlockAt], is_sought: impl Fn(BlockAt) -> bool) -> Vec<BlockAt> {
+        let by_order = |at: BlockAt| (at.level, at.phase(), at);
+        let mut open: BTreeSet<_> = blocks.iter().copied().filter(|at| is_sought(*at)).map(by_order).collect();
+        let mut found = Vec::new();
+        // What a block needs is made before it.
+        while let Some((.., last)) = open.pop_last() {
+            open.extend(self.blocks.needs(last).filter(|at| is_sought(*at)).map(by_order));
+            found.push(last);
+        }
+        found.reverse();
+        found
+    }
+
+    /// Blocks whose lines may have the room that is needed. A block needs no less than the one around it two levels above.
+    fn wanted(&self, pyramid: &Pyramid, need: &(dyn Fn([DVec3; 2]) -> f64 + Sync)) -> Vec<BlockAt> {
+        let needs = |at: &BlockAt| self.bounds(pyramid, *at).map(|bounds| (*at, need(bounds)));
+        let has = |level: u32| move |(_, need): &(BlockAt, f64)| *need <= self.blocks.most_room(level);
+        let mut open = [0, 1].map(|level| self.blocks.of(level).collect::<Vec<_>>());
+        let of_level = |level: u32| {
+            let here = &mut open[level as usize % 2];
+            let known: Vec<_> = here.par_iter().filter_map(needs).collect();
+            let split = known.iter().copied().filter(has(level + 2));
+            *here = split.flat_map(|(at, _)| at.quarters()).filter(|at| self.is_on_land(*at)).collect();
+            known.into_iter().filter(has(level)).map(|(at, _)| at).collect::<Vec<_>>()
+        };
+        let mut wanted: Vec<BlockAt> = (0..LEVELS).flat_map(of_level).collect();
+        wanted.sort_unstable();
+        wanted
+    }
+
+    /// Whether a block begins on the DEM.
+    fn is_on_land(&self, at: BlockAt) -> bool {
+        self.blocks.square(at)[0].cmplt(self.blocks.extent).all()
+    }
+
+    /// The box of the exaggerated world in which a block's lines are, metres; none where there is no land.
+    fn bounds(&self, pyramid: &Pyramid, at: BlockAt) -> Option<[DVec3; 2]> {
+        let extent = self.blocks.extent;
+        let [low, high] = self.blocks.reached(at).map(|corner| corner.clamp(DVec2::ZERO, extent));
+        // Squares of the pyramid that are about a quarter as large.
+        let cells = ((high - low) / self.land.cell).max_element();
+        let finest = pyramid.finest_step();
+        let fits = |step: &u32| f64::from(step * CHUNK_QUADS) <= cells * f64::from(CELL_STEPS) / 4.0;
+        let steps =
+            std::iter::successors(Some(finest), |step| Some(step * 2).filter(|step| *step <= pyramid.coarsest_step()));
+        let step = steps.take_while(fits).last().unwrap_or(finest);
+        let side = step * CHUNK_QUADS;
+        let [first, last] =
+            [low, high].map(|at| (at / self.land.cell * f64::from(CELL_STEPS) / f64::from(side)).as_uvec2());
+        let whole = (extent / self.land.cell * f64::from(CELL_STEPS)).as_uvec2();
+        let squares = (first.y..=last.y).flat_map(|y| (first.x..=last.x).map(move |x| [x * side, y * side]));
+        let inside = squares.filter(|[x, y]| *x < whole.x && *y < whole.y);
+        let reliefs = inside.map(|origin| pyramid.relief(origin, step)).filter(|relief| relief.low <= relief.high);
+        let all = reliefs.map(|relief| [relief.low, relief.high, relief.beyond]);
+        let [bottom, top, beyond] = all.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1]), a[2].max(b[2])])?.map(f64::from);
+        let north_west = self.land.surface.dem().position(0, 0).truncate();
+        let [west, east] = [low.x - beyond, high.x + beyond].map(|x| north_west.x + x);
+        let [south, north] = [high.y + beyond, low.y - beyond].map(|y| north_west.y - y);
+        Some([DVec3::new(west, south, bottom), DVec3::new(east, north, top)])
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Made> {
+        self.made.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
