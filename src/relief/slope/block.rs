@@ -6,7 +6,7 @@ use glam::DVec2;
 
 use super::land::{Land, Walker};
 use super::level::{BlockAt, Blocks};
-use super::neighbours::{Neighbours, Spaced};
+use super::neighbours::Neighbours;
 use super::seeds::seeds;
 use super::trace::Tracer;
 use super::{SlopeBlock, SlopeLine, SlopePoint};
@@ -18,21 +18,19 @@ pub fn made<'a>(
     at: BlockAt,
     needed: impl Iterator<Item = &'a Arc<SlopeBlock>>,
 ) -> SlopeBlock {
-    let spaced = |points: &[SlopePoint]| -> Vec<Spaced> {
-        points.iter().map(|point| (land.metres(point.at), point.room)).collect()
-    };
+    let place = |point: &SlopePoint| land.metres(point.at);
     let seen = blocks.seen(at);
     let mut others = Neighbours::new(seen, blocks.spacing(at.level).max(blocks.unit / 2.0));
     let [low, high] = seen.map(|corner| land.samples(corner));
     needed.for_each(|block| {
         let lines = block.lines.iter().zip(&block.boxes);
         let seen = lines.filter(|(_, [least, most])| least.cmple(high).all() && most.cmpge(low).all());
-        seen.for_each(|(line, _)| others.add(&spaced(&line.points), blocks.point_step(block.level)));
+        seen.for_each(|(line, _)| others.add(&line.points, blocks.point_step(block.level), place));
     });
     let mut tracer = Tracer::new(Walker::new(land), blocks, at.level);
     let lines = seeds(blocks, at).filter_map(|(number, seed)| {
         let points = tracer.line(&others, seed)?;
-        others.add(&spaced(&points), blocks.point_step(at.level));
+        others.add(&points, blocks.point_step(at.level), place);
         Some(SlopeLine { id: at.id() | number as u64, points })
     });
     let lines: Vec<SlopeLine> = lines.collect();

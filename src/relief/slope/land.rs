@@ -25,10 +25,10 @@ const LEAST_COVER: f64 = 0.01;
 pub struct Land {
     /// Held.
     pub surface: Arc<Surface>,
-    /// Samples of the DEM between those of the surface.
-    pub spacing: f64,
     /// Metres of the surface's cells.
     pub cell: DVec2,
+    /// Metres between the DEM's samples, of which those of the surface are all or some.
+    metres: DVec2,
     /// Least gradient, exaggerated metres a metre.
     least: f64,
     /// Cosine of the most turn.
@@ -79,24 +79,24 @@ impl Land {
             turned: rules.max_turn.to_radians().cos(),
             stops: Stops::new(stops, cells, spacing as f64),
             water: water.cloned(),
-            spacing: spacing as f64,
+            metres: dem.cell() / spacing as f64,
             surface,
         })
     }
 
     /// Metres on the map of a column and row of the DEM.
     pub fn metres(&self, at: DVec2) -> DVec2 {
-        at / self.spacing * self.cell
+        at * self.metres
     }
 
     /// The column and row of the DEM of such metres.
     pub fn samples(&self, at: DVec2) -> DVec2 {
-        at / self.cell * self.spacing
+        at / self.metres
     }
 
     /// The share of the way between two places at which a line ends.
-    pub fn met(&self, way: [DVec2; 2]) -> Option<f64> {
-        self.stops.met(way.map(|at| at / self.cell))
+    pub fn met(&self, [from, to]: [DVec2; 2]) -> Option<f64> {
+        self.stops.met([from / self.cell, to / self.cell])
     }
 
     /// Whether a line through `seed` may be at a place.
@@ -142,10 +142,10 @@ impl<'a> Walker<'a> {
         let place = at / cell;
         let last = DVec2::new(dem.columns() as f64, dem.rows() as f64) - 1.0;
         let inside = place.cmpge(DVec2::ZERO).all() && place.cmple(last).all();
-        let corner = place.floor().min(last - 1.0);
-        let DVec2 { x: u, y: v } = place - corner;
+        let corner = place.min(last - 1.0).as_usizevec2();
+        let DVec2 { x: u, y: v } = place - corner.as_dvec2();
         let half = usize::from(v < u);
-        let patch = inside.then(|| self.patch([corner.x as usize, corner.y as usize, half])).flatten()?;
+        let patch = if inside { self.patch([corner.x, corner.y, half])? } else { return None };
         let weights = if half == 0 { [1.0 - v, v - u, u] } else { [1.0 - u, v, u - v] };
         let by_weight = patch.derivatives(weights);
         let point = by_weight.iter().zip(weights).map(|(by, weight)| *by * weight).sum::<DVec3>() / 3.0;

@@ -6,6 +6,8 @@
 
 use glam::{DVec2, Vec2};
 
+use super::SlopePoint;
+
 /// Longest piece, buckets: it is told from the bend of the line by less than a hundredth of the spacing.
 const LONGEST: f32 = 0.125;
 /// The end of a chain.
@@ -38,9 +40,6 @@ struct Piece {
     before: u32,
 }
 
-/// A place of a line, and the room that it has; metres.
-pub type Spaced = (DVec2, f32);
-
 impl Neighbours {
     /// None yet, in a rectangle with buckets of a side; metres.
     pub fn new([low, high]: [DVec2; 2], side: f64) -> Self {
@@ -49,23 +48,25 @@ impl Neighbours {
         Self { low, side: side as f32, size, last, pieces: Vec::new(), half: 0.0 }
     }
 
-    /// Takes in a line whose points lie a step apart, as far as it lies in the rectangle.
-    pub fn add(&mut self, line: &[Spaced], step: f64) {
-        let points = ((self.side * LONGEST) as f64 / step).max(1.0) as usize;
-        for from in (0..line.len() - 1).step_by(points) {
-            let part = &line[from..=(from + points).min(line.len() - 1)];
-            let [a, b] = [0, part.len() - 1].map(|k| (part[k].0 - self.low).as_vec2());
-            let middle = a.midpoint(b);
-            let [x, y] = self.bucket(middle);
-            if x < 0 || y < 0 || x >= self.size[0] || y >= self.size[1] {
-                continue;
+    /// Takes in a line whose points lie a step apart, metres, as far as it lies in the rectangle; `place` tells their metres.
+    pub fn add(&mut self, line: &[SlopePoint], step: f64, place: impl Fn(&SlopePoint) -> DVec2) {
+        let (low, last) = (self.low, line.len() - 1);
+        let points = (f64::from(self.side * LONGEST) / step).max(1.0) as usize;
+        let near = |k: usize| (place(&line[k]) - low).as_vec2();
+        let mut from = near(0);
+        for k in (0..last).step_by(points) {
+            let end = (k + points).min(last);
+            let to = near(end);
+            let middle = from.midpoint(to);
+            if let Some([x, y]) = self.bucket(middle) {
+                let half = from.distance(to) / 2.0;
+                let room = line[k..=end].iter().map(|point| point.room).fold(0.0, f32::max);
+                let before = &mut self.last[(y * self.size[0] + x) as usize];
+                self.pieces.push(Piece { middle, way: (to - from).normalize_or_zero(), half, room, before: *before });
+                *before = self.pieces.len() as u32 - 1;
+                self.half = self.half.max(half);
             }
-            let half = a.distance(b) / 2.0;
-            let room = part.iter().map(|(_, room)| *room).fold(0.0, f32::max);
-            let last = &mut self.last[(y * self.size[0] + x) as usize];
-            self.pieces.push(Piece { middle, way: (b - a).normalize_or_zero(), half, room, before: *last });
-            *last = self.pieces.len() as u32 - 1;
-            self.half = self.half.max(half);
+            from = to;
         }
     }
 
@@ -73,17 +74,22 @@ impl Neighbours {
     /// good as the least: the search ends there.
     pub fn room(&self, place: DVec2, most: f32, enough: f32) -> f32 {
         let place = (place - self.low).as_vec2();
-        let [x, y] = self.bucket(place);
-        let aside = place - Vec2::new(x as f32, y as f32) * self.side;
-        let aside = aside.min(Vec2::splat(self.side) - aside).min_element();
+        let Some([x, y]) = self.bucket(place) else { return most };
+        let corner = Vec2::new(x as f32, y as f32) * self.side;
+        let aside = (place - corner).min(corner + self.side - place).min_element();
+        let [columns, rows] = self.size;
         let mut room = most;
         let mut ring = 0;
         while room >= enough && (ring as f32 - 1.0) * self.side + aside - self.half < room {
-            for row in (y - ring).max(0)..=(y + ring).min(self.size[1] - 1) {
-                let step = if (row - y).abs() == ring { 1 } else { 2 * ring };
-                let columns = (x - ring..=x + ring).step_by(step as usize);
-                for column in columns.filter(|column| (0..self.size[0]).contains(column)) {
-                    room = self.room_in((row * self.size[0] + column) as usize, place, room);
+            let [west, east] = [x - ring, x + ring];
+            for row in (y - ring).max(0)..=(y + ring).min(rows - 1) {
+                let of_row = row * columns;
+                if (row - y).abs() == ring {
+                    let all = west.max(0)..=east.min(columns - 1);
+                    room = all.fold(room, |room, column| self.room_in(of_row + column, place, room));
+                } else {
+                    let both = [west, east].into_iter().filter(|column| *column >= 0 && *column < columns);
+                    room = both.fold(room, |room, column| self.room_in(of_row + column, place, room));
                 }
             }
             ring += 1;
@@ -92,8 +98,8 @@ impl Neighbours {
     }
 
     /// The same, of the lines in a bucket.
-    fn room_in(&self, bucket: usize, place: Vec2, most: f32) -> f32 {
-        let first = self.pieces.get(self.last[bucket] as usize);
+    fn room_in(&self, bucket: i32, place: Vec2, most: f32) -> f32 {
+        let first = self.pieces.get(self.last[bucket as usize] as usize);
         let chain = std::iter::successors(first, |piece| self.pieces.get(piece.before as usize));
         chain.fold(most, |room, piece| {
             let off = place - piece.middle;
@@ -104,7 +110,10 @@ impl Neighbours {
         })
     }
 
-    fn bucket(&self, place: Vec2) -> [i32; 2] {
-        (place / self.side).floor().as_ivec2().to_array()
+    /// Column and row of the bucket of a place in the rectangle.
+    fn bucket(&self, place: Vec2) -> Option<[i32; 2]> {
+        let [x, y] = [place.x / self.side, place.y / self.side];
+        let inside = x >= 0.0 && y >= 0.0 && x < self.size[0] as f32 && y < self.size[1] as f32;
+        inside.then_some([x as i32, y as i32])
     }
 }

@@ -49,7 +49,8 @@ impl Stops {
 /// Cells that the bounds of a piece overlap.
 fn overlapped([columns, rows]: [usize; 2], [a, b]: [DVec2; 2]) -> impl Iterator<Item = usize> {
     let last = DVec2::new(columns as f64, rows as f64) - 1.0;
-    let [low, high] = [a.min(b), a.max(b)].map(|at| at.floor().clamp(DVec2::ZERO, last).as_usizevec2());
+    let cell = |at: DVec2| at.clamp(DVec2::ZERO, last).as_usizevec2();
+    let (low, high) = (cell(a.min(b)), cell(a.max(b)));
     (low.y..=high.y).flat_map(move |row| (low.x..=high.x).map(move |column| row * columns + column))
 }
 
