@@ -56,7 +56,7 @@ fn every_kind_of_line_stands_in_a_layer() {
     let point = |x: f64| {
         let (place, depth) = (DVec2::new(x, 10.0), 0.01);
         let world = seen.unproject(place, depth.into());
-        ChainPoint { place, line: Line::Own, depth, behind: 0.0, world, crowd: 0, weight: 1.0 }
+        ChainPoint { place, line: Line::Own, depth, behind: 0.0, world, crowd: 0, weight: 1.0, black: 1.0 }
     };
     let layer_of = |line: Line| {
         let points = [10.0, 20.0].map(|x| ChainPoint { line, ..point(x) }).to_vec();
@@ -82,7 +82,7 @@ fn strokes_of(points: &[(f32, f32)], closed: bool) -> Vec<Vec<f64>> {
     let point = |(x, &(behind, weight)): (f64, &(f32, f32))| {
         let place = DVec2::new(10.0 * x + 5.0, 10.0);
         let world = seen.unproject(place, 0.01);
-        ChainPoint { place, line: Line::Occluding, depth: 0.01, behind, world, crowd: 0, weight }
+        ChainPoint { place, line: Line::Occluding, depth: 0.01, behind, world, crowd: 0, weight, black: 1.0 }
     };
     let points = (0..).map(f64::from).zip(points).map(point).collect();
     let chains = vec![Chain { id: None, points, closed }];

@@ -21,8 +21,16 @@ const DEPTH: f32 = 0.01;
 fn line(line: Line, jump: f64, places: &[(f64, f64)]) -> Chain {
     let place = |(x, y): (f64, f64)| DVec2::new(x, y);
     let behind = if line == Line::Skyline { 0.0 } else { (f64::from(DEPTH) / (1.0 + jump)) as f32 };
-    let point =
-        |place: DVec2| ChainPoint { place, line, depth: DEPTH, behind, world: DVec3::ZERO, crowd: 0, weight: 1.0 };
+    let point = |place: DVec2| ChainPoint {
+        place,
+        line,
+        depth: DEPTH,
+        behind,
+        world: DVec3::ZERO,
+        crowd: 0,
+        weight: 1.0,
+        black: 1.0,
+    };
     let mut points = vec![point(place(places[0]))];
     for pair in places.windows(2) {
         let [a, b] = [place(pair[0]), place(pair[1])];

@@ -45,6 +45,7 @@ impl Level {
                 world: world(column),
                 crowd: 0,
                 weight: 1.0,
+                black: 1.0,
             }
         };
         // Corners elsewhere in each frame.

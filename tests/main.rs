@@ -32,6 +32,7 @@ mod frames;
 mod generalise;
 mod gpu_errors;
 mod growth;
+mod hachures;
 mod hardware;
 mod heights;
 mod hidden;

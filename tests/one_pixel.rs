@@ -22,6 +22,7 @@ fn chain(places: &[[f64; 2]], line: Line, depth: f32) -> Chain {
         world: DVec3::ZERO,
         crowd: 0,
         weight: 1.0,
+        black: 1.0,
     };
     Chain { id: None, points: places.iter().map(point).collect(), closed: false }
 }

@@ -15,7 +15,7 @@ pub fn seen(place: DVec2, depth: f64) -> CurvePoint {
     let distance = NEAR / depth;
     let world = DVec3::new(place.x / NEAR * distance, distance, -place.y / NEAR * distance);
     let at = [world.x, world.y].map(|v| (v / CELL * 64.0 * 256.0).round() as i32);
-    CurvePoint { place, depth, world, at, weight: 1.0 }
+    CurvePoint { place, depth, world, at, weight: 1.0, black: 1.0 }
 }
 
 /// A convex, free contour against land at depth 0.1 through points (x, y, depth), the surface on the left, in stretches of

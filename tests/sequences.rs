@@ -54,7 +54,7 @@ impl Level40 {
             let world = self.world(40.0 + f64::from(i));
             let (place, depth) = perspective.project(world);
             let (depth, behind) = (depth as f32, (depth / (1.0 + self.jump)) as f32);
-            ChainPoint { place, line: Line::Occluding, depth, behind, world, crowd: 0, weight: self.weight }
+            ChainPoint { place, line: Line::Occluding, depth, behind, world, crowd: 0, weight: self.weight, black: 1.0 }
         };
         Chain { id: Some(Id(self.row as u64)), points: (0..=120).map(point).collect(), closed: false }
     }

@@ -33,6 +33,7 @@ fn level_chain(y: f64, from: f64, to: f64) -> Chain {
         world: DVec3::ZERO,
         crowd: 0,
         weight: 1.0,
+        black: 1.0,
     };
     Chain { id: None, points: [from, to].map(point).to_vec(), closed: false }
 }

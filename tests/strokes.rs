@@ -13,7 +13,16 @@ const FRAME: [u32; 2] = [400, 200];
 /// A point of a skyline so far away, m; its place in mm.
 fn point(place: [f64; 2], distance: f64, weight: f32) -> ChainPoint {
     let (place, depth) = (DVec2::from(place) * 2.0, (1.0 / distance) as f32);
-    ChainPoint { place, line: Line::Skyline, depth, behind: 0.0, world: DVec3::Y * distance, crowd: 0, weight }
+    ChainPoint {
+        place,
+        line: Line::Skyline,
+        depth,
+        behind: 0.0,
+        world: DVec3::Y * distance,
+        crowd: 0,
+        weight,
+        black: 1.0,
+    }
 }
 
 /// A level chain, a point a millimetre, at height `y`.

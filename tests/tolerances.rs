@@ -88,6 +88,12 @@ pub const FADE_STEP: f32 = 0.02;
 /// Example: 30 000 px of line, of which 300 px fade by a tenth: .1 %.
 pub const LAND_POPS: [(f64, f64); 2] = [(1.0, 0.005), (10.0, 0.02)];
 
+/// Steps of a flight, m, and the share of length of strokes broader than a tenth of a millimetre that may come or go in one but
+/// for hiding.
+///
+/// Example: of 20 000 px of strokes 100 px are gone: .5 %.
+pub const HACHURE_POPS: [(f64, f64); 2] = [(1.0, 0.005), (10.0, 0.02)];
+
 /// Share of ink of one level that may lie farther than [`REACH_PX`] from any ink of the next finer level.
 ///
 /// Example: of 400 px at most 4 px between level 16 and level 32.

@@ -68,7 +68,16 @@ fn chain(piece: &Piece, perspective: &Perspective) -> Chain {
     let depth = NEAR / piece.distance;
     let point = |place: DVec2| {
         let world = perspective.unproject(place, depth);
-        ChainPoint { place, line: Line::Occluding, depth: depth as f32, behind: 0.0, world, crowd: 0, weight: 1.0 }
+        ChainPoint {
+            place,
+            line: Line::Occluding,
+            depth: depth as f32,
+            behind: 0.0,
+            world,
+            crowd: 0,
+            weight: 1.0,
+            black: 1.0,
+        }
     };
     Chain { id: None, points: piece.ends.map(point).to_vec(), closed: false }
 }

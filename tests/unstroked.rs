@@ -49,6 +49,7 @@ fn chain(row: i64, weight: f32) -> Chain {
         world: DVec3::ZERO,
         crowd: 0,
         weight,
+        black: 1.0,
     };
     Chain { id: None, points: (10..110).map(point).collect(), closed: false }
 }

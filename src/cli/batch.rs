@@ -233,7 +233,7 @@ impl Studio<'_> {
         match &scene.land {
             Some((of, land)) if of == wanted => Ok(land.clone()),
             _ => {
-                let land = scene::land(&draw.drawing, wanted, &draw.terrain, scene.surface.dem(), &cache, &talk)?;
+                let land = scene::land(&draw.drawing, wanted, &draw.terrain, &scene.surface, &cache, &talk)?;
                 Ok(scene.land.insert((wanted.clone(), land)).1.clone())
             }
         }

@@ -6,7 +6,7 @@ use super::progress::Form;
 use super::style::Hidden;
 use crate::dem::North;
 use crate::plan::registry::Entry;
-use crate::plan::{Border, Method, Share};
+use crate::plan::{Border, Method, Share, Tone};
 
 /// A word, its line of help, and what it stands for.
 type Word<T> = (&'static str, &'static str, T);
@@ -49,6 +49,19 @@ pub fn default_share() -> &'static str {
 /// What azimuths are counted from.
 pub fn north() -> impl TypedValueParser<Value = North> {
     one_of(NORTHS)
+}
+
+/// What the darkness of hachures says.
+pub fn tone() -> impl TypedValueParser<Value = Tone> {
+    one_of(Tone::ALL.map(|tone| {
+        let help = match tone {
+            Tone::None => "There are no strokes",
+            Tone::Lehmann => "How steep the land is",
+            Tone::Shadow => "How far it is turned from the light",
+            Tone::Both => "The mean of the two",
+        };
+        (tone.name(), help, tone)
+    }))
 }
 
 /// What becomes of lines that nearer land hides.

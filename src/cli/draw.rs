@@ -121,7 +121,7 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     let surface = Arc::new(scene::surface(&arguments.terrain, reading, talk)?);
     let gpu = scene::prepare_and_open(&surface, &cache, &arguments.device, talk)?;
     let view = arguments.look(&surface, &illustration, talk)?;
-    let land = scene::land(&arguments.drawing, &illustration.land, &arguments.terrain, surface.dem(), &cache, talk)?;
+    let land = scene::land(&arguments.drawing, &illustration.land, &arguments.terrain, &surface, &cache, talk)?;
     let gpu = Arc::new(gpu?);
     DeviceArguments::tell(&gpu, talk)?;
     talk.progress("drawing", 0.3);

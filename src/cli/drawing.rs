@@ -99,10 +99,15 @@ impl DrawingArguments {
     ) -> Result<Illustration> {
         let (plan, style) = (self.plan(wanted)?, self.style.style()?);
         let land = self.wanted(&style, &plan, allow_remote)?;
-        let plan = Plan { land: if land.is_nothing() { LandLines::Off } else { LandLines::On }, ..plan };
         let layout = self.layout(size, pictures)?;
         let frame = [layout.frame.width, layout.frame.height];
-        let economy = self.style.economy(&style, layout.sheet.placement(frame).px_per_mm);
+        let px_per_mm = layout.sheet.placement(frame).px_per_mm;
+        let economy = self.style.economy(&style, px_per_mm);
+        let plan = Plan {
+            land: if land.is_nothing() { LandLines::Off } else { LandLines::On },
+            hachures: style.hachures(px_per_mm).filter(|_| land.slopes.is_some()),
+            ..plan
+        };
         let split = self.style.split().to_vec();
         Ok(Illustration { plan, style, land, economy, split, sheet: layout.sheet, frame, px_per_mm: layout.px_per_mm })
     }

@@ -129,7 +129,9 @@ pub fn run(arguments: &FlyArguments, talk: &Talk) -> Result<()> {
             let Some(Aloft { renderer, flight, .. }) = &mut aloft else {
                 return Err(Error::mistake("a frame went missing as it was looked at"));
             };
-            renderer.find(&illustration.plan, &flight.camera(job.number), |_| ())
+            // Light stands still while the eye turns.
+            let plan = illustration.plan.lit_for(flight.camera(0).azimuth);
+            renderer.find(&plan, &flight.camera(job.number), |_| ())
         };
         let blank = AtomicUsize::new(0);
         let finish = |job: &Job, found: Found| {
@@ -262,7 +264,7 @@ impl FlyArguments {
         cells::warn(surface.dem(), self.drawing.exaggeration, talk);
         warn_of_survey(surface.dem(), talk)?;
         let flight = self.flight(plan, &surface, talk)?;
-        let land = scene::land(&self.drawing, wanted, &self.terrain, surface.dem(), cache, talk)?;
+        let land = scene::land(&self.drawing, wanted, &self.terrain, &surface, cache, talk)?;
         let gpu = Arc::new(gpu?);
         DeviceArguments::tell(&gpu, talk)?;
         let adapter = gpu.adapter_and_driver();

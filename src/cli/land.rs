@@ -1,15 +1,18 @@
 //! Flags of lines on the land: creases, and lines of the user's own.
 
+use std::mem::take;
+use std::sync::Arc;
+
 use super::lines::LinesArguments;
 use super::talk::Talk;
 use super::values::number;
 use super::words::told;
 use crate::cache::{Cache, Hearing};
-use crate::dem::Dem;
 use crate::error::{Error, Message, Result, Setting};
 use crate::ink::Style;
 use crate::line::Land;
-use crate::relief::{ChannelArea, Crease, FlowLines, LandWanted, Shores, SurfaceLine};
+use crate::relief::{ChannelArea, Crease, FlowLines, LandWanted, Shores, Slopes, SurfaceLine};
+use crate::surface::Surface;
 
 /// The flags, as typed.
 #[derive(Debug, Clone, clap::Args)]
@@ -56,7 +59,8 @@ impl LandArguments {
             let what = "goes with drainage only";
             return Err(Error::setting(Setting::ChannelArea, what, "add --creases drainage, or leave it out"));
         }
-        Ok(LandWanted { creases, channel_area, own: self.lines.open(allow_remote)?.asked() })
+        let own = self.lines.open(allow_remote)?.asked();
+        Ok(LandWanted { creases, channel_area, own, slopes: style.hachures.rules() })
     }
 
     /// Refuses what only contours can be drawn with.
@@ -72,26 +76,29 @@ impl LandArguments {
         given.into_iter().find(|(_, given)| *given).map_or(Ok(()), |(setting, _)| Err(refuse(setting)))
     }
 
-    /// The lines that are wanted of a DEM whose heights are exaggerated by this factor.
+    /// The lines that are wanted of a surface whose heights are exaggerated by this factor.
     ///
     /// # Errors
-    /// As [`Cache::creases`], [`Shores::of`] and [`LinesArguments::read`].
+    /// As [`Cache::creases`], [`Shores::of`], [`Slopes::new`] and [`LinesArguments::read`].
     pub fn land(
         &self,
         wanted: &LandWanted,
-        dem: &Dem,
+        surface: &Arc<Surface>,
         exaggeration: f64,
         allow_remote: bool,
         cache: &Cache,
         talk: &Talk,
     ) -> Result<Land> {
+        let dem = surface.dem();
         let mut lines = self.lines.read(dem, allow_remote, talk)?;
         let found = |crease: &Crease| match crease {
             Crease::Drainage => Some(FlowLines::Drainage(wanted.channel_area)),
             Crease::Ridges => Some(FlowLines::Ridges),
             Crease::Shores => None,
         };
-        let asked: Vec<FlowLines> = wanted.creases.iter().filter_map(found).collect();
+        // Slope lines end on both, drawn or not.
+        let known = Crease::ALL.into_iter().filter(|crease| wanted.slopes.is_some() || wanted.creases.contains(crease));
+        let (known, asked): (Vec<Crease>, Vec<FlowLines>) = known.filter_map(|c| Some((c, found(&c)?))).unzip();
         let warn = |message: &Message| talk.warn(&told(message));
         let hearing = Hearing { warn: &warn, progress: &|done| talk.progress("looking for creases", 0.2 + 0.1 * done) };
         let mut found = match asked[..] {
@@ -99,13 +106,30 @@ impl LandArguments {
             [] => Vec::new(),
             _ => cache.creases(dem, exaggeration, &asked, hearing)?,
         };
-        if wanted.creases.contains(&Crease::Shores) {
-            let shores = Shores::of(dem, exaggeration)?;
-            found.iter_mut().flatten().for_each(|line| shores.water.blank(line));
-            found.push(shores.lines);
+        let draws_shores = wanted.creases.contains(&Crease::Shores);
+        let ends_at_shores = wanted.slopes.is_some() && !dem.is_filed();
+        let shores = (draws_shores || ends_at_shores).then(|| Shores::of(dem, exaggeration)).transpose()?;
+        let slopes = wanted.slopes.map(|rules| {
+            let water = shores.as_ref().map(|shores| &shores.water);
+            Slopes::new(surface.clone(), exaggeration, rules, &found.concat(), water).map(Arc::new)
+        });
+        let slopes = slopes.transpose()?;
+        let mut drawn: Vec<Vec<SurfaceLine>> = known
+            .iter()
+            .zip(&mut found)
+            .filter(|(crease, _)| wanted.creases.contains(crease))
+            .map(|(_, lines)| take(lines))
+            .collect();
+        if let Some(shores) = shores.filter(|_| draws_shores) {
+            drawn.iter_mut().flatten().for_each(|line| shores.water.blank(line));
+            drawn.push(shores.lines);
         }
-        found.into_iter().for_each(|more| append(&mut lines, more));
-        Land::new(dem, exaggeration, lines)
+        drawn.into_iter().for_each(|more| append(&mut lines, more));
+        let land = Land::new(dem, exaggeration, lines)?;
+        Ok(match slopes {
+            Some(slopes) => land.with_slopes(slopes),
+            None => land,
+        })
     }
 }
 

@@ -1,6 +1,7 @@
 //! `hachure draw --plan`: the land from straight above, true to scale.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::Instant;
 
 use glam::DVec2;
@@ -21,6 +22,7 @@ use crate::ink::strokes::inset;
 use crate::ink::{self, Drawing, Sheet, Style};
 use crate::line::{Land, Overhead};
 use crate::message;
+use crate::plan::Hachures;
 use crate::relief::LandWanted;
 
 /// Millimetres of a metre.
@@ -80,7 +82,11 @@ pub fn draw(arguments: &DrawArguments, scale: f64, dem: &Dem, land: Option<&Land
     let economy = arguments.drawing.style.economy(&style, px_per_mm);
     let overhead = Overhead { area, size: frame, px_per_metre: px_per_mm * MM / scale };
     let mut lines = overhead.lines(dem)?;
-    lines.chains.extend(land.map(|land| overhead.land(land, economy.min_gap)).into_iter().flatten());
+    // Light is of a map's north-west, and black is black.
+    let hachures = style.hachures(px_per_mm).map(|look| Hachures { most_black: 1.0, ..look });
+    if let Some(land) = land {
+        lines.chains.extend(overhead.land(land, economy.min_gap, hachures.as_ref())?);
+    }
     let drawing = ink::draw(&lines, &layout.sheet, &style, &[])?;
     Ok(Planned { drawing, px_per_mm: layout.px_per_mm, style, layout, lines: lines.chains.len() })
 }
@@ -96,14 +102,15 @@ pub fn run(arguments: &DrawArguments, scale: f64, talk: &Talk) -> Result<()> {
     let (reading, beside) = (arguments.open(cache.clone())?, arguments.drawing.land.lines.files());
     let inputs = reading.files().chain(beside.iter().map(PathBuf::as_path));
     let mut outputs = arguments.outputs.open(Taken::inputs(inputs))?;
-    let dem = arguments.terrain.read(reading, talk)?;
-    warn_of_survey(&dem, talk)?;
+    let surface = Arc::new(scene::surface(&arguments.terrain, reading, talk)?);
+    let dem = surface.dem();
+    warn_of_survey(dem, talk)?;
     dem.check_patches()?;
-    let land = scene::land(&arguments.drawing, &wanted, &arguments.terrain, &dem, &cache, talk)?;
-    let Planned { drawing, px_per_mm, style, layout, lines } = draw(arguments, scale, &dem, land.as_deref())?;
+    let land = scene::land(&arguments.drawing, &wanted, &arguments.terrain, &surface, &cache, talk)?;
+    let Planned { drawing, px_per_mm, style, layout, lines } = draw(arguments, scale, dem, land.as_deref())?;
     let report = PlanReport {
         version: env!("CARGO_PKG_VERSION"),
-        dem: DemReport::of(&arguments.terrain.dems, &dem),
+        dem: DemReport::of(&arguments.terrain.dems, dem),
         scale,
         page: PageReport::of(&layout.sheet, [layout.frame.width, layout.frame.height]),
         layers: LayerReport::all(&drawing, &style.plot),

@@ -10,7 +10,6 @@ use super::talk::Talk;
 use super::terrain::TerrainArguments;
 use super::words::told;
 use crate::cache::Cache;
-use crate::dem::Dem;
 use crate::error::Result;
 use crate::geo::Reading;
 use crate::gpu::Gpu;
@@ -51,7 +50,7 @@ pub fn land(
     drawing: &DrawingArguments,
     wanted: &LandWanted,
     terrain: &TerrainArguments,
-    dem: &Dem,
+    surface: &Arc<Surface>,
     cache: &Cache,
     talk: &Talk,
 ) -> Result<Option<Arc<Land>>> {
@@ -59,7 +58,7 @@ pub fn land(
         return Ok(None);
     }
     talk.progress("looking for lines of the land", 0.2);
-    let land = drawing.land.land(wanted, dem, drawing.exaggeration, terrain.allows_remote(), cache, talk)?;
+    let land = drawing.land.land(wanted, surface, drawing.exaggeration, terrain.allows_remote(), cache, talk)?;
     Ok(Some(Arc::new(land)))
 }
 

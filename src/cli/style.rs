@@ -6,6 +6,7 @@ use crate::error::{Error, Result, Setting};
 use crate::ink::Style;
 use crate::ink::styles::{self, BuiltIn};
 use crate::line::Economy;
+use crate::plan::Tone;
 
 /// The flags, as typed.
 #[derive(Debug, Clone, clap::Args)]
@@ -35,6 +36,11 @@ pub struct StyleArguments {
         )
     )]
     min_gap: Option<Gap>,
+    #[arg(
+        long, value_parser = choices::tone(),
+        help = format!("What the darkness of strokes down the slope says [default: as the style has it, {}]", Style::default().hachures.tone.name())
+    )]
+    hachures: Option<Tone>,
     /// Lines that nearer land hides
     #[arg(long, value_parser = choices::hidden(), default_value = choices::default_hidden())]
     hidden: Hidden,
@@ -63,7 +69,9 @@ impl StyleArguments {
     /// # Errors
     /// As [`styles::find`].
     pub fn style(&self) -> Result<Style> {
-        self.style.as_deref().map_or_else(|| Ok(Style::default()), styles::find)
+        let mut style = self.style.as_deref().map_or_else(|| Ok(Style::default()), styles::find)?;
+        style.hachures.tone = self.hachures.unwrap_or(style.hachures.tone);
+        Ok(style)
     }
 
     /// Whether hidden lines are drawn.
@@ -84,6 +92,7 @@ impl StyleArguments {
         let given = [
             (Setting::MinJump, self.min_jump.is_some()),
             (Setting::MinGap, self.min_gap.is_some()),
+            (Setting::Hachures, self.hachures.is_some_and(|tone| tone != Tone::None)),
             (Setting::Hidden, self.draws_hidden()),
         ];
         let refuse = |setting| Error::setting(setting, "goes with contours only", "leave out --method");

@@ -54,6 +54,7 @@ pub fn flag(setting: Setting) -> &'static str {
         Setting::Methods => "--methods",
         Setting::ChannelArea => "--channel-area",
         Setting::Creases => "--creases",
+        Setting::Hachures => "--hachures",
         Setting::Lines => "--lines",
         Setting::MinGap => "--min-gap",
         Setting::MinJump => "--min-jump",

@@ -80,6 +80,8 @@ settings! {
     ErrorPx = "error in px",
     /// Factor on elevations.
     Exaggeration = "exaggeration",
+    /// Strokes for tone.
+    Hachures = "hachures",
     /// Whether voids are filled.
     FillVoids = "fill voids",
     /// The grid of a map's sheets.

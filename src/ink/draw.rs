@@ -29,6 +29,7 @@ const MARK: f64 = 4.0;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
     Hidden,
+    Hachure,
     Shore,
     Drainage,
     Ridge,
@@ -38,8 +39,16 @@ enum Kind {
 }
 
 impl Kind {
-    const ALL: [Self; 7] =
-        [Self::Hidden, Self::Shore, Self::Drainage, Self::Ridge, Self::Own, Self::Border, Self::Silhouette];
+    const ALL: [Self; 8] = [
+        Self::Hidden,
+        Self::Hachure,
+        Self::Shore,
+        Self::Drainage,
+        Self::Ridge,
+        Self::Own,
+        Self::Border,
+        Self::Silhouette,
+    ];
 
     /// What shows a kind of line.
     fn of(line: Line) -> Self {
@@ -50,6 +59,7 @@ impl Kind {
             Line::Drainage => Self::Drainage,
             Line::Ridge => Self::Ridge,
             Line::Own => Self::Own,
+            Line::Hachure => Self::Hachure,
         }
     }
 
@@ -62,6 +72,7 @@ impl Kind {
             Self::Drainage => "drainage",
             Self::Ridge => "ridge",
             Self::Own => "own",
+            Self::Hachure => "hachure",
         }
     }
 
@@ -74,6 +85,7 @@ impl Kind {
             Self::Drainage => style.pens.drainage,
             Self::Ridge => style.pens.ridge,
             Self::Own => style.pens.own,
+            Self::Hachure => style.pens.hachure,
         }
     }
 }

@@ -7,6 +7,7 @@
 mod colour;
 mod draw;
 pub mod drawing;
+mod hachures;
 pub mod mask;
 pub mod outline;
 mod paths;
@@ -26,6 +27,7 @@ mod wobble;
 pub use colour::Colour;
 pub use draw::draw;
 pub use drawing::{Drawing, Form, Layer, Pen, Stroke, StrokePoint};
+pub use hachures::{HachureStyle, LightStyle};
 pub use mask::write_mask;
 pub use pdf::write_pdf;
 pub use png::write_png;

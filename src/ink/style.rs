@@ -8,17 +8,19 @@ use std::fmt::Display;
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize, de};
 
+use super::hachures::{HachureStyle, LightStyle};
 use super::styles::BuiltIn;
 use super::{Colour, Pen};
 use crate::line::Economy;
+use crate::plan::{Hachures, Tone};
 use crate::relief::Crease;
 
 /// Least and greatest of numbers in styles.
-const LENGTH: [f64; 2] = [0.0, 100.0];
-const STEP: [f64; 2] = [0.05, 100.0];
+pub(super) const LENGTH: [f64; 2] = [0.0, 100.0];
+pub(super) const STEP: [f64; 2] = [0.05, 100.0];
 pub(super) const WIDTH: [f64; 2] = [0.02, 10.0];
 pub(super) const SHARE: [f64; 2] = [0.0, 1.0];
-const PART: [f64; 2] = [0.01, 1.0];
+pub(super) const PART: [f64; 2] = [0.01, 1.0];
 const JUMP: [f64; 2] = [0.0, 1e9];
 const SPEED: [f64; 2] = [0.1, 10_000.0];
 const SECONDS: [f64; 2] = [0.0, 60.0];
@@ -47,6 +49,10 @@ pub struct Style {
     /// Which lines of the land are drawn, whatever the eye: each in a layer of its own. Contours only.
     #[serde(deserialize_with = "creases")]
     pub creases: Vec<Crease>,
+    /// Strokes down the slope that give tone. Contours only.
+    pub hachures: HachureStyle,
+    /// Where light comes from.
+    pub light: LightStyle,
     /// Whether lone pixels of a mask are drawn, as dots; else they are left out as specks that say nothing.
     pub dots: bool,
     /// How wide lines are along their way.
@@ -115,6 +121,8 @@ pub struct Pens {
     pub ridge: Pen,
     /// Lines that the user gives.
     pub own: Pen,
+    /// Hachures: as broad as they get.
+    pub hachure: Pen,
     /// Lines that land hides.
     pub hidden: Pen,
 }
@@ -169,6 +177,8 @@ impl Default for Style {
             min_jump: 0.01,
             min_gap: 0.45,
             creases: Vec::new(),
+            hachures: HachureStyle::default(),
+            light: LightStyle::default(),
             dots: false,
             weight: Weight::default(),
             wobble: Wobble::default(),
@@ -201,6 +211,7 @@ impl Default for Pens {
             drainage: pen(0.18),
             ridge: pen(0.15),
             own: pen(0.24),
+            hachure: pen(0.3),
             hidden: pen(0.15),
         }
     }
@@ -208,9 +219,9 @@ impl Default for Pens {
 
 impl Pens {
     /// All of them.
-    pub fn all(&self) -> [Pen; 7] {
-        let Self { silhouette, border, shore, drainage, ridge, own, hidden } = *self;
-        [silhouette, border, shore, drainage, ridge, own, hidden]
+    pub fn all(&self) -> [Pen; 8] {
+        let Self { silhouette, border, shore, drainage, ridge, own, hachure, hidden } = *self;
+        [silhouette, border, shore, drainage, ridge, own, hachure, hidden]
     }
 }
 
@@ -246,6 +257,20 @@ impl Style {
         Economy { min_jump: self.min_jump, min_gap: self.min_gap * px_per_mm }
     }
 
+    /// How hachures look in a frame that has so many pixels for each millimetre of its sheet; none where there are none.
+    pub fn hachures(&self, px_per_mm: f64) -> Option<Hachures> {
+        let HachureStyle { tone, spacing, length, black_at, most_black, .. } = self.hachures;
+        (tone != Tone::None).then(|| Hachures {
+            tone,
+            black_at,
+            most_black,
+            spacing: spacing * px_per_mm,
+            broadest: self.pens.hachure.width * px_per_mm,
+            length: length * px_per_mm,
+            light: self.light.light(),
+        })
+    }
+
     /// Width of the broadest pen.
     pub fn broadest(&self) -> f64 {
         let own = self.pens.all().map(|pen| pen.width).into_iter().fold(0.0, f64::max);
@@ -266,7 +291,11 @@ impl Style {
 }
 
 /// A number of a style, if it is within bounds.
-fn within<'de, D: Deserializer<'de>>(from: D, bounds: [f64; 2], what: impl Display) -> Result<f64, D::Error> {
+pub(super) fn within<'de, D: Deserializer<'de>>(
+    from: D,
+    bounds: [f64; 2],
+    what: impl Display,
+) -> Result<f64, D::Error> {
     let number = f64::deserialize(from)?;
     let [least, most] = bounds;
     if (least..=most).contains(&number) {
@@ -279,7 +308,7 @@ fn length<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
     within(from, LENGTH, "millimetres")
 }
 
-fn step<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+pub(super) fn step<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
     within(from, STEP, "millimetres")
 }
 
@@ -291,7 +320,7 @@ pub(super) fn share<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error>
     within(from, SHARE, "a share")
 }
 
-fn part<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+pub(super) fn part<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
     within(from, PART, "a share")
 }
 

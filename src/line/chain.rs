@@ -21,6 +21,8 @@ pub enum Line {
     Ridge,
     /// A line that the user gives.
     Own,
+    /// A line down the slope that is drawn for its tone.
+    Hachure,
 }
 
 impl Line {
@@ -48,6 +50,8 @@ pub struct ChainPoint {
     /// How strongly it is drawn, 0 to 1, from here halfway to the points before and after: until [economy](super::economy) lowers
     /// it 1, and of lines on the land what the page [shows](super::detail) of them.
     pub weight: f32,
+    /// Of a hachure the share of the paper about it that is to be ink; 1 of all else.
+    pub black: f32,
 }
 
 impl ChainPoint {
@@ -61,6 +65,7 @@ impl ChainPoint {
             world: perspective.unproject(place, depth.into()),
             crowd: 0,
             weight: 1.0,
+            black: 1.0,
         }
     }
 

@@ -13,9 +13,9 @@
 //! without its order of arrival. Cost: a look at the samples within the gap. Does not
 //! handle: many weak lines beside a strong one that press no harder than one of them.
 
-use std::ops::Range;
-
 use glam::Vec2;
+
+use super::cells::Cells;
 
 /// Samples differ in rank by this where the weaker yields wholly: a factor of 1.3 in jump.
 const RANK: f32 = 0.25;
@@ -28,8 +28,6 @@ const COVERED: [f32; 2] = [0.0005, 0.002];
 const AHEAD: f32 = 2.0;
 /// Along one line, gaps between samples up to which they are neighbours, and from which they are strangers.
 const STRANGERS: [f32; 2] = [3.0, 6.0];
-/// Least side of a cell of the page in which samples are looked up, px.
-const LEAST_CELL: f32 = 2.0;
 
 /// A piece of a line, about straight.
 #[derive(Debug, Clone, Copy)]
@@ -65,7 +63,9 @@ pub struct Sample {
 /// Weights of samples whose lines keep `gap` px apart, 0 to 1, in the order of the samples.
 pub fn weights(samples: &[Sample], gap: f32) -> Vec<f32> {
     let widest = samples.iter().map(|sample| sample.berth).fold(1.0, f32::max);
-    let cells = Cells::new(samples, gap * widest);
+    let longest = samples.iter().map(|sample| sample.half).fold(0.0, f32::max);
+    let places: Vec<Vec2> = samples.iter().map(|sample| sample.place).collect();
+    let cells = Cells::new(&places, gap * widest + longest);
     // Neighbours on the page are neighbours in memory.
     let sorted: Vec<Sample> = cells.list.iter().map(|&i| samples[i as usize]).collect();
     let mut order: Vec<u32> = (0..sorted.len() as u32).filter(|&i| sorted[i as usize].alone > 0.0).collect();
@@ -127,57 +127,4 @@ impl Sample {
 pub fn smoothstep([low, high]: [f32; 2], x: f32) -> f32 {
     let t = ((x - low) / (high - low).max(f32::MIN_POSITIVE)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
-}
-
-/// Samples by cells of the page, each at least as wide as samples press.
-struct Cells {
-    low: Vec2,
-    side: f32,
-    columns: usize,
-    rows: usize,
-    /// Where each cell's samples begin in `list`, and where the last ends.
-    starts: Vec<u32>,
-    /// Samples, cell by cell in reading order.
-    list: Vec<u32>,
-}
-
-impl Cells {
-    /// Sorts samples in that press on others up to `gap` px away.
-    fn new(samples: &[Sample], gap: f32) -> Self {
-        let places = || samples.iter().map(|sample| sample.place);
-        let low = places().reduce(Vec2::min).unwrap_or_default();
-        let size = places().reduce(Vec2::max).unwrap_or_default() - low;
-        let longest = samples.iter().map(|sample| sample.half).fold(0.0, f32::max);
-        // No more cells than twice the samples, however large the page.
-        let fewest = (size.x * size.y / (2.0 * samples.len() as f32 + 1.0)).sqrt().max(size.max_element() / 10_000.0);
-        let side = (gap + longest).max(fewest).max(LEAST_CELL);
-        let [columns, rows] = [size.x, size.y].map(|size| (size / side) as usize + 1);
-        let mut cells =
-            Self { low, side, columns, rows, starts: vec![0; columns * rows + 1], list: vec![0; samples.len()] };
-        let of: Vec<usize> =
-            places().map(|place| cells.at(place)).map(|[column, row]| row * columns + column).collect();
-        of.iter().for_each(|cell| cells.starts[cell + 1] += 1);
-        (0..columns * rows).for_each(|cell| cells.starts[cell + 1] += cells.starts[cell]);
-        let mut ends = cells.starts.clone();
-        for (i, cell) in (0..).zip(of) {
-            cells.list[ends[cell] as usize] = i;
-            ends[cell] += 1;
-        }
-        cells
-    }
-
-    /// Column and row of a place.
-    fn at(&self, place: Vec2) -> [usize; 2] {
-        let at = ((place - self.low) / self.side).to_array();
-        [(at[0] as usize).min(self.columns - 1), (at[1] as usize).min(self.rows - 1)]
-    }
-
-    /// Where in the list are the samples in the cell of a place and in the 8 about it, row by row.
-    fn about(&self, place: Vec2) -> impl Iterator<Item = Range<usize>> {
-        let [column, row] = self.at(place);
-        let columns = [column.saturating_sub(1), (column + 2).min(self.columns)];
-        let start = move |row: usize, column: usize| self.starts[row * self.columns + column] as usize;
-        let rows = row.saturating_sub(1)..(row + 2).min(self.rows);
-        rows.map(move |row| start(row, columns[0])..start(row, columns[1]))
-    }
 }

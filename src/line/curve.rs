@@ -24,6 +24,8 @@ pub struct CurvePoint {
     pub at: Place,
     /// How strongly the page shows what the curve draws, 0 to 1; 1 of what bounds the surface.
     pub weight: f32,
+    /// Of a hachure the share of the paper about it that is to be ink; 1 of all else.
+    pub black: f32,
 }
 
 /// Which boundary of the toward surface a stretch is.
@@ -113,6 +115,7 @@ impl Curve {
             world: a.world.lerp(b.world, share * b.depth / depth),
             at,
             weight: a.weight + (b.weight - a.weight) * share as f32,
+            black: a.black + (b.black - a.black) * share as f32,
         }
     }
 

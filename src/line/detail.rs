@@ -11,13 +11,17 @@
 //! Cost: a look at each point of each line that may fill some pixels. Does not handle: land that hides a line, which is
 //! looked at later.
 
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3, FloatExt};
 use rayon::prelude::*;
 
 use super::along::fade;
+use super::laid::line_of;
+use super::way::{Way, WayPoint};
 use crate::dem::Dem;
 use crate::error::Result;
-use crate::relief::{LineKind, SurfaceLine, SurfacePoint, spacing};
+use crate::relief::{LineKind, Slopes, SurfaceLine, SurfacePoint, spacing};
 
 /// Lengths of a branch on the page up to which it is left out, and from which it is whole, px.
 const LENGTH: [f64; 2] = [10.0, 120.0];
@@ -57,6 +61,8 @@ pub struct Land {
     exaggeration: f64,
     /// Metres of a cell.
     cell: f64,
+    /// Lines down its slopes.
+    slopes: Option<Arc<Slopes>>,
 }
 
 /// What a line lies in.
@@ -114,7 +120,17 @@ impl Land {
         let world: Vec<Vec<DVec3>> = lines.iter().map(|line| line.points.iter().map(place).collect()).collect();
         let spheres = world.iter().map(|points| Sphere::about(points)).collect();
         let cell = dem.cell().min_element() * spacing as f64;
-        Ok(Self { lines, world, spheres, exaggeration, cell })
+        Ok(Self { lines, world, spheres, exaggeration, cell, slopes: None })
+    }
+
+    /// The same with lines down its slopes.
+    pub fn with_slopes(self, slopes: Arc<Slopes>) -> Self {
+        Self { slopes: Some(slopes), ..self }
+    }
+
+    /// Lines down its slopes, where it has them.
+    pub fn slopes(&self) -> Option<&Slopes> {
+        self.slopes.as_deref()
     }
 
     /// The lines, and where their points lie, metres of the exaggerated world.
@@ -122,8 +138,24 @@ impl Land {
         self.lines.iter().zip(self.world.iter().map(Vec::as_slice))
     }
 
+    /// The lines that are shown, each point as strongly as it is.
+    pub fn ways(&self, from: From) -> Vec<Way> {
+        let way = |((line, world), weights): ((&SurfaceLine, &[DVec3]), Vec<f32>)| {
+            let points = line.points.iter().zip(world).zip(&weights);
+            let point = |((point, world), weight): ((&SurfacePoint, &DVec3), &f32)| WayPoint {
+                at: point.at,
+                world: *world,
+                weight: *weight,
+                black: 1.0,
+            };
+            let points: Vec<WayPoint> = points.map(point).collect();
+            (points.len() > 1).then_some(Way { line: line_of(line.kind), points, closed: line.closed })
+        };
+        self.iter().zip(self.shown(from)).filter_map(way).collect()
+    }
+
     /// How strongly each point of each line is shown, 0 to 1; nothing of lines that are not.
-    pub fn shown(&self, from: From) -> Vec<Vec<f32>> {
+    fn shown(&self, from: From) -> Vec<Vec<f32>> {
         let mut shown: Vec<(Vec<f32>, f64)> =
             (0..self.lines.len()).into_par_iter().map(|i| self.alone(i, from)).collect();
         // Branches stand behind what they join.

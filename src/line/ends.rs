@@ -6,7 +6,7 @@ use glam::DVec2;
 use rstar::RTree;
 use rstar::primitives::{GeomWithData, Line as Piece};
 
-use super::Chain;
+use super::{Chain, Line};
 
 /// How near to a line an end lies on it, px.
 const ON_LINE: f64 = 1.5;
@@ -16,11 +16,14 @@ const LEAST_WEIGHT: f32 = 0.25;
 const ALONG: f64 = 6.0;
 
 /// For each chain of a page of so many pixels across and down, whether its first and its last point are free ends. A closed
-/// one has none. What bounds the surface ends on nothing that lies on the land: its strokes are the same with and without.
+/// one has none, nor has a hachure. What bounds the surface ends on nothing that lies on the land: its strokes are the same with and without.
 pub fn free(chains: &[Chain], [width, height]: [u32; 2]) -> Vec<[bool; 2]> {
     let page = DVec2::new(width.into(), height.into());
-    let tree = RTree::bulk_load(chains.iter().enumerate().flat_map(|(index, chain)| pieces(index, chain)).collect());
-    let of_land: Vec<bool> = chains.iter().map(|chain| chain.line().is_of_land()).collect();
+    let drawn: Vec<Line> = chains.iter().map(Chain::line).collect();
+    // Hachures have ends of their own.
+    let lines = chains.iter().enumerate().filter(|(index, _)| drawn[*index] != Line::Hachure);
+    let tree = RTree::bulk_load(lines.flat_map(|(index, chain)| pieces(index, chain)).collect());
+    let of_land: Vec<bool> = drawn.iter().map(|line| line.is_of_land()).collect();
     let is_free = |index: usize, backward: bool| {
         let chain = &chains[index];
         let Some(end) = (if backward { chain.points.last() } else { chain.points.first() }) else { return false };
@@ -33,7 +36,7 @@ pub fn free(chains: &[Chain], [width, height]: [u32; 2]) -> Vec<[bool; 2]> {
             let counts = of_land[index] || !of_land[piece.data.0];
             counts && (piece.data.0 != index || own_way(piece.data.1) > ALONG)
         };
-        !chain.closed && !on_edge && !near.any(is_other)
+        drawn[index] != Line::Hachure && !chain.closed && !on_edge && !near.any(is_other)
     };
     (0..chains.len()).map(|index| [false, true].map(|backward| is_free(index, backward))).collect()
 }

@@ -5,16 +5,17 @@
 //! rounded to odd numbers of their units: no facet's edge passes there. Cost: a look-up for each pixel of line. Does not handle:
 //! lines over voids, which end there.
 
-use glam::{DVec2, DVec3, Vec3};
+use glam::{DVec2, DVec3, FloatExt, Vec3};
 use rayon::prelude::*;
 
+use super::Line;
 use super::curve::{Bound, Curve, CurvePoint, Place, Sight, Stretch};
-use super::detail::{From, Land};
-use super::{Line, identity::CELL};
+use super::identity::CELL;
+use super::way::Way;
 use crate::error::{Error, Result, Setting};
 use crate::gpu::uniforms::{Segment, code, seen};
 use crate::message;
-use crate::relief::{LineKind, SurfaceLine};
+use crate::relief::LineKind;
 use crate::view::Perspective;
 use crate::view::cut::share_within;
 
@@ -38,7 +39,8 @@ pub struct Laid {
 struct Run {
     line: Line,
     places: Vec<Place>,
-    weights: Vec<f32>,
+    /// Of each its weight, and the share of black about it.
+    inks: Vec<[f32; 2]>,
     closed: bool,
 }
 
@@ -47,18 +49,23 @@ impl Laid {
     ///
     /// # Errors
     /// [`Error::Limit`] where they are longer than a device numbers their points.
-    pub fn new(land: &Land, perspective: &Perspective) -> Result<Self> {
-        let shown = land.shown(From::Eye(perspective.eye(), perspective.focal()));
-        let lines: Vec<_> = land.iter().zip(shown).filter(|(_, weights)| !weights.is_empty()).collect();
-        let of_line =
-            |((line, world), weights): &((&SurfaceLine, &[DVec3]), Vec<f32>)| runs(line, world, weights, perspective);
-        let runs: Vec<Run> = lines.par_iter().flat_map_iter(of_line).collect();
+    pub fn new(ways: &[Way], perspective: &Perspective) -> Result<Self> {
+        let runs: Vec<Run> = ways.par_iter().flat_map_iter(|way| runs(way, perspective)).collect();
         let places: Vec<Place> = runs.iter().flat_map(|run| run.places.iter().copied()).collect();
         if places.len() > MOST {
             let what = format!("lines of the land are {} px long on the page, {MOST} can be laid", places.len());
             return Err(Error::limit(
                 what,
-                message!["use a smaller ", Setting::Size, ", or fewer ", Setting::Creases, " or ", Setting::Lines],
+                message![
+                    "use a smaller ",
+                    Setting::Size,
+                    ", or fewer ",
+                    Setting::Creases,
+                    ", ",
+                    Setting::Hachures,
+                    " or ",
+                    Setting::Lines
+                ],
             ));
         }
         Ok(Self { places, runs })
@@ -95,23 +102,23 @@ pub(super) fn line_of(kind: LineKind) -> Line {
     }
 }
 
-/// The parts of a line that a page shows, given where its points lie in the world, and how strongly they are shown.
-fn runs(line: &SurfaceLine, world: &[DVec3], weights: &[f32], perspective: &Perspective) -> Vec<Run> {
-    let new = || Run { line: line_of(line.kind), places: Vec::new(), weights: Vec::new(), closed: false };
+/// The parts of a line that a page shows.
+fn runs(way: &Way, perspective: &Perspective) -> Vec<Run> {
+    let new = || Run { line: way.line, places: Vec::new(), inks: Vec::new(), closed: false };
     let (mut runs, mut run) = (Vec::new(), new());
     let mut finish = |run: &mut Run| {
         let whole = std::mem::replace(run, new());
         runs.extend((whole.places.len() > 1).then_some(whole));
     };
-    let n = weights.len();
-    let stretches = if line.closed { n } else { n.saturating_sub(1) };
+    let n = way.points.len();
+    let stretches = if way.closed { n } else { n.saturating_sub(1) };
     let bounds = [DVec2::splat(-BEYOND), perspective.size() + BEYOND];
     for i in 0..stretches {
-        let ends = [i, (i + 1) % n];
-        let shown = ends.map(|end| f64::from(weights[end]));
-        let ahead = ahead(ends.map(|end| world[end]), perspective).filter(|_| shown != [0.0; 2]);
+        let [start, end] = [i, (i + 1) % n].map(|end| way.points[end]);
+        let is_shown = start.weight > 0.0 || end.weight > 0.0;
+        let ahead = ahead([start.world, end.world], perspective).filter(|_| is_shown);
         let on_page = ahead.and_then(|ahead| {
-            let [a, b] = ahead.map(|share| perspective.project(world[ends[0]].lerp(world[ends[1]], share)));
+            let [a, b] = ahead.map(|share| perspective.project(start.world.lerp(end.world, share)));
             Some((ahead, a, b, share_within(bounds, a.0, b.0)?))
         });
         let Some(([from, to], a, b, [enter, leave])) = on_page else {
@@ -126,20 +133,21 @@ fn runs(line: &SurfaceLine, world: &[DVec3], weights: &[f32], perspective: &Pers
             let share = enter + (leave - enter) * k as f64 / steps;
             // Depth is linear on the page; the way on the map is not.
             let share = from + (to - from) * share * b.1 / (a.1 + (b.1 - a.1) * share);
-            let place = on_lattice(between(line, i, share));
+            let place = on_lattice(between(way, i, share));
             if run.places.last() != Some(&place) {
                 run.places.push(place);
-                run.weights.push((shown[0] + (shown[1] - shown[0]) * share) as f32);
+                let share = share as f32;
+                run.inks.push([start.weight.lerp(end.weight, share), start.black.lerp(end.black, share)]);
             }
         }
         if leave < 1.0 || to < 1.0 {
             finish(&mut run);
         }
     }
-    if line.closed && runs_whole(&run, n, line) {
+    if way.closed && runs_whole(&run, way) {
         run.closed = true;
         run.places.pop();
-        run.weights.pop();
+        run.inks.pop();
     }
     finish(&mut run);
     runs
@@ -159,21 +167,21 @@ fn ahead([a, b]: [DVec3; 2], perspective: &Perspective) -> Option<[f64; 2]> {
 }
 
 /// Whether a run goes all round a closed line.
-fn runs_whole(run: &Run, n: usize, line: &SurfaceLine) -> bool {
+fn runs_whole(run: &Run, way: &Way) -> bool {
     let ends = [run.places.first(), run.places.last()];
-    n > 2 && run.places.len() > 3 && ends.iter().all(|end| *end == Some(&on_lattice(line.points[0].at)))
+    way.points.len() > 2 && run.places.len() > 3 && ends.iter().all(|end| *end == Some(&on_lattice(way.points[0].at)))
 }
 
 /// The place at a share of the way from point `i` of a line to the next (Catmull, Rom 1974).
-fn between(line: &SurfaceLine, i: usize, t: f64) -> DVec2 {
-    let n = line.points.len();
-    let at = |k: usize| line.points[k % n].at;
+fn between(way: &Way, i: usize, t: f64) -> DVec2 {
+    let n = way.points.len();
+    let at = |k: usize| way.points[k % n].at;
     let (b, c) = (at(i), at(i + 1));
-    let a = match (i, line.closed) {
+    let a = match (i, way.closed) {
         (0, false) => b * 2.0 - c,
         _ => at(i + n - 1),
     };
-    let d = if i + 2 < n || line.closed { at(i + 2) } else { c * 2.0 - b };
+    let d = if i + 2 < n || way.closed { at(i + 2) } else { c * 2.0 - b };
     let (t2, t3) = (t * t, t * t * t);
     (b * 2.0 + (c - a) * t + (a * 2.0 - b * 5.0 + c * 4.0 - d) * t2 + (b * 3.0 - a - c * 3.0 + d) * t3) / 2.0
 }
@@ -191,18 +199,18 @@ fn curves(run: &Run, found: &[Option<&Segment>], perspective: &Perspective) -> V
     let parts: Vec<&[usize]> = parts.filter(|part| found[part[0]].is_some() && part.len() > 1).collect();
     let whole = |part: &[usize]| run.closed && part.len() == found.len();
     let curve = |part: &[usize]| {
-        let there: Vec<(&Segment, f32)> = part.iter().filter_map(|i| Some((found[*i]?, run.weights[*i]))).collect();
+        let there: Vec<(&Segment, [f32; 2])> = part.iter().filter_map(|i| Some((found[*i]?, run.inks[*i]))).collect();
         curve(&there, run.line, whole(part), perspective)
     };
     parts.into_iter().map(curve).collect()
 }
 
 /// The curve through points one after the other.
-fn curve(there: &[(&Segment, f32)], line: Line, closed: bool, perspective: &Perspective) -> Curve {
-    let point = |&(segment, weight): &(&Segment, f32)| {
+fn curve(there: &[(&Segment, [f32; 2])], line: Line, closed: bool, perspective: &Perspective) -> Curve {
+    let point = |&(segment, [weight, black]): &(&Segment, [f32; 2])| {
         let world = perspective.eye() + Vec3::from(segment.start).as_dvec3();
         let (place, depth) = perspective.project(world);
-        CurvePoint { place, depth, world, at: segment.at, weight }
+        CurvePoint { place, depth, world, at: segment.at, weight, black }
     };
     let points: Vec<CurvePoint> = there.iter().map(point).collect();
     let count = if closed { points.len() } else { points.len() - 1 };

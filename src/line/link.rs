@@ -115,7 +115,7 @@ fn curve(run: &[&Segment], closed: bool, perspective: &Perspective) -> Option<Cu
     let point = |from_eye: [f32; 3], at: [i32; 2]| {
         let world = perspective.eye() + Vec3::from(from_eye).as_dvec3();
         let (place, depth) = perspective.project(world);
-        CurvePoint { place, depth, world, at, weight: 1.0 }
+        CurvePoint { place, depth, world, at, weight: 1.0, black: 1.0 }
     };
     let mut points: Vec<CurvePoint> = parts.iter().map(|part| point(part[0].start, part[0].at)).collect();
     if let Some(last) = run.last().filter(|_| !closed) {

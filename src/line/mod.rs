@@ -7,6 +7,7 @@
 //! lines on the [`Land`] that were [`Laid`] on its facets.
 
 mod along;
+mod cells;
 pub mod chain;
 pub mod clearance;
 mod crossing;
@@ -19,6 +20,7 @@ pub mod ends;
 mod folds;
 mod graph;
 mod grid;
+pub mod hachures;
 pub mod identity;
 mod join;
 mod labels;
@@ -35,8 +37,10 @@ mod simplify;
 pub mod smooth;
 pub mod strays;
 mod thin;
+mod tone;
 pub mod trace;
 pub mod visible;
+pub mod way;
 
 pub use chain::{Chain, ChainPoint, Id, Line};
 pub use crowd::crowded;
@@ -53,7 +57,9 @@ pub use recession::Recession;
 pub use rest::rest;
 pub use smooth::smooth;
 pub use strays::Strays;
+pub use tone::toned;
 pub use trace::trace;
+pub use way::{Way, WayPoint};
 
 use glam::DVec3;
 

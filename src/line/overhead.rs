@@ -9,13 +9,16 @@ use glam::{DVec2, DVec3, UVec2};
 use rustc_hash::FxHashMap;
 
 use super::detail::{From, Land};
+use super::hachures::{self, Seen};
 use super::identity::{Held, key, names};
-use super::laid::{line_of, on_lattice};
+use super::laid::on_lattice;
 use super::simplify::needed;
+use super::tone::toned;
+use super::way::{Way, WayPoint};
 use super::{Chain, ChainPoint, Economy, Id, Line, Lines, Recession, economised};
 use crate::dem::Dem;
 use crate::error::Result;
-use crate::relief::SurfacePoint;
+use crate::plan::Hachures;
 use crate::surface::rim::{RimEdge, rim};
 
 /// Points that lie within this of the rest are left out, px: those between two corners.
@@ -45,7 +48,7 @@ impl Overhead {
         let point = |[column, row]: Sample| {
             let world = DVec2::new(west + f64::from(column) * cell.x, north - f64::from(row) * cell.y);
             let (place, line, world) = (self.place(world), Line::Border, world.extend(0.0));
-            ChainPoint { place, line, depth: 1.0, behind: 0.0, world, crowd: 0, weight: 1.0 }
+            ChainPoint { place, line, depth: 1.0, behind: 0.0, world, crowd: 0, weight: 1.0, black: 1.0 }
         };
         let chain = |ring: Vec<Sample>| {
             let id = Id(u64::from(ring[0][1]) << 32 | u64::from(ring[0][0]));
@@ -65,10 +68,18 @@ impl Overhead {
         })
     }
 
-    /// Lines on the land, `min_gap` px apart.
-    pub fn land(&self, land: &Land, min_gap: f64) -> Vec<Chain> {
-        let chains = self.of_land(land, &land.shown(From::Above(self.px_per_metre)));
-        economised(&chains, &Economy { min_jump: 0.0, min_gap })
+    /// Lines on the land, `min_gap` px apart, and hachures.
+    ///
+    /// # Errors
+    /// As [`hachures::ways`].
+    pub fn land(&self, land: &Land, min_gap: f64, hachures: Option<&Hachures>) -> Result<Vec<Chain>> {
+        let lines = self.chains(&land.ways(From::Above(self.px_per_metre)));
+        let lines = economised(&lines, &Economy { min_jump: 0.0, min_gap });
+        let strokes = match land.slopes().zip(hachures) {
+            Some((slopes, look)) => toned(self.chains(&hachures::ways(slopes, look, Seen::Above(self))?), &lines, look),
+            None => Vec::new(),
+        };
+        Ok([lines, strokes].concat())
     }
 
     fn middle(&self) -> DVec2 {
@@ -77,27 +88,27 @@ impl Overhead {
     }
 
     /// The chains of lines on the land, as strong as they are shown.
-    fn of_land(&self, land: &Land, shown: &[Vec<f32>]) -> Vec<Chain> {
-        let (mut held, mut chains) = (Vec::new(), Vec::new());
-        for ((line, world), weights) in land.iter().zip(shown).filter(|(_, weights)| !weights.is_empty()) {
-            let point = |(world, weight): (&DVec3, &f32)| {
-                let (place, line) = (self.place(world.truncate()), line_of(line.kind));
-                ChainPoint { place, line, depth: 1.0, behind: 1.0, world: *world, crowd: 0, weight: *weight }
+    fn chains(&self, ways: &[Way]) -> Vec<Chain> {
+        let chain = |way: &Way| {
+            let point = |&WayPoint { world, weight, black, .. }: &WayPoint| {
+                let place = self.place(world.truncate());
+                ChainPoint { place, line: way.line, depth: 1.0, behind: 1.0, world, crowd: 0, weight, black }
             };
-            let points: Vec<ChainPoint> = world.iter().zip(weights).map(point).collect();
-            let holds = |(pair, point): (&[ChainPoint], &SurfacePoint)| {
-                let way = pair[1].place - pair[0].place;
-                Held { key: key(on_lattice(point.at), way), length: way.length() }
+            let points: Vec<ChainPoint> = way.points.iter().map(point).collect();
+            let holds = |(pair, point): (&[ChainPoint], &WayPoint)| {
+                let step = pair[1].place - pair[0].place;
+                Held { key: key(on_lattice(point.at), step), length: step.length() }
             };
-            held.push(points.windows(2).zip(&line.points).map(holds).collect::<Vec<_>>());
-            chains.push(Chain { id: None, points, closed: line.closed });
-        }
+            let held = points.windows(2).zip(&way.points).map(holds).collect::<Vec<_>>();
+            (Chain { id: None, points, closed: way.closed }, held)
+        };
+        let (mut chains, held): (Vec<Chain>, Vec<_>) = ways.iter().map(chain).unzip();
         chains.iter_mut().zip(names(&held)).for_each(|(chain, id)| chain.id = id.map(Id::of_land));
         chains
     }
 
     /// Where a place of the world stands, px.
-    fn place(&self, world: DVec2) -> DVec2 {
+    pub(super) fn place(&self, world: DVec2) -> DVec2 {
         let frame = UVec2::from(self.size).as_dvec2() / 2.0;
         frame + (world - self.middle()) * DVec2::new(1.0, -1.0) * self.px_per_metre
     }

@@ -214,9 +214,9 @@ fn chain(curve: &Curve, span: Span) -> (Chain, Vec<Held>) {
     let lengths: Vec<f64> = pieces.iter().map(|piece| length(*piece)).collect();
     let drawn = settled(&drawn, &lengths);
     let point = |at: f64, piece: usize| {
-        let CurvePoint { place, depth, world, weight, .. } = curve.at(at);
+        let CurvePoint { place, depth, world, weight, black, .. } = curve.at(at);
         let behind = stretch(pieces[piece]).behind;
-        ChainPoint { place, line: drawn[piece], depth: depth as f32, behind, world, crowd: 0, weight }
+        ChainPoint { place, line: drawn[piece], depth: depth as f32, behind, world, crowd: 0, weight, black }
     };
     let mut points: Vec<ChainPoint> = (0..pieces.len()).map(|i| point(pieces[i][0], i)).collect();
     points.push(point(span[1], pieces.len() - 1));

@@ -3,6 +3,7 @@
 pub mod batches;
 pub mod detail;
 pub mod frame;
+mod hachures;
 mod horizon;
 pub mod left_out;
 pub mod method;
@@ -13,6 +14,7 @@ pub mod registry;
 pub use batches::{Batch, batches};
 pub use detail::Detail;
 pub use frame::Frame;
+pub use hachures::{Hachures, Light, LightAzimuth, Shade, Tone};
 pub use method::{Border, Curves, LandLines, Method, Share, Thrift, Visibility};
 pub use passes::PassName;
 pub use pieces::{Piece, Pieces};
@@ -31,6 +33,8 @@ pub struct Plan {
     pub curves: Curves,
     /// Whether lines on the land are laid over a frame that has curves.
     pub land: LandLines,
+    /// How hachures look, where they are drawn.
+    pub hachures: Option<Hachures>,
     /// Whether what cannot change the picture is left out.
     pub thrift: Thrift,
 }
@@ -44,8 +48,15 @@ impl Plan {
             border,
             curves: Curves::Off,
             land: LandLines::Off,
+            hachures: None,
             thrift: Thrift::LeaveOut,
         }
+    }
+
+    /// The same with light that stays where it is for an eye that looks to this azimuth of the world, degrees.
+    pub fn lit_for(self, azimuth: f64) -> Self {
+        let lit = |hachures: Hachures| Hachures { light: hachures.light.seen_from(azimuth), ..hachures };
+        Self { hachures: self.hachures.map(lit), ..self }
     }
 
     /// Whether its frames hold curves.

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::ChannelArea;
+use super::{ChannelArea, SlopeRules};
 
 /// Lines that the land has by itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
@@ -40,11 +40,13 @@ pub struct LandWanted {
     pub channel_area: ChannelArea,
     /// What tells the lines that the user gives from any others; empty where there are none.
     pub own: String,
+    /// When lines down its slopes end; none where there are none.
+    pub slopes: Option<SlopeRules>,
 }
 
 impl LandWanted {
     /// Whether there are none.
     pub fn is_nothing(&self) -> bool {
-        self.creases.is_empty() && self.own.is_empty()
+        self.creases.is_empty() && self.own.is_empty() && self.slopes.is_none()
     }
 }

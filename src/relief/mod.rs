@@ -43,6 +43,7 @@ pub use kept::FlowLines;
 pub use own::own_lines;
 pub use peaks::{Base, Peak, peaks};
 pub use shores::Shores;
+pub use slope::{Need, SlopeBlock, SlopeLine, SlopePoint, SlopeRules, Slopes};
 pub use whole::{ChannelArea, Relief};
 
 /// What a line of the land is.

@@ -5,6 +5,8 @@ use crate::error::Result;
 use crate::gpu::clock::Timer;
 use crate::gpu::uniforms::Segment;
 use crate::gpu::work::Work;
+use crate::line::detail::From;
+use crate::line::hachures::{self, Seen};
 use crate::line::{Chain, Curve, Laid, link, visible};
 use crate::plan::{Frame, LandLines, Piece};
 
@@ -36,7 +38,12 @@ impl Renderer {
         else {
             return Ok(Laid::default());
         };
-        let laid = Laid::new(&land, &self.perspective(frame))?;
+        let perspective = self.perspective(frame);
+        let mut ways = land.ways(From::Eye(perspective.eye(), perspective.focal()));
+        if let (Some(slopes), Some(look)) = (land.slopes(), &frame.plan.hachures) {
+            ways.extend(hachures::ways(slopes, look, Seen::By(&perspective, frame.camera.azimuth))?);
+        }
+        let laid = Laid::new(&ways, &perspective)?;
         self.curves.lay(&self.gpu, &laid.places)?;
         self.stages.fit(&self.gpu, frame, &self.scene, &self.page, &self.curves)?;
         Ok(laid)

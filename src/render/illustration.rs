@@ -31,7 +31,11 @@ pub struct Illustration {
 impl Illustration {
     /// What of it the mask depends on, in words: neither style nor sheet.
     pub fn of_mask(&self) -> String {
-        format!("{:?} {:?}", Plan { curves: Curves::Off, land: LandLines::Off, ..self.plan }, self.frame)
+        format!(
+            "{:?} {:?}",
+            Plan { curves: Curves::Off, land: LandLines::Off, hachures: None, ..self.plan },
+            self.frame
+        )
     }
 
     /// The lines of a page, and their drawing.

@@ -3,7 +3,7 @@
 use super::{Drawn, Renderer};
 use crate::error::Result;
 use crate::gpu::uniforms::Segment;
-use crate::line::{Chain, Economy, Laid, Lines, Mark, Marks, link, marks, one_pixel_wide, rest, visible};
+use crate::line::{Chain, Economy, Laid, Line, Lines, Mark, Marks, link, marks, one_pixel_wide, rest, toned, visible};
 use crate::plan::{Curves, Frame, Piece, Plan, Yields};
 use crate::view::{Camera, Perspective};
 
@@ -37,7 +37,13 @@ impl Page {
             return Lines::of(marks, perspective, tolerance);
         }
         let rest = rest(chains, marks, perspective, economy, tolerance);
-        Lines::sparing(&[&chains[..], &rest, land].concat(), hidden, perspective, economy)
+        let (strokes, land): (Vec<Chain>, _) = land.iter().cloned().partition(|chain| chain.line() == Line::Hachure);
+        let mut lines = Lines::sparing(&[&chains[..], &rest, &land].concat(), hidden, perspective, economy);
+        if let Some(look) = &self.frame.plan.hachures {
+            let strokes = toned(strokes, &lines.chains, look);
+            lines.chains.extend(strokes);
+        }
+        lines
     }
 }
 

@@ -66,4 +66,35 @@ impl Perspective {
         let d = (place - self.size / 2.0) / self.focal;
         self.eye + (forward + right * d.x - up * d.y) * (self.near / depth)
     }
+
+    /// How the place on the page of a point of the world moves where this moves so, px; meaningless where its distance is not
+    /// positive.
+    pub fn moves(&self, point: DVec3, by: DVec3) -> DVec2 {
+        let [right, up, forward] = self.axes;
+        let (p, distance) = (point - self.eye, self.distance(point));
+        let (at, ahead) = (DVec2::new(p.dot(right), -p.dot(up)) / distance, by.dot(forward));
+        (DVec2::new(by.dot(right), -by.dot(up)) - at * ahead) * (self.focal / distance)
+    }
+
+    /// Most pixels that a metre across takes on the page in a box of the world, by its low and high corner; 0 where that lies
+    /// beside the page.
+    pub fn most_px_per_metre(&self, [low, high]: [DVec3; 2]) -> f64 {
+        let corner = |k: usize| DVec3::new([low, high][k & 1].x, [low, high][k >> 1 & 1].y, [low, high][k >> 2].z);
+        let [right, up, forward] = self.axes;
+        // What the page shows, in tangents.
+        let half = self.size / 2.0 / self.focal;
+        let in_view = |corner: DVec3| {
+            let p = corner - self.eye;
+            let (x, y, z) = (p.dot(right), p.dot(up), p.dot(forward));
+            [half.x * z - x, half.x * z + x, half.y * z - y, half.y * z + y, z - self.near]
+        };
+        let sides: [[f64; 5]; 8] = std::array::from_fn(|k| in_view(corner(k)));
+        if (0..5).any(|side| sides.iter().all(|corner| corner[side] < 0.0)) {
+            return 0.0;
+        }
+        // A page is stretched towards its corners, by the square of how much farther they are.
+        let stretch = 1.0 + half.length_squared();
+        let nearest = self.eye.clamp(low, high).distance(self.eye);
+        self.focal * stretch / nearest.max(self.near)
+    }
 }

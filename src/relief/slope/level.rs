@@ -1,12 +1,12 @@
 //! Levels of spacing, and the blocks in which lines of a level are made.
 //!
-//! A block is a square of 32 spacings. Its lines reach 14 spacings out of it and look as far as their most room for others. Blocks
+//! A block is a square of 16 spacings. Its lines reach 6 spacings out of it and look as far as their most room for others. Blocks
 //! of a level are made in four phases, by whether their column and row are odd:
 //!
 //! ```text
-//! 0 1 0 1     between two blocks of a phase lies another: 32 spacings, of which the lines
-//! 2 3 2 3     of both cross 28 at most. The 4 that are left are more than their most room,
-//! 0 1 0 1     2.83: blocks of a phase do not know each other, and can be made at once.
+//! 0 1 0 1     between two blocks of a phase lies another: 16 spacings, of which the lines
+//! 2 3 2 3     of both cross 12 at most. The 4 that are left are more than their most room,
+//! 0 1 0 1     1.42: blocks of a phase do not know each other, and can be made at once.
 //! ```
 
 use std::f64::consts::FRAC_1_SQRT_2;
@@ -18,9 +18,9 @@ pub const LEVELS: u32 = 17;
 /// Spacing of level 0, cells; that of each next is less by the square root of 2.
 const WIDEST: f64 = 32.0;
 /// Side of a block, spacings of its level.
-const SIDE: f64 = 32.0;
+const SIDE: f64 = 16.0;
 /// How far a line goes from its seed, each way, spacings of its level.
-const REACH: f64 = 14.0;
+const REACH: f64 = 6.0;
 
 /// A block of a level. Blocks come in the order of their levels, rows and columns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -77,9 +77,9 @@ impl Blocks {
         REACH * self.spacing(level)
     }
 
-    /// The most room that is told of lines of a level, metres.
+    /// The most room that is told of lines of a level, metres: the spacing of the level before, of level 0 four of its own.
     pub fn most_room(&self, level: u32) -> f64 {
-        level.checked_sub(1).map_or(4.0 * self.spacing(0), |before| 2.0 * self.spacing(before))
+        level.checked_sub(1).map_or(4.0 * self.spacing(0), |before| self.spacing(before))
     }
 
     /// Metres from point to point of lines of a level.

@@ -10,7 +10,7 @@ use rustc_hash::FxHashMap;
 use super::block::made;
 use super::land::Land;
 use super::level::{BlockAt, Blocks, LEVELS};
-use super::{SlopeBlock, SlopeRules};
+use super::{SlopeBlock, SlopePoint, SlopeRules};
 use crate::error::Result;
 use crate::relief::{FlatWater, SurfaceLine};
 use crate::surface::lattice::{CELL_STEPS, CHUNK_QUADS};
@@ -19,12 +19,41 @@ use crate::surface::{Pyramid, Surface};
 /// Points that are held; where there are more, blocks go that the last request did not need. 192 MB.
 const MOST_POINTS: usize = 6_000_000;
 
+/// Along the side of a block its land is looked at in about so many places.
+const LOOKS: f64 = 10.0;
+/// How far beyond its sides, spacings: where its lines mostly are.
+const BEYOND: f64 = 2.0;
+/// Between these, places may need as much less.
+const SLACK: f64 = 0.75;
+
+/// Which lines somebody needs: with how much room they are drawn, metres on the map.
+pub trait Need: Sync {
+    /// The least anywhere in a box of the exaggerated world, by its low and high corner, metres; infinite where none is drawn. No
+    /// less in a box inside another.
+    fn in_box(&self, corners: [DVec3; 2]) -> f64;
+
+    /// At a place of the exaggerated world, on land of this gradient: metres for a metre east and north.
+    fn at(&self, place: DVec3, gradient: DVec2) -> f64;
+}
+
+/// The same on all land.
+impl<F: Fn([DVec3; 2]) -> f64 + Sync> Need for F {
+    fn in_box(&self, corners: [DVec3; 2]) -> f64 {
+        self(corners)
+    }
+
+    fn at(&self, place: DVec3, _: DVec2) -> f64 {
+        self([place; 2])
+    }
+}
+
 /// All slope lines of a DEM: those of each block are made when they are first needed, and are the same whatever was asked
 /// before. Of a DEM that stays in its file lines run on the surface of every so-manieth sample, see
 /// [`spacing`](crate::relief::spacing), and spacings are told in cells of that.
 #[derive(Debug)]
 pub struct Slopes {
     land: Land,
+    exaggeration: f64,
     blocks: Blocks,
     made: Mutex<Made>,
 }
@@ -49,17 +78,15 @@ impl Slopes {
         let dem = land.surface.dem();
         let extent = DVec2::new(dem.columns() as f64, dem.rows() as f64) - 1.0;
         let blocks = Blocks { unit: land.cell.min_element(), extent: extent * land.cell };
-        Ok(Self { land, blocks, made: Mutex::default() })
+        Ok(Self { land, exaggeration, blocks, made: Mutex::default() })
     }
 
-    /// Blocks whose lines may be drawn, by level, row and column. `need` tells of a box of the exaggerated world (low and high
-    /// corner, metres) the least room with which a line in it is drawn, metres on the map; infinite where none is; for a box
-    /// inside another it tells no less than for that. A block is among them if its lines may have as much room as `need` tells
-    /// of the box that they are in. Those that are not known yet are made, on every core.
+    /// Blocks whose lines may be drawn, by level, row and column: those whose lines may have as much room as is needed in the box
+    /// that they are in, and somewhere on the land of it. Those that are not known yet are made, on every core.
     ///
     /// # Errors
     /// As [`Surface::pyramid`].
-    pub fn blocks(&self, need: &(dyn Fn([DVec3; 2]) -> f64 + Sync)) -> Result<Vec<Arc<SlopeBlock>>> {
+    pub fn blocks(&self, need: &dyn Need) -> Result<Vec<Arc<SlopeBlock>>> {
         let wanted = self.wanted(self.land.surface.pyramid()?, need);
         // No lock is held while threads are at work: they might be asked for blocks themselves.
         let mut known = self.lock().clone();
@@ -79,6 +106,18 @@ impl Slopes {
             self.keep(known, &wanted);
         }
         Ok(blocks)
+    }
+
+    /// Exaggerated metres for one of the land.
+    pub fn exaggeration(&self) -> f64 {
+        self.exaggeration
+    }
+
+    /// Where a point of a line lies, metres of the exaggerated world.
+    pub fn world(&self, point: &SlopePoint) -> DVec3 {
+        let north_west = self.land.surface.dem().position(0, 0).truncate();
+        let on_map = north_west + self.land.metres(point.at) * DVec2::new(1.0, -1.0);
+        on_map.extend(point.height.into())
     }
 
     /// How many points of lines are held.
@@ -111,8 +150,13 @@ impl Slopes {
     }
 
     /// Blocks whose lines may have the room that is needed. A block needs no less than the one around it two levels above.
-    fn wanted(&self, pyramid: &Pyramid, need: &(dyn Fn([DVec3; 2]) -> f64 + Sync)) -> Vec<BlockAt> {
-        let needs = |at: &BlockAt| self.bounds(pyramid, *at).map(|bounds| (*at, need(bounds)));
+    fn wanted(&self, pyramid: &Pyramid, need: &dyn Need) -> Vec<BlockAt> {
+        let needs = |at: &BlockAt| {
+            let in_box = need.in_box(self.bounds(pyramid, *at)?);
+            // The next but one level has less room.
+            let may_be = in_box <= self.blocks.most_room(at.level);
+            Some((*at, if may_be { in_box.max(SLACK * self.least_need(*at, need)) } else { in_box }))
+        };
         let has = |level: u32| move |(_, need): &(BlockAt, f64)| *need <= self.blocks.most_room(level);
         let mut open = [0, 1].map(|level| self.blocks.of(level).collect::<Vec<_>>());
         let of_level = |level: u32| {
@@ -125,6 +169,24 @@ impl Slopes {
         let mut wanted: Vec<BlockAt> = (0..LEVELS).flat_map(of_level).collect();
         wanted.sort_unstable();
         wanted
+    }
+
+    /// The least room that is needed at places of a block and a little beyond.
+    fn least_need(&self, at: BlockAt, need: &dyn Need) -> f64 {
+        let surface = &self.land.surface;
+        let last = DVec2::new(surface.dem().columns() as f64, surface.dem().rows() as f64) - 1.0;
+        let [low, high] = self.blocks.square(at).map(|corner| corner / self.land.cell);
+        let beyond = (BEYOND * self.blocks.spacing(at.level) / self.land.cell).max(DVec2::ONE);
+        let [low, high] = [(low - beyond).floor(), (high + beyond).ceil()].map(|corner| corner.clamp(DVec2::ZERO, last));
+        let step = ((high - low).max_element() / LOOKS).ceil().max(1.0);
+        let counts = ((high - low) / step).ceil().as_uvec2();
+        let places = (0..=counts.y).flat_map(|y| (0..=counts.x).map(move |x| DVec2::new(x.into(), y.into())));
+        let needs = places.filter_map(|place| {
+            let [c, r] = (low + place * step).min(high).to_array().map(|at| at as usize);
+            surface.dem().height(c, r)?;
+            Some(need.at(surface.dem().position(c, r), surface.gradient(c, r)))
+        });
+        needs.fold(f64::INFINITY, f64::min)
     }
 
     /// Whether a block begins on the DEM.

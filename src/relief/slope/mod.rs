@@ -15,7 +15,7 @@
 //!
 //! Distances are those of the map of the DEM, on which samples lie evenly: where the surface bends sideways between samples,
 //! places lie up to a tenth of a cell beside. Cost: about 2 us a point on a core, 32 bytes a point; a million samples down to a
-//! spacing of one cell have 1.5 million points. Not handled: land that folds over itself; lines longer than 28 of their
+//! spacing of one cell have 1.5 million points. Not handled: land that folds over itself; lines longer than 12 of their
 //! spacings, which are drawn as two with a gap; rooms between the floors of two levels may be up to twice what they need be.
 
 mod block;
@@ -30,7 +30,7 @@ mod trace;
 
 use glam::{DVec2, Vec2};
 
-pub use made::Slopes;
+pub use made::{Need, Slopes};
 
 /// When slope lines end.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -51,7 +51,7 @@ pub struct SlopePoint {
     /// Gradient of the PN surface there, exaggerated metres for a metre east and for one north: dz/dx, dz/dy.
     pub gradient: Vec2,
     /// How far it is, across, to the nearest line that is there when lines so far apart are drawn, metres on the map; at most
-    /// twice the spacing of the level before.
+    /// the spacing of the level before.
     pub room: f32,
 }
 

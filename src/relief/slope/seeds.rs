@@ -6,7 +6,7 @@ use xxhash_rust::xxh3::xxh3_64_with_seed;
 use super::level::{BlockAt, Blocks};
 use super::tile::{PLACES, SIDE, order};
 
-/// The seeds of a block, the first to be tried first, each with its number: one somewhere in each of 64 x 64 squares. The tile is
+/// The seeds of a block, the first to be tried first, each with its number: one somewhere in each of 32 x 32 squares. The tile is
 /// turned, mirrored and shifted anew in each block, so that blocks and levels do not look alike.
 pub fn seeds(blocks: &Blocks, at: BlockAt) -> impl Iterator<Item = (usize, DVec2)> {
     let [low, high] = blocks.square(at);

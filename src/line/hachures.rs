@@ -1,0 +1,313 @@
+//! Which slope lines a page shows as hachures, and how strongly.
+//!
+//! A slope line is there where its room, the distance on the map to what lies beside it, fills on the page the spacing that the
+//! tone wants: measured across the stroke, for land that is seen askance. Rooms belong to the land, so the lines of a light tone
+//! are among those of a dark one, and none is chosen by what else the page holds; lines come and go by width. Short pieces are
+//! left out. Long lines are cut where the page makes them longer than a hand would draw, always at the same places of the land.
+//!
+//! Cost: a look at each point of the lines that may fill the spacing. Does not handle: land that hides a line, which is looked
+//! at later.
+
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+
+use super::along::fade;
+use super::way::{Way, WayPoint};
+use super::{Line, Overhead};
+use crate::error::Result;
+use crate::plan::{Hachures, Shade};
+use crate::relief::{Need, SlopeLine, SlopePoint, Slopes};
+use crate::view::Perspective;
+
+/// Shares of the wanted spacing up to which a line is left out, and from which it is whole.
+const ROOM: [f64; 2] = [0.75, 0.95];
+/// How far along a line, in spacings, is looked for how much of it is there.
+const AROUND: f64 = 1.5;
+/// The share of that up to which it is left out, and from which it is whole.
+const LASTS: [f64; 2] = [0.4, 0.9];
+/// A cut between two pieces of a line, spacings.
+const CUT: f64 = 0.8;
+/// The share of it that is blank; to both sides strokes run out.
+const BLANK: f64 = 0.5;
+/// Lengths of a piece on the page, in lengths of a stroke, between which it is cut in two.
+const LONG: [f64; 2] = [1.0, 1.6];
+/// Most times that a piece is cut in two.
+const MOST_CUTS: u32 = 12;
+
+/// What sees the lines.
+#[derive(Debug, Clone, Copy)]
+pub enum Seen<'a> {
+    /// An eye, and the azimuth to which it looks, degrees.
+    By(&'a Perspective, f64),
+    /// A frame over the land.
+    Above(&'a Overhead),
+}
+
+/// The hachures that are shown, each point as strongly as it is.
+///
+/// # Errors
+/// As [`Slopes::blocks`].
+pub fn ways(slopes: &Slopes, look: &Hachures, seen: Seen) -> Result<Vec<Way>> {
+    let azimuth = if let Seen::By(_, azimuth) = seen { azimuth } else { 0.0 };
+    let page = Page { seen, look, shade: look.shade(azimuth, slopes.exaggeration()), slopes };
+    let blocks = slopes.blocks(&page)?;
+    Ok(blocks.par_iter().flat_map_iter(|block| block.lines.iter().flat_map(|line| page.ways(line))).collect())
+}
+
+impl Seen<'_> {
+    /// Most pixels that a metre takes in a box of the world; 0 beside the page.
+    fn most_px_per_metre(self, [low, high]: [DVec3; 2]) -> f64 {
+        match self {
+            Self::By(perspective, _) => perspective.most_px_per_metre([low, high]),
+            Self::Above(overhead) => {
+                let [west, south, east, north] = overhead.area;
+                let is_beside = low.x > east || high.x < west || low.y > north || high.y < south;
+                if is_beside { 0.0 } else { overhead.px_per_metre }
+            }
+        }
+    }
+
+    /// Where a place of the world stands, px; `None` behind the eye.
+    fn place(self, world: DVec3) -> Option<DVec2> {
+        match self {
+            Self::By(perspective, _) => {
+                (perspective.distance(world) > perspective.near()).then(|| perspective.project(world).0)
+            }
+            Self::Above(overhead) => Some(overhead.place(world.truncate())),
+        }
+    }
+
+    /// How a place before the eye moves on the page where it moves so in the world, px.
+    fn moves(self, world: DVec3, by: DVec3) -> DVec2 {
+        match self {
+            Self::By(perspective, _) => perspective.moves(world, by),
+            Self::Above(overhead) => by.truncate() * DVec2::new(1.0, -1.0) * overhead.px_per_metre,
+        }
+    }
+
+    /// Whether land of this gradient turns away.
+    fn is_away(self, world: DVec3, gradient: DVec2) -> bool {
+        match self {
+            Self::By(perspective, _) => (-gradient).extend(1.0).dot(perspective.eye() - world) <= 0.0,
+            Self::Above(_) => false,
+        }
+    }
+}
+
+/// What hachures are drawn on.
+struct Page<'a> {
+    seen: Seen<'a>,
+    look: &'a Hachures,
+    shade: Shade,
+    slopes: &'a Slopes,
+}
+
+/// A point on its way to the page.
+#[derive(Debug, Clone, Copy)]
+struct Point {
+    of_way: WayPoint,
+    /// On the page, px.
+    place: DVec2,
+    /// Px along the line on the page from its start.
+    arc: f64,
+    /// Metres on the map from its start.
+    metres: f64,
+    /// How far apart strokes should stand here, px.
+    apart: f64,
+}
+
+/// A place where a line is cut.
+#[derive(Debug, Clone, Copy)]
+struct Cut {
+    /// Of its middle, px.
+    arc: f64,
+    /// Half its length, px.
+    half: f64,
+    /// How far it is open, 0 to 1.
+    open: f64,
+}
+
+impl Page<'_> {
+    /// The pieces of a line that are shown.
+    fn ways(&self, line: &SlopeLine) -> Vec<Way> {
+        let worlds: Vec<DVec3> = line.points.iter().map(|point| self.slopes.world(point)).collect();
+        let mut metres = 0.0;
+        let steps = worlds.windows(2).map(|pair| {
+            metres += (pair[1] - pair[0]).truncate().length();
+            metres
+        });
+        let metres: Vec<f64> = [0.0].into_iter().chain(steps).collect();
+        let on_page = |((point, world), metres): ((&SlopePoint, &DVec3), &f64)| {
+            let place = self.seen.place(*world)?;
+            Some(self.point(point, *world, place, *metres))
+        };
+        let points: Vec<Option<Point>> = line.points.iter().zip(&worlds).zip(&metres).map(on_page).collect();
+        // Behind the eye there is no page.
+        let parts = points.chunk_by(|a, b| a.is_some() == b.is_some());
+        let shown =
+            parts.flat_map(|part| self.shown(line.id, metres[metres.len() - 1], part.iter().flatten().copied()));
+        shown.collect()
+    }
+
+    /// The pieces of a part of a line so many metres long that are shown.
+    fn shown(&self, id: u64, metres: f64, part: impl Iterator<Item = Point>) -> Vec<Way> {
+        let mut points: Vec<Point> = part.collect();
+        if points.len() < 2 || points.iter().all(|point| point.of_way.weight == 0.0) {
+            return Vec::new();
+        }
+        for i in 1..points.len() {
+            points[i].arc = points[i - 1].arc + points[i].place.distance(points[i - 1].place);
+        }
+        lasting(&mut points);
+        let mut cuts = Vec::new();
+        self.halve(id, 1, [0.0, metres], &points, &mut cuts);
+        cut(&mut points, &cuts);
+        let is_shown = |point: &Point| point.of_way.weight > 0.0;
+        let pieces = points.chunk_by(|a, b| is_shown(a) || is_shown(b));
+        let pieces = pieces.filter(|piece| piece.len() > 1 && piece.iter().any(is_shown));
+        let way = |piece: &[Point]| Way {
+            line: Line::Hachure,
+            points: piece.iter().map(|point| point.of_way).collect(),
+            closed: false,
+        };
+        pieces.map(way).collect()
+    }
+
+    /// A point by its room alone.
+    fn point(&self, point: &SlopePoint, world: DVec3, place: DVec2, metres: f64) -> Point {
+        let gradient = point.gradient.as_dvec2();
+        let black = self.shade.black(gradient);
+        let apart = self.look.apart(black);
+        let wanted = self.metres_apart(world, gradient, black);
+        let weight = if wanted.is_finite() { fade(ROOM, f64::from(point.room) / wanted) } else { 0.0 };
+        let of_way = WayPoint { at: point.at, world, weight: weight as f32, black: black as f32 };
+        Point { of_way, place, arc: 0.0, metres, apart }
+    }
+
+    /// How far apart on the map strokes are to stand on land of a gradient and a tone, metres; infinite where none are.
+    fn metres_apart(&self, world: DVec3, gradient: DVec2, black: f64) -> f64 {
+        if black <= 0.0 || self.seen.is_away(world, gradient) {
+            return f64::INFINITY;
+        }
+        self.look.apart(black) / self.px_across(world, gradient).max(f64::MIN_POSITIVE)
+    }
+
+    /// Pixels between two lines down the slope that are a metre apart on the map.
+    fn px_across(&self, world: DVec3, gradient: DVec2) -> f64 {
+        let Some(up) = gradient.try_normalize() else { return 0.0 };
+        let down = self.seen.moves(world, -up.extend(gradient.length()));
+        let across = self.seen.moves(world, up.perp().extend(0.0));
+        across.perp_dot(down).abs() / down.length().max(f64::MIN_POSITIVE)
+    }
+
+    /// Where a piece of a line between two places, metres, is cut, and how far each cut is open, 0 to 1: in two where the page makes
+    /// it too long for a stroke, and each half again. Where is a matter of the line.
+    fn halve(&self, id: u64, number: u64, [from, to]: [f64; 2], points: &[Point], cuts: &mut Vec<Cut>) {
+        let [begin, end] = [from, to].map(|metres| between(points, |point| point.metres, metres));
+        let open = fade(LONG, (end.arc - begin.arc) / self.look.length);
+        if open <= 0.0 || number.ilog2() >= MOST_CUTS {
+            return;
+        }
+        let middle = from + (to - from) * (0.35 + 0.3 * share_of(id, number));
+        let at = between(points, |point| point.metres, middle);
+        cuts.push(Cut { arc: at.arc, half: CUT * at.apart / 2.0, open });
+        self.halve(id, 2 * number, [from, middle], points, cuts);
+        self.halve(id, 2 * number + 1, [middle, to], points, cuts);
+    }
+}
+
+/// What a page needs of the lines of the land.
+impl Need for Page<'_> {
+    fn in_box(&self, corners: [DVec3; 2]) -> f64 {
+        ROOM[0] * self.look.least_apart() / self.seen.most_px_per_metre(corners)
+    }
+
+    fn at(&self, place: DVec3, gradient: DVec2) -> f64 {
+        match self.seen.place(place) {
+            Some(_) => ROOM[0] * self.metres_apart(place, gradient, self.shade.black(gradient)),
+            None => f64::INFINITY,
+        }
+    }
+}
+
+/// A share made of two numbers alone.
+fn share_of(id: u64, number: u64) -> f64 {
+    let mut bytes = [0; 16];
+    bytes[..8].copy_from_slice(&id.to_le_bytes());
+    bytes[8..].copy_from_slice(&number.to_le_bytes());
+    (xxhash_rust::xxh3::xxh3_64(&bytes) >> 11) as f64 / (1_u64 << 53) as f64
+}
+
+/// Fades what is but a short piece.
+fn lasting(points: &mut [Point]) {
+    let n = points.len();
+    let step = |i: usize| if i + 1 < n { points[i + 1].arc - points[i].arc } else { 0.0 };
+    let weight = |i: usize| f64::from(points[i].of_way.weight);
+    let of_step = |i: usize| if i + 1 < n { f64::midpoint(weight(i), weight(i + 1)) * step(i) } else { 0.0 };
+    // What there is of the line to both sides, the less the farther it is, px.
+    let mut around = vec![0.0; n];
+    for backward in [false, true] {
+        let mut sum = 0.0;
+        for k in 1..n {
+            let (i, between) = if backward { (n - 1 - k, n - 1 - k) } else { (k, k - 1) };
+            let reach = AROUND * points[i].apart;
+            sum = sum * (-step(between) / reach).exp() + of_step(between).min(reach);
+            around[i] += sum.min(reach);
+        }
+    }
+    for (point, around) in points.iter_mut().zip(around) {
+        point.of_way.weight *= fade(LASTS, around / (AROUND * point.apart)) as f32;
+    }
+}
+
+/// The point of a line where a measure that grows along it has a value.
+fn between(points: &[Point], measure: impl Fn(&Point) -> f64, value: f64) -> Point {
+    let after = points.partition_point(|point| measure(point) < value).clamp(1, points.len() - 1);
+    let [a, b] = [points[after - 1], points[after]];
+    let [from, to] = [measure(&a), measure(&b)];
+    a.lerp(&b, ((value - from) / (to - from).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0))
+}
+
+/// Thins a line about its cuts, to nothing where one is open.
+fn cut(points: &mut Vec<Point>, cuts: &[Cut]) {
+    let ends = |cut: &Cut| [-1.0, -BLANK, BLANK, 1.0].map(|share| cut.arc + share * cut.half);
+    let [first, last] = [points[0].arc, points[points.len() - 1].arc];
+    let edges = cuts.iter().flat_map(ends).filter(|arc| (first..last).contains(arc));
+    let edges: Vec<Point> = edges.map(|arc| between(points, |point| point.arc, arc)).collect();
+    if edges.is_empty() {
+        return;
+    }
+    points.extend(edges);
+    points.sort_by(|a, b| a.arc.total_cmp(&b.arc));
+    points.dedup_by(|a, b| a.arc == b.arc);
+    for cut in cuts {
+        let near = points.partition_point(|point| point.arc < cut.arc - cut.half);
+        let within = points[near..].iter_mut().take_while(|point| point.arc <= cut.arc + cut.half);
+        within.for_each(|point| {
+            let off = (point.arc - cut.arc).abs() / cut.half;
+            let left = ((off - BLANK) / (1.0 - BLANK)).clamp(0.0, 1.0);
+            point.of_way.weight *= (1.0 - cut.open * (1.0 - left)) as f32;
+        });
+    }
+}
+
+impl Point {
+    fn lerp(&self, other: &Self, t: f64) -> Self {
+        let of = |a: f64, b: f64| a + (b - a) * t;
+        let (a, b) = (&self.of_way, &other.of_way);
+        let single = |a: f32, b: f32| of(a.into(), b.into()) as f32;
+        let of_way = WayPoint {
+            at: a.at.lerp(b.at, t),
+            world: a.world.lerp(b.world, t),
+            weight: single(a.weight, b.weight),
+            black: single(a.black, b.black),
+        };
+        Self {
+            of_way,
+            place: self.place.lerp(other.place, t),
+            arc: of(self.arc, other.arc),
+            metres: of(self.metres, other.metres),
+            apart: of(self.apart, other.apart),
+        }
+    }
+}
