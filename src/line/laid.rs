@@ -19,8 +19,9 @@ use crate::relief::LineKind;
 use crate::view::Perspective;
 use crate::view::cut::share_within;
 
-/// Longest way between two points on the page, px.
+/// Longest way between two points on the page, px; of a hachure, many of which say one thing.
 const STEP: f64 = 1.0;
+const HACHURE_STEP: f64 = 2.5;
 /// Beyond the page lines are followed for so many px.
 const BEYOND: f64 = 4.0;
 /// Most points that the device numbers.
@@ -110,6 +111,7 @@ fn runs(way: &Way, perspective: &Perspective) -> Vec<Run> {
         let whole = std::mem::replace(run, new());
         runs.extend((whole.places.len() > 1).then_some(whole));
     };
+    let longest = if way.line == Line::Hachure { HACHURE_STEP } else { STEP };
     let n = way.points.len();
     let stretches = if way.closed { n } else { n.saturating_sub(1) };
     let bounds = [DVec2::splat(-BEYOND), perspective.size() + BEYOND];
@@ -128,7 +130,7 @@ fn runs(way: &Way, perspective: &Perspective) -> Vec<Run> {
         if enter > 0.0 || from > 0.0 {
             finish(&mut run);
         }
-        let steps = (a.0.distance(b.0) * (leave - enter) / STEP).ceil().max(1.0);
+        let steps = (a.0.distance(b.0) * (leave - enter) / longest).ceil().max(1.0);
         for k in 0..=steps as usize {
             let share = enter + (leave - enter) * k as f64 / steps;
             // Depth is linear on the page; the way on the map is not.

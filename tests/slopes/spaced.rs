@@ -6,13 +6,17 @@ use rstar::{PointDistance, RTree};
 
 use hachure::relief::slope::SlopePoint;
 
-use super::{Scene, lines, plane, real, share};
-use crate::tolerances::{SPACED_SHARE, SPACED_TOLERANCE};
+use super::{CELL, Scene, land, lines, plane, real, share};
+use crate::scenes::Random;
+use crate::tolerances::{HOLES, ROOM, ROOM_SHARE, SPACED_SHARE, SPACED_TOLERANCE};
 
 /// Spacings, cells: lines of all levels that may be drawn are there.
 const SPACINGS: [f64; 5] = [1.5, 2.2, 4.0, 8.0, 16.0];
 /// Least room that is asked for, cells.
 const LEAST: f64 = 1.5;
+
+/// Places that are looked at for holes.
+const HOLE_PLACES: usize = 4000;
 
 type Piece = GeomWithData<Line<[f64; 2]>, usize>;
 
@@ -84,6 +88,83 @@ fn lines_keep_every_spacing_and_leave_few_holes() {
             assert!(even >= SPACED_SHARE, "{}: {even}", scene.name);
         }
     }
+}
+
+/// Share of places of a scene farther than a spacing and a quarter from all that is drawn at it; not of those near its rim.
+fn holes(scene: &Scene, lines: &[&[SlopePoint]], cells: f64) -> f64 {
+    let (dem, spacing) = (scene.surface.dem(), cells * scene.unit());
+    let drawn = Drawn::at(scene, lines, spacing);
+    let far = DVec2::new(dem.columns() as f64, dem.rows() as f64) * dem.cell() - 2.0 * spacing;
+    let mut random = Random::new(5);
+    let mut place = || DVec2::new(random.between(spacing, far.x), random.between(spacing, far.y));
+    let is_far = |at: DVec2| drawn.nearest((usize::MAX, at)) > 1.25 * spacing;
+    share((0..HOLE_PLACES).map(|_| place()).filter(|at| is_far(*at)).count() as f64, HOLE_PLACES as f64)
+}
+
+#[test]
+fn all_room_is_taken() {
+    let tip = DVec2::splat(80.0 * CELL);
+    let cone = Scene::bare("cone", land([161, 161], |at| -0.5 * at.distance(tip)));
+    for scene in [cone, Scene::bare("plane", plane([160, 160]))] {
+        let blocks = scene.blocks(LEAST);
+        let lines: Vec<&[SlopePoint]> = lines(&blocks).map(|line| &line.points[..]).collect();
+        for cells in SPACINGS {
+            let holes = holes(&scene, &lines, cells);
+            println!("{} at {cells} cells: {holes:.4} of places are holes", scene.name);
+            assert!(holes <= HOLES, "{} at {cells} cells: {holes}", scene.name);
+        }
+        // Negative control: every fifth line is gone.
+        let fewer: Vec<_> = lines.iter().enumerate().filter(|(k, _)| k % 5 > 0).map(|(_, line)| *line).collect();
+        assert!(holes(&scene, &fewer, 2.2) > HOLES);
+    }
+}
+
+/// The rank of a line as its id tells it: level, phase of its block, number; blocks of a phase do not know each other.
+fn rank(id: u64) -> [u64; 3] {
+    [id >> 56, (id >> 36 & 1) * 2 + (id >> 16 & 1), id & 0xffff]
+}
+
+/// How far a place is from the nearest of pieces that have more room than that; pieces with their room.
+fn room(at: DVec2, pieces: &[([DVec2; 2], f64)]) -> f64 {
+    let distance = |[a, b]: [DVec2; 2]| {
+        let share = ((at - a).dot(b - a) / a.distance_squared(b)).clamp(0.0, 1.0);
+        at.distance(a.lerp(b, share))
+    };
+    let distances = pieces.iter().map(|(piece, room)| (distance(*piece), *room));
+    distances.filter(|(distance, room)| room > distance).map(|(distance, _)| distance).fold(f64::INFINITY, f64::min)
+}
+
+#[test]
+fn room_is_what_its_definition_says() {
+    let tip = DVec2::splat(60.0 * CELL);
+    let scene = Scene::bare("cone", land([121, 121], |at| -0.5 * at.distance(tip)));
+    let blocks = scene.blocks(LEAST);
+    let cell = scene.surface.dem().cell();
+    let mut lines: Vec<_> = lines(&blocks).collect();
+    lines.sort_by_key(|line| rank(line.id));
+    let of_line = |points: &[SlopePoint]| -> Vec<_> {
+        let room = |pair: &[SlopePoint]| f64::from(pair[0].room.max(pair[1].room));
+        points.windows(2).map(|pair| ([pair[0].at * cell, pair[1].at * cell], room(pair))).collect()
+    };
+    let (mut lower, mut good, mut good_of_all, mut all) = (Vec::new(), 0.0, 0.0, 0.0);
+    let mut pressed = Vec::new();
+    for line in lines {
+        let most = 64.0 * scene.unit() * f64::exp2((1.0 - rank(line.id)[0] as f64) / 2.0);
+        for point in line.points.iter().step_by(5) {
+            let told = f64::from(point.room);
+            let is_near = |room: f64| (room.min(most) - told).abs() <= ROOM * told;
+            good += f64::from(u8::from(is_near(room(point.at * cell, &lower))));
+            good_of_all += f64::from(u8::from(is_near(room(point.at * cell, &pressed))));
+            all += 1.0;
+        }
+        let pieces = of_line(&line.points);
+        // Negative control: as if every line were drawn at every spacing.
+        pressed.extend(pieces.iter().map(|(piece, _)| (*piece, f64::INFINITY)));
+        lower.extend(pieces);
+    }
+    let [good, good_of_all] = [good, good_of_all].map(|good| share(good, all));
+    println!("{good:.4} of {all} rooms as defined, {good_of_all:.4} if all lines were drawn");
+    assert!(good >= ROOM_SHARE && good_of_all < ROOM_SHARE, "{good}, {good_of_all}");
 }
 
 #[test]

@@ -6,7 +6,7 @@ use hachure::relief::{LineKind, SurfaceLine, SurfacePoint};
 use hachure::surface::Surface;
 
 use super::{CELL, RULES, Scene, land, lines, plane, position, real, share};
-use crate::tolerances::{DOWNHILL_DEGREES, DOWNHILL_SHARE, ON_SURFACE};
+use crate::tolerances::{DOWNHILL_DEGREES, DOWNHILL_SHARE, DOWNHILL_WAVES, ON_SURFACE};
 
 /// The gradient of the surface by differences of positions.
 fn gradient(surface: &Surface, at: DVec2) -> Option<DVec2> {
@@ -18,15 +18,15 @@ fn gradient(surface: &Surface, at: DVec2) -> Option<DVec2> {
     Some(-normal.truncate() / normal.z)
 }
 
-/// Share of the length of lines that runs downhill, by an evaluation of the surface that is not theirs.
-fn downhill<'a>(surface: &Surface, lines: impl Iterator<Item = &'a SlopeLine>) -> f64 {
+/// Share of the length of lines that runs downhill, but for some degrees, by an evaluation of the surface that is not theirs.
+fn downhill<'a>(surface: &Surface, lines: impl Iterator<Item = &'a SlopeLine>, degrees: f64) -> f64 {
     let pieces = lines.flat_map(|line| line.points.windows(2));
     let judged = pieces.filter_map(|pair| {
         let [from, to] = [position(surface, pair[0].at)?, position(surface, pair[1].at)?];
         let way = (to - from).truncate();
         let against = -gradient(surface, pair[0].at.midpoint(pair[1].at))?;
         let angle = way.angle_to(against).abs().to_degrees();
-        Some((way.length(), angle <= DOWNHILL_DEGREES))
+        Some((way.length(), angle <= degrees))
     });
     let [good, all] = judged
         .fold([0.0; 2], |[good, all], (length, is_good)| [good + if is_good { length } else { 0.0 }, all + length]);
@@ -43,7 +43,7 @@ fn lines_run_down_the_slope() {
     ];
     for scene in made.into_iter().chain(real()) {
         let blocks = scene.blocks(2.0);
-        let good = downhill(&scene.surface, lines(&blocks));
+        let good = downhill(&scene.surface, lines(&blocks), DOWNHILL_DEGREES);
         println!("{}: {:.4} of {} lines within {DOWNHILL_DEGREES} degrees", scene.name, good, lines(&blocks).count());
         assert!(good >= DOWNHILL_SHARE, "{}: {good}", scene.name);
         for point in lines(&blocks).flat_map(|line| &line.points) {
@@ -59,8 +59,17 @@ fn lines_run_down_the_slope() {
             line
         };
         let turned: Vec<_> = lines(&blocks).map(turned).collect();
-        assert!(downhill(&scene.surface, turned.iter()) < DOWNHILL_SHARE, "{}", scene.name);
+        assert!(downhill(&scene.surface, turned.iter(), DOWNHILL_DEGREES) < DOWNHILL_SHARE, "{}", scene.name);
     }
+}
+
+#[test]
+fn lines_follow_a_surface_that_bends_sideways() {
+    let scene = Scene::bare("waves", land([81, 81], |at| 25.0 * (at.x / 15.0).sin() * (at.y / 18.0).cos()));
+    let (degrees, least) = DOWNHILL_WAVES;
+    let good = downhill(&scene.surface, lines(&scene.blocks(2.0)), degrees);
+    println!("waves: {good:.4} within {degrees} degrees");
+    assert!(good >= least, "{good}");
 }
 
 #[test]

@@ -20,6 +20,9 @@ const LEAST_GRADIENT: f64 = 1e-6;
 /// Least share of its cell that a facet of the surface covers on the map; where it has less, the surface is about to fold.
 const LEAST_COVER: f64 = 0.01;
 
+/// The share of the least gradient under which, at a sample, no line begins about it.
+const NEARLY: f64 = 0.5;
+
 /// The land and its rules.
 #[derive(Debug)]
 pub struct Land {
@@ -92,6 +95,14 @@ impl Land {
     /// The column and row of the DEM of such metres.
     pub fn samples(&self, at: DVec2) -> DVec2 {
         at / self.metres
+    }
+
+    /// Whether the land about a place may slope enough for a line to begin there, as its nearest sample tells.
+    pub fn may_slope(&self, at: DVec2) -> bool {
+        let dem = self.surface.dem();
+        let [c, r] = (at / self.cell).round().max(DVec2::ZERO).as_usizevec2().to_array();
+        let is_inside = c < dem.columns() && r < dem.rows();
+        is_inside && self.surface.gradient(c, r).length_squared() >= (NEARLY * self.least).powi(2)
     }
 
     /// The share of the way between two places at which a line ends.

@@ -1,11 +1,10 @@
 //! All slope lines of a DEM, made where they are asked for.
 
-use std::collections::BTreeSet;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::block::made;
 use super::land::Land;
@@ -20,7 +19,7 @@ use crate::surface::{Pyramid, Surface};
 const MOST_POINTS: usize = 6_000_000;
 
 /// Along the side of a block its land is looked at in about so many places.
-const LOOKS: f64 = 10.0;
+const LOOKS: f64 = 6.0;
 /// How far beyond its sides, spacings: where its lines mostly are.
 const BEYOND: f64 = 2.0;
 /// Between these, places may need as much less.
@@ -130,7 +129,7 @@ impl Slopes {
         let mut held = self.lock();
         held.extend(known);
         if held.values().map(|block| block.points()).sum::<usize>() > MOST_POINTS {
-            let needed: BTreeSet<BlockAt> = self.with_needed(wanted, |_| true).into_iter().collect();
+            let needed: FxHashSet<BlockAt> = self.with_needed(wanted, |_| true).into_iter().collect();
             held.retain(|at, _| needed.contains(at));
         }
     }
@@ -138,14 +137,14 @@ impl Slopes {
     /// Blocks and all that they depend on, as far as they are sought, in the order in which they are made.
     fn with_needed(&self, blocks: &[BlockAt], is_sought: impl Fn(BlockAt) -> bool) -> Vec<BlockAt> {
         let by_order = |at: BlockAt| (at.level, at.phase(), at);
-        let mut open: BTreeSet<_> = blocks.iter().copied().filter(|at| is_sought(*at)).map(by_order).collect();
-        let mut found = Vec::new();
-        // What a block needs is made before it.
-        while let Some((.., last)) = open.pop_last() {
-            open.extend(self.blocks.needs(last).filter(|at| is_sought(*at)).map(by_order));
-            found.push(last);
+        let mut known: FxHashSet<BlockAt> = blocks.iter().copied().filter(|at| is_sought(*at)).collect();
+        let mut open: Vec<BlockAt> = known.iter().copied().collect();
+        while let Some(next) = open.pop() {
+            open.extend(self.blocks.needs(next).filter(|at| is_sought(*at) && known.insert(*at)));
         }
-        found.reverse();
+        let mut found: Vec<BlockAt> = known.into_iter().collect();
+        // What a block needs is made before it.
+        found.par_sort_unstable_by_key(|at| by_order(*at));
         found
     }
 
@@ -177,7 +176,8 @@ impl Slopes {
         let last = DVec2::new(surface.dem().columns() as f64, surface.dem().rows() as f64) - 1.0;
         let [low, high] = self.blocks.square(at).map(|corner| corner / self.land.cell);
         let beyond = (BEYOND * self.blocks.spacing(at.level) / self.land.cell).max(DVec2::ONE);
-        let [low, high] = [(low - beyond).floor(), (high + beyond).ceil()].map(|corner| corner.clamp(DVec2::ZERO, last));
+        let [low, high] =
+            [(low - beyond).floor(), (high + beyond).ceil()].map(|corner| corner.clamp(DVec2::ZERO, last));
         let step = ((high - low).max_element() / LOOKS).ceil().max(1.0);
         let counts = ((high - low) / step).ceil().as_uvec2();
         let places = (0..=counts.y).flat_map(|y| (0..=counts.x).map(move |x| DVec2::new(x.into(), y.into())));

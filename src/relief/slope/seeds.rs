@@ -6,7 +6,7 @@ use xxhash_rust::xxh3::xxh3_64_with_seed;
 use super::level::{BlockAt, Blocks};
 use super::tile::{PLACES, SIDE, order};
 
-/// The seeds of a block, the first to be tried first, each with its number: one somewhere in each of 32 x 32 squares. The tile is
+/// The seeds of a block, the first to be tried first, each with its number: one somewhere in each of half of 32 x 32 squares. The tile is
 /// turned, mirrored and shifted anew in each block, so that blocks and levels do not look alike.
 pub fn seeds(blocks: &Blocks, at: BlockAt) -> impl Iterator<Item = (usize, DVec2)> {
     let [low, high] = blocks.square(at);
@@ -19,7 +19,7 @@ pub fn seeds(blocks: &Blocks, at: BlockAt) -> impl Iterator<Item = (usize, DVec2
         let mirrored = |at: usize, bit: u32| if turn & bit == 0 { at } else { SIDE - 1 - at };
         [mirrored(x, 2), mirrored(y, 4)]
     };
-    order().iter().enumerate().map(move |(number, tried)| {
+    order()[..TRIED].iter().enumerate().map(move |(number, tried)| {
         let [x, y] = place(usize::from(*tried) % PLACES);
         let [_, right, down] = fields(xxh3_64_with_seed(&tried.to_le_bytes(), seed));
         let aside = DVec2::new(f64::from(right), f64::from(down)) / f64::from(FIELD);
@@ -27,6 +27,8 @@ pub fn seeds(blocks: &Blocks, at: BlockAt) -> impl Iterator<Item = (usize, DVec2
     })
 }
 
+/// Seeds that are tried: two on a square of the spacing. More find hardly any room.
+const TRIED: usize = PLACES / 2;
 /// One more than the largest number in a field.
 const FIELD: u32 = 1 << 24;
 
