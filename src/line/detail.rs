@@ -155,7 +155,7 @@ impl Land {
     }
 
     /// How strongly each point of each line is shown, 0 to 1; nothing of lines that are not.
-    fn shown(&self, from: From) -> Vec<Vec<f32>> {
+    pub fn shown(&self, from: From) -> Vec<Vec<f32>> {
         let mut shown: Vec<(Vec<f32>, f64)> =
             (0..self.lines.len()).into_par_iter().map(|i| self.alone(i, from)).collect();
         // Branches stand behind what they join.
