@@ -56,7 +56,8 @@ impl LandArguments {
             let what = "goes with drainage only";
             return Err(Error::setting(Setting::ChannelArea, what, "add --creases drainage, or leave it out"));
         }
-        Ok(LandWanted { creases, channel_area, own: self.lines.open(allow_remote)?.asked() })
+        let own = self.lines.open(allow_remote)?;
+        Ok(LandWanted { creases, channel_area, own: own.asked(), own_layers: own.layers() })
     }
 
     /// Refuses what only contours can be drawn with.

@@ -19,7 +19,7 @@ use crate::error::{Error, Result, Setting};
 use crate::files::Taken;
 use crate::ink::strokes::inset;
 use crate::ink::{self, Drawing, Sheet, Style};
-use crate::line::{Land, Overhead};
+use crate::line::{Land, Lines, Overhead};
 use crate::message;
 use crate::relief::LandWanted;
 
@@ -72,14 +72,14 @@ pub fn check(arguments: &DrawArguments) -> Result<(Style, LandWanted)> {
 /// # Errors
 /// As [`check`]; [`Error::Setting`] for a scale that fits no page.
 pub fn draw(arguments: &DrawArguments, scale: f64, dem: &Dem, land: Option<&Land>) -> Result<Planned> {
-    let (style, _) = check(arguments)?;
+    let (style, wanted) = check(arguments)?;
     let area = arguments.area.unwrap_or(dem.extent());
     let layout = layout(area, scale, inset(style.broadest()) + style.wobble.reach, arguments)?;
     let frame = [layout.frame.width, layout.frame.height];
     let px_per_mm = layout.sheet.placement(frame).px_per_mm;
     let economy = arguments.drawing.style.economy(&style, px_per_mm);
     let overhead = Overhead { area, size: frame, px_per_metre: px_per_mm * MM / scale };
-    let mut lines = overhead.lines(dem)?;
+    let mut lines = Lines { own: wanted.own_layers, ..overhead.lines(dem)? };
     lines.chains.extend(land.map(|land| overhead.land(land, economy.min_gap)).into_iter().flatten());
     let drawing = ink::draw(&lines, &layout.sheet, &style, &[])?;
     Ok(Planned { drawing, px_per_mm: layout.px_per_mm, style, layout, lines: lines.chains.len() })

@@ -3,6 +3,7 @@
 //! Lengths are millimetres on the sheet. The look of [`Style::default`] is `field-sketch`; [`styles`](super::styles) has
 //! the others, and reads those that users write.
 
+use std::collections::BTreeMap;
 use std::fmt::Display;
 
 use schemars::JsonSchema;
@@ -100,7 +101,7 @@ pub struct Wobble {
 }
 
 /// A pen for each kind of line.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Pens {
     /// Land before farther land, and before the sky.
@@ -117,6 +118,10 @@ pub struct Pens {
     pub own: Pen,
     /// Lines that land hides.
     pub hidden: Pen,
+    /// Lines that the user gives, by the names of their layers; of all others `own`, which also has what one of these does not
+    /// say. Names that no layer has are no mistake.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub lines: BTreeMap<String, Pen>,
 }
 
 /// Dashes of hidden lines.
@@ -202,15 +207,21 @@ impl Default for Pens {
             ridge: pen(0.15),
             own: pen(0.24),
             hidden: pen(0.15),
+            lines: BTreeMap::new(),
         }
     }
 }
 
 impl Pens {
     /// All of them.
-    pub fn all(&self) -> [Pen; 7] {
-        let Self { silhouette, border, shore, drainage, ridge, own, hidden } = *self;
-        [silhouette, border, shore, drainage, ridge, own, hidden]
+    pub fn all(&self) -> impl Iterator<Item = Pen> {
+        let Self { silhouette, border, shore, drainage, ridge, own, hidden, lines } = self;
+        [silhouette, border, shore, drainage, ridge, own, hidden].into_iter().chain(lines.values()).copied()
+    }
+
+    /// That of a layer of the user's own lines.
+    pub fn of_own(&self, layer: &str) -> Pen {
+        self.lines.get(layer).copied().unwrap_or(self.own)
     }
 }
 
@@ -248,7 +259,7 @@ impl Style {
 
     /// Width of the broadest pen.
     pub fn broadest(&self) -> f64 {
-        let own = self.pens.all().map(|pen| pen.width).into_iter().fold(0.0, f64::max);
+        let own = self.pens.all().map(|pen| pen.width).fold(0.0, f64::max);
         self.plot.widths.last().copied().filter(|_| self.plot.centre_lines).unwrap_or(own)
     }
 

@@ -91,7 +91,7 @@ pub(super) fn line_of(kind: LineKind) -> Line {
         LineKind::Shore => Line::Shore,
         LineKind::Drainage => Line::Drainage,
         LineKind::Ridge => Line::Ridge,
-        LineKind::Own => Line::Own,
+        LineKind::Own(layer) => Line::Own(layer),
     }
 }
 

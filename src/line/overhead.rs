@@ -62,6 +62,7 @@ impl Overhead {
             chains: rings(&rim(dem)?).into_iter().map(chain).collect(),
             hidden: Vec::new(),
             recession: Recession::of(std::iter::once((1.0, 1.0))),
+            own: Vec::new(),
         })
     }
 

@@ -53,8 +53,8 @@ pub enum LineKind {
     Drainage,
     /// Where water parts.
     Ridge,
-    /// A line that the user gives.
-    Own,
+    /// A line that the user gives, of the layer of this number.
+    Own(u16),
 }
 
 /// A line on the land. Drainage runs from its head down to where it joins another line or ends, a ridge from its outer end to where
