@@ -70,7 +70,7 @@ pub fn check(arguments: &DrawArguments) -> Result<(Style, LandWanted)> {
 /// Draws the plan of a DEM: no GPU, no view.
 ///
 /// # Errors
-/// As [`check`]; [`Error::Setting`] for a scale that fits no page.
+/// As [`check`] and [`Overhead::land`]; [`Error::Setting`] for a scale that fits no page.
 pub fn draw(arguments: &DrawArguments, scale: f64, dem: &Dem, land: Option<&Land>) -> Result<Planned> {
     let (style, wanted) = check(arguments)?;
     let area = arguments.area.unwrap_or(dem.extent());
@@ -80,7 +80,9 @@ pub fn draw(arguments: &DrawArguments, scale: f64, dem: &Dem, land: Option<&Land
     let economy = arguments.drawing.style.economy(&style, px_per_mm);
     let overhead = Overhead { area, size: frame, px_per_metre: px_per_mm * MM / scale };
     let mut lines = Lines { own: wanted.own_layers, ..overhead.lines(dem)? };
-    lines.chains.extend(land.map(|land| overhead.land(land, economy.min_gap)).into_iter().flatten());
+    if let Some(land) = land {
+        lines.chains.extend(overhead.land(land, economy.min_gap)?);
+    }
     let drawing = ink::draw(&lines, &layout.sheet, &style, &[])?;
     Ok(Planned { drawing, px_per_mm: layout.px_per_mm, style, layout, lines: lines.chains.len() })
 }

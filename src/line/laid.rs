@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use super::curve::{Bound, Curve, CurvePoint, Place, Sight, Stretch};
 use super::detail::{From, Land};
 use super::{Line, identity::CELL};
-use crate::error::{Error, Result, Setting};
+use crate::error::{Error, Message, Result, Setting};
 use crate::gpu::uniforms::{Segment, code, seen};
 use crate::message;
 use crate::relief::{LineKind, SurfaceLine};
@@ -54,13 +54,7 @@ impl Laid {
             |((line, world), weights): &((&SurfaceLine, &[DVec3]), Vec<f32>)| runs(line, world, weights, perspective);
         let runs: Vec<Run> = lines.par_iter().flat_map_iter(of_line).collect();
         let places: Vec<Place> = runs.iter().flat_map(|run| run.places.iter().copied()).collect();
-        if places.len() > MOST {
-            let what = format!("lines of the land are {} px long on the page, {MOST} can be laid", places.len());
-            return Err(Error::limit(
-                what,
-                message!["use a smaller ", Setting::Size, ", or fewer ", Setting::Creases, " or ", Setting::Lines],
-            ));
-        }
+        check_length(places.len(), message!["use a smaller ", Setting::Size])?;
         Ok(Self { places, runs })
     }
 
@@ -78,6 +72,15 @@ impl Laid {
         let of_runs: Vec<_> = of_runs.collect();
         of_runs.into_par_iter().flat_map_iter(|(run, found)| curves(run, found, perspective)).collect()
     }
+}
+
+/// Fails where lines of the land are longer on a page than can be drawn, px; `less`: what makes them shorter.
+pub(super) fn check_length(px: usize, less: Message) -> Result<()> {
+    if px <= MOST {
+        return Ok(());
+    }
+    let what = format!("lines of the land are {px} px long on the page, {MOST} can be laid");
+    Err(Error::limit(what, message![less, ", or fewer ", Setting::Creases, " or ", Setting::Lines]))
 }
 
 /// Whether a segment is a point of a line on the land.

@@ -10,11 +10,12 @@ use rustc_hash::FxHashMap;
 
 use super::detail::{From, Land};
 use super::identity::{Held, key, names};
-use super::laid::{line_of, on_lattice};
+use super::laid::{check_length, line_of, on_lattice};
 use super::simplify::needed;
 use super::{Chain, ChainPoint, Economy, Id, Line, Lines, Recession, economised};
 use crate::dem::Dem;
-use crate::error::Result;
+use crate::error::{Result, Setting};
+use crate::message;
 use crate::relief::SurfacePoint;
 use crate::surface::rim::{RimEdge, rim};
 
@@ -67,9 +68,17 @@ impl Overhead {
     }
 
     /// Lines on the land, `min_gap` px apart.
-    pub fn land(&self, land: &Land, min_gap: f64) -> Vec<Chain> {
-        let chains = self.of_land(land, &land.shown(From::Above(self.px_per_metre)));
-        economised(&chains, &Economy { min_jump: 0.0, min_gap })
+    ///
+    /// # Errors
+    /// [`Error::Limit`](crate::error::Error::Limit) where they are longer than those of a view may be.
+    pub fn land(&self, land: &Land, min_gap: f64) -> Result<Vec<Chain>> {
+        let shown = land.shown(From::Above(self.px_per_metre));
+        let length =
+            |world: &[DVec3]| world.windows(2).map(|pair| pair[0].truncate().distance(pair[1].truncate())).sum::<f64>();
+        let drawn = land.iter().zip(&shown).filter(|(_, weights)| !weights.is_empty());
+        let px = drawn.map(|((_, world), _)| length(world)).sum::<f64>() * self.px_per_metre;
+        check_length(px as usize, message!["use ", Setting::Scale.with_value(), " with a larger N"])?;
+        Ok(economised(&self.of_land(land, &shown), &Economy { min_jump: 0.0, min_gap }))
     }
 
     fn middle(&self) -> DVec2 {
