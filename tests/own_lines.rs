@@ -2,6 +2,7 @@
 
 mod layers;
 mod refused;
+mod sheets;
 mod voids;
 
 use std::path::Path;

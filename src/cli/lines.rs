@@ -1,7 +1,7 @@
 //! Flags of lines of the user's own that are drawn on the land.
 
 use std::path::PathBuf;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use super::talk::Talk;
 use crate::dem::Dem;
@@ -21,11 +21,14 @@ pub struct LinesArguments {
     /// They, once they are read: what is named is what is drawn, whatever becomes of the files.
     #[arg(skip)]
     given: OnceLock<GivenLines>,
+    /// What the sheet of a map is called that they are drawn on, which they may all miss.
+    #[arg(skip)]
+    sheet: Option<String>,
 }
 
 /// The lines of all files, before their DEM is read.
 #[derive(Debug, Clone, Default)]
-pub struct GivenLines(Vec<Given>);
+pub struct GivenLines(Arc<[Given]>);
 
 /// A file.
 #[derive(Debug, Clone)]
@@ -40,6 +43,11 @@ impl LinesArguments {
     /// Whether there are any.
     pub fn is_empty(&self) -> bool {
         self.lines.is_empty()
+    }
+
+    /// The same on a sheet of a map.
+    pub fn on_sheet(&mut self, called: &str) {
+        self.sheet = Some(called.to_owned());
     }
 
     /// The files that are read beside the DEM.
@@ -68,7 +76,7 @@ impl LinesArguments {
     /// # Errors
     /// As those.
     pub fn read(&self, dem: &Dem, allow_remote: bool, talk: &Talk) -> Result<Vec<SurfaceLine>> {
-        self.open(allow_remote)?.on(dem, talk)
+        self.open(allow_remote)?.on(dem, self.sheet.as_deref(), talk)
     }
 }
 
@@ -85,19 +93,24 @@ impl GivenLines {
         self.0.iter().flat_map(|given| given.layers.iter().cloned()).collect()
     }
 
-    /// The lines on a DEM, file by file; what was taken is told.
+    /// The lines on a DEM, file by file; what was taken is told. Those that are not there are no error on a sheet of a map; where
+    /// there are none at all, it is told.
     ///
     /// # Errors
     /// As [`relief::own_lines`].
-    pub fn on(&self, dem: &Dem, talk: &Talk) -> Result<Vec<SurfaceLine>> {
+    pub fn on(&self, dem: &Dem, sheet: Option<&str>, talk: &Talk) -> Result<Vec<SurfaceLine>> {
         let (mut on_dem, mut first) = (Vec::new(), 0);
-        for Given { path, lines, layers } in &self.0 {
-            on_dem.extend(relief::own_lines(path, lines, dem, first)?);
+        let of_file = if sheet.is_some() { relief::own_lines_if_any } else { relief::own_lines };
+        for Given { path, lines, layers } in self.0.iter() {
+            on_dem.extend(of_file(path, lines, dem, first)?);
             first += layers.len();
             talk.say(&format!("lines: {}: {}", shown(path), lines.taken()))?;
             if lines.layers.iter().any(|layer| layer.crs.is_none()) {
                 talk.warn(&format!("{} names no coordinate system: assumed that it is the DEM's", shown(path)));
             }
+        }
+        if let Some(sheet) = sheet.filter(|_| on_dem.is_empty() && !self.0.is_empty()) {
+            talk.warn(&format!("{sheet}: no line of --lines lies on its land: drawn without"));
         }
         Ok(on_dem)
     }

@@ -39,7 +39,7 @@ pub use coarse::{lowest_and_highest, on_samples, spacing};
 pub use crease::{Crease, LandWanted};
 pub use flat_water::FlatWater;
 pub use kept::FlowLines;
-pub use own::own_lines;
+pub use own::{own_lines, own_lines_if_any};
 pub use peaks::{Base, Peak, peaks};
 pub use shores::Shores;
 pub use whole::{ChannelArea, Relief};

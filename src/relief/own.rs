@@ -23,6 +23,27 @@ use crate::geo::{OwnLayer, OwnLine, OwnLines};
 /// [`Error::Input`] where nothing leads from the file's system to the DEM's, and where no line has a part on the land; as
 /// [`Dem::validity`].
 pub fn own_lines(path: &Path, given: &OwnLines, dem: &Dem, first: usize) -> Result<Vec<SurfaceLine>> {
+    match on_dem(path, given, dem, first)? {
+        (lines, _) if !lines.is_empty() => Ok(lines),
+        (_, true) => Err(Error::input(
+            path,
+            "its lines lie in voids of the DEM alone",
+            "give lines over its land, or fill its voids",
+        )),
+        (_, false) => Err(outside(path, given, dem)),
+    }
+}
+
+/// The same for who draws without where no line has a part on the land.
+///
+/// # Errors
+/// As [`own_lines`], but for that.
+pub fn own_lines_if_any(path: &Path, given: &OwnLines, dem: &Dem, first: usize) -> Result<Vec<SurfaceLine>> {
+    on_dem(path, given, dem, first).map(|(lines, _)| lines)
+}
+
+/// The lines, and whether the DEM has a place for any, be it a void.
+fn on_dem(path: &Path, given: &OwnLines, dem: &Dem, first: usize) -> Result<(Vec<SurfaceLine>, bool)> {
     let (mut lines, mut reach_dem) = (Vec::new(), false);
     for (number, layer) in (first..).zip(given.drawn()) {
         // What is beyond the last number goes with that.
@@ -40,15 +61,7 @@ pub fn own_lines(path: &Path, given: &OwnLines, dem: &Dem, first: usize) -> Resu
             );
         }
     }
-    match (lines.is_empty(), reach_dem) {
-        (false, _) => Ok(lines),
-        (true, true) => Err(Error::input(
-            path,
-            "its lines lie in voids of the DEM alone",
-            "give lines over its land, or fill its voids",
-        )),
-        (true, false) => Err(outside(path, given, dem)),
-    }
+    Ok((lines, reach_dem))
 }
 
 /// The system of places of which a file says this.

@@ -54,10 +54,10 @@ fn layers_are_called_as_their_file_or_as_there() {
     assert_eq!(kinds, [3, 4, 4].map(LineKind::Own));
 }
 
-/// Writes a way over the valley, from west to east so far north.
-fn way(place: &Place, name: &str, north: f64) {
+/// Writes a way from one place of UTM zone 31 to another.
+pub fn way(place: &Place, name: &str, from: [f64; 2], to: [f64; 2]) {
     let crs = r#""crs": {"type": "name", "properties": {"name": "urn:ogc:def:crs:EPSG::32631"}}"#;
-    let line = feature("LineString", &format!("[[500100,{north}],[501700,{}]]", north + 100.0), "");
+    let line = feature("LineString", &format!("[{from:?},{to:?}]"), "");
     let file = format!(r#"{{"type": "FeatureCollection", {crs}, "features": [{line}]}}"#);
     fs::write(place.path(name), file).expect("a way");
 }
@@ -91,8 +91,8 @@ fn each_file_is_a_layer_with_the_pen_of_its_name() {
     valley(&place);
     fs::write(place.path("valley.prj"), epsg(32631)).expect("a system");
     fs::write(place.path("my.toml"), STYLE).expect("a style");
-    way(&place, "road.geojson", 4_000_400.0);
-    way(&place, "river.geojson", 4_000_700.0);
+    way(&place, "road.geojson", [500_100.0, 4_000_400.0], [501_700.0, 4_000_500.0]);
+    way(&place, "river.geojson", [500_100.0, 4_000_700.0], [501_700.0, 4_000_800.0]);
     let files = ["--lines", "road.geojson", "--lines", "river.geojson"];
     let styled = [&["--style", "my.toml"][..], &files].concat();
     let own = [("road", "#00aa00"), ("river", "#0000ff")].map(|(name, ink)| (name.to_owned(), ink.to_owned()));
