@@ -42,7 +42,7 @@ pub use kept::FlowLines;
 pub use own::{own_lines, own_lines_if_any};
 pub use peaks::{Base, Peak, peaks};
 pub use shores::Shores;
-pub use whole::{ChannelArea, Relief};
+pub use whole::{ChannelArea, Relief, auto_cells};
 
 /// What a line of the land is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
