@@ -85,6 +85,39 @@ fn styles_ask_for_creases_and_flags_overrule_them() {
 }
 
 #[test]
+fn creases_of_a_style_that_a_method_does_not_draw_are_told_once() {
+    let place = Place::new();
+    valley(&place);
+    let told = |more: &[&str]| {
+        let output = place.run(more);
+        assert!(output.status.success(), "{more:?}: {}", stderr(&output));
+        stderr(&output).lines().filter(|line| line.contains("left out: ")).map(str::to_owned).collect::<Vec<_>>()
+    };
+    let view = [&["draw", "valley.asc", "-o", "a.png"], &VIEW[..]].concat();
+    let with = |more: &[&'static str]| told(&[&view[..], more].concat());
+    let words = "the style's drainage and ridges are left out: they go with contours only; leave out --method, or add --creases none";
+    let traced = ["--style", "atlas", "--method", "adjacency"];
+    assert_eq!(with(&traced), [format!("warning: {words}")]);
+    for silent in [
+        &["--style", "atlas", "--method", "adjacency", "--creases", "none"][..],
+        &["--style", "atlas", "--method", "contour"],
+        &["--style", "atlas"],
+        &["--method", "adjacency"],
+    ] {
+        assert_eq!(with(silent), Vec::<String>::new(), "{silent:?}");
+    }
+    let orbit =
+        ["fly", "valley.asc", "--orbit", "500900,4000800", "--radius", "900", "--height", "+300", "--count", "2"];
+    let fly = |output: [&'static str; 2]| told(&[&orbit[..], &["--size", VIEW[7]], &output, &traced].concat());
+    assert_eq!(fly(["-o", "%d.png"]), [format!("warning: {words}")]);
+    assert_eq!(fly(["--mask", "m%d.png"]), Vec::<String>::new(), "a mask has no style");
+    let drawing = |name: &str| format!("[[drawing]]\noutput = \"{name}.svg\"\nmethod = \"adjacency\"\n");
+    let list = "[defaults]\ndem = \"valley.asc\"\nstyle = \"atlas\"\nsize = \"64x48\"\n".to_owned();
+    fs::write(place.path("list.toml"), list + &drawing("x") + &drawing("y")).expect("a list");
+    assert_eq!(told(&["batch", "list.toml"]), [format!("warning: drawing 0 and 1 more: {words}")]);
+}
+
+#[test]
 fn plans_and_batches_have_creases_too() {
     let place = Place::new();
     valley(&place);

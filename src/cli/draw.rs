@@ -113,6 +113,7 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
         return plan::run(arguments, scale, talk);
     }
     let illustration = arguments.check()?;
+    arguments.drawing.left_out_of_style()?.into_iter().for_each(|words| talk.warn(&words));
     let started = Instant::now();
     let cache = arguments.cache.cache();
     let (reading, beside) = (arguments.open(cache.clone())?, arguments.drawing.land.lines.files());
