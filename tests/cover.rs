@@ -73,7 +73,13 @@ fn own(places: &[DVec2], closed: bool) -> SurfaceLine {
     }
     points.extend(places.last().filter(|_| !closed));
     let point = |p| SurfacePoint { at: grid(p), across: [f32::INFINITY; 3], length: 1e3, drop: 1e3 };
-    SurfaceLine { kind: LineKind::Own, order: 4, points: points.into_iter().map(point).collect(), closed, joins: None }
+    SurfaceLine {
+        kind: LineKind::Own(0),
+        order: 4,
+        points: points.into_iter().map(point).collect(),
+        closed,
+        joins: None,
+    }
 }
 
 fn renderer(lines: Vec<SurfaceLine>) -> Renderer {
@@ -121,7 +127,7 @@ fn a_line_over_a_ridge_lies_on_it_and_vanishes_where_the_ridge_hides_it() {
             assert!(off <= COVER_PX, "a chain ends {off:.2} px from where the ridge hides the line");
         }
         assert!(
-            shown.iter().flat_map(|chain| &chain.points).all(|point| point.line == Line::Own && point.weight == 1.0)
+            shown.iter().flat_map(|chain| &chain.points).all(|point| point.line == Line::Own(0) && point.weight == 1.0)
         );
         // Negative control: a line 15 m beside it is noticed.
         let beside = page(vec![own(&[a + 15.0, b + 15.0], false)], &camera).land;

@@ -7,7 +7,7 @@ use serde_json::Value;
 use crate::cli::{Place, refuses, stderr};
 
 /// A valley down to the south between two ridges, a side valley in its western flank; 90 x 90 samples, 20 m.
-fn valley(place: &Place) {
+pub fn valley(place: &Place) {
     let mut text = String::from("ncols 90\nnrows 90\nxllcorner 500000\nyllcorner 4000000\ncellsize 20\n");
     for r in 0..90 {
         for c in 0..90 {
@@ -24,15 +24,15 @@ fn valley(place: &Place) {
 }
 
 /// From before the lower end, looking up the valley.
-const VIEW: [&str; 8] = ["--eye", "500900,3999700,230", "--azimuth", "0", "--altitude", "2", "--size", "480x320"];
+pub const VIEW: [&str; 8] = ["--eye", "500900,3999700,230", "--azimuth", "0", "--altitude", "2", "--size", "480x320"];
 
-fn draw(place: &Place, more: &[&str]) {
+pub fn draw(place: &Place, more: &[&str]) {
     let output = place.run(&[&["draw", "valley.asc"], &VIEW[..], more].concat());
     assert!(output.status.success(), "{more:?}: {}", stderr(&output));
 }
 
 /// Names of the layers of a report, less their numbers.
-fn layers(place: &Place, name: &str) -> Vec<String> {
+pub fn layers(place: &Place, name: &str) -> Vec<String> {
     let report: Value = serde_json::from_slice(&fs::read(place.path(name)).expect("a report")).expect("JSON");
     let names =
         report["layers"].as_array().expect("layers").iter().map(|layer| layer["name"].as_str().expect("a name"));
@@ -82,6 +82,39 @@ fn styles_ask_for_creases_and_flags_overrule_them() {
     draw(&place, &["-o", "a.svg", "--json", "flag.json", "--style", "wet.toml", "--creases", "none"]);
     assert_eq!(layers(&place, "style.json"), ["drainage", "border", "silhouette"]);
     assert_eq!(layers(&place, "flag.json"), ["border", "silhouette"]);
+}
+
+#[test]
+fn creases_of_a_style_that_a_method_does_not_draw_are_told_once() {
+    let place = Place::new();
+    valley(&place);
+    let told = |more: &[&str]| {
+        let output = place.run(more);
+        assert!(output.status.success(), "{more:?}: {}", stderr(&output));
+        stderr(&output).lines().filter(|line| line.contains("left out: ")).map(str::to_owned).collect::<Vec<_>>()
+    };
+    let view = [&["draw", "valley.asc", "-o", "a.png"], &VIEW[..]].concat();
+    let with = |more: &[&'static str]| told(&[&view[..], more].concat());
+    let words = "the style's drainage and ridges are left out: they go with contours only; leave out --method, or add --creases none";
+    let traced = ["--style", "atlas", "--method", "adjacency"];
+    assert_eq!(with(&traced), [format!("warning: {words}")]);
+    for silent in [
+        &["--style", "atlas", "--method", "adjacency", "--creases", "none"][..],
+        &["--style", "atlas", "--method", "contour"],
+        &["--style", "atlas"],
+        &["--method", "adjacency"],
+    ] {
+        assert_eq!(with(silent), Vec::<String>::new(), "{silent:?}");
+    }
+    let orbit =
+        ["fly", "valley.asc", "--orbit", "500900,4000800", "--radius", "900", "--height", "+300", "--count", "2"];
+    let fly = |output: [&'static str; 2]| told(&[&orbit[..], &["--size", VIEW[7]], &output, &traced].concat());
+    assert_eq!(fly(["-o", "%d.png"]), [format!("warning: {words}")]);
+    assert_eq!(fly(["--mask", "m%d.png"]), Vec::<String>::new(), "a mask has no style");
+    let drawing = |name: &str| format!("[[drawing]]\noutput = \"{name}.svg\"\nmethod = \"adjacency\"\n");
+    let list = "[defaults]\ndem = \"valley.asc\"\nstyle = \"atlas\"\nsize = \"64x48\"\n".to_owned();
+    fs::write(place.path("list.toml"), list + &drawing("x") + &drawing("y")).expect("a list");
+    assert_eq!(told(&["batch", "list.toml"]), [format!("warning: drawing 0 and 1 more: {words}")]);
 }
 
 #[test]
@@ -142,7 +175,7 @@ fn lines_of_the_users_own_are_drawn_in_views_and_plans() {
     let of_dem = ["--lines", "road.geojson"];
     fs::write(place.path("valley.prj"), epsg(32631)).expect("a system");
     draw(&place, &[&["-o", "a.svg", "--json", "a.json"], &of_dem[..]].concat());
-    assert_eq!(layers(&place, "a.json"), ["own", "border", "silhouette"]);
+    assert_eq!(layers(&place, "a.json"), ["road", "border", "silhouette"]);
     let over = place.run(&["draw", "valley.asc", "--json", "road.geojson", "-o", "b.svg", "--lines", "road.geojson"]);
     assert_eq!(over.status.code(), Some(2), "{}", stderr(&over));
     assert!(stderr(&over).contains("road.geojson") && !place.path("b.svg").exists());
@@ -151,11 +184,11 @@ fn lines_of_the_users_own_are_drawn_in_views_and_plans() {
             .concat(),
     );
     assert!(output.status.success(), "{}", stderr(&output));
-    assert_eq!(layers(&place, "p.json"), ["own", "border"]);
+    assert_eq!(layers(&place, "p.json"), ["road", "border"]);
 }
 
 /// A system of coordinates in the words of a .prj file.
-fn epsg(code: u32) -> String {
+pub fn epsg(code: u32) -> String {
     let system = gdal::spatial_ref::SpatialRef::from_epsg(code).expect("a system");
     system.to_wkt().expect("words")
 }

@@ -79,7 +79,7 @@ fn lines_fade_with_distance_and_never_pop() {
 #[test]
 fn own_lines_are_drawn_whatever_the_relief_and_rivers_through_plains() {
     let flat = |x: f64, length: f64| stream(DVec2::new(x, 20.0), DVec2::new(x, 20.0 + length), [0.0; 2], None);
-    let own = SurfaceLine { kind: LineKind::Own, order: 1, ..flat(90.0, 60.0) };
+    let own = SurfaceLine { kind: LineKind::Own(0), order: 1, ..flat(90.0, 60.0) };
     let of_own = |point: &SurfacePoint| SurfacePoint { across: [f32::INFINITY; 3], drop: f32::INFINITY, ..*point };
     let own = SurfaceLine { points: own.points.iter().map(of_own).collect(), ..own };
     // 1.2 km and 160 m of 20 m cells; a river of 20 km that is 3 km long here.

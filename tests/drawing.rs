@@ -47,6 +47,7 @@ fn lines(chains: Vec<Chain>, raster: &InkRaster, seen: &Perspective) -> Lines {
         hidden,
         chains: crowded(&chains, &marks, seen),
         recession: Recession::of(marks.depths().map(|depth| (depth, 1.0))),
+        own: Vec::new(),
     }
 }
 
@@ -56,7 +57,7 @@ fn every_kind_of_line_stands_in_a_layer() {
     let point = |x: f64| {
         let (place, depth) = (DVec2::new(x, 10.0), 0.01);
         let world = seen.unproject(place, depth.into());
-        ChainPoint { place, line: Line::Own, depth, behind: 0.0, world, crowd: 0, weight: 1.0, black: 1.0 }
+        ChainPoint { place, line: Line::Own(0), depth, behind: 0.0, world, crowd: 0, weight: 1.0, black: 1.0 }
     };
     let layer_of = |line: Line| {
         let points = [10.0, 20.0].map(|x| ChainPoint { line, ..point(x) }).to_vec();
@@ -70,7 +71,7 @@ fn every_kind_of_line_stands_in_a_layer() {
         (&[Line::Shore], "shore"),
         (&[Line::Drainage], "drainage"),
         (&[Line::Ridge], "ridge"),
-        (&[Line::Own], "own"),
+        (&[Line::Own(0)], "own"),
     ] {
         assert!(kinds.iter().all(|line| layer_of(*line) == [format!("1 {layer}")]), "{layer}: {kinds:?}");
     }
@@ -86,9 +87,8 @@ fn strokes_of(points: &[(f32, f32)], closed: bool) -> Vec<Vec<f64>> {
     };
     let points = (0..).map(f64::from).zip(points).map(point).collect();
     let chains = vec![Chain { id: None, points, closed }];
-    let (eye, hidden) = (seen.eye(), Vec::new());
-    let lines =
-        Lines { width: 100, height: 80, eye, hidden, chains, recession: Recession::of([(0.01, 1.0)].into_iter()) };
+    let (eye, recession) = (seen.eye(), Recession::of([(0.01, 1.0)].into_iter()));
+    let lines = Lines { width: 100, height: 80, eye, hidden: vec![], chains, recession, own: vec![] };
     let layers = drawn(&lines).layers;
     let strokes = layers.iter().flat_map(|layer| &layer.strokes);
     strokes.map(|stroke| stroke.points.iter().map(|point| point.width).collect()).collect()

@@ -90,7 +90,7 @@ fn comes_and_goes(renderers: &mut [Renderer; 2], first: &Camera, step: f64) -> [
 fn all_shown(lines: &[SurfaceLine]) -> Vec<SurfaceLine> {
     let point = |point: &SurfacePoint| SurfacePoint { across: [f32::INFINITY; 3], ..*point };
     let line = |line: &SurfaceLine| SurfaceLine {
-        kind: LineKind::Own,
+        kind: LineKind::Own(0),
         points: line.points.iter().map(point).collect(),
         ..line.clone()
     };

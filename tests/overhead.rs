@@ -3,9 +3,11 @@
 use std::fs;
 
 use glam::DVec2;
+use hachure::dem::Dem;
 use hachure::geo::{ReadOptions, read};
 use hachure::ink::styles::BuiltIn;
-use hachure::line::{Chain, Lines, Overhead};
+use hachure::line::{Chain, Land, Lines, Overhead};
+use hachure::relief::{LineKind, SurfaceLine, SurfacePoint};
 use serde_json::Value;
 
 use crate::cli::{Place, refuses, stderr};
@@ -29,6 +31,22 @@ fn plan(rows: &[&str]) -> Lines {
     let size = [rows[0].len(), rows.len()].map(|samples| 10 * (samples as u32 - 1));
     let dem = read(&path, &ReadOptions::default()).expect("a DEM");
     Overhead { area: dem.extent(), size, px_per_metre: 1.0 }.lines(&dem).expect("a plan")
+}
+
+#[test]
+fn lines_on_the_land_that_no_page_holds_are_refused() {
+    let dem = Dem::from_heights(21, DVec2::splat(10.0), DVec2::ZERO, vec![5.0; 21 * 21]);
+    let point = |x: f64| SurfacePoint { at: DVec2::new(x, 10.0), across: [f32::INFINITY; 3], length: 0.0, drop: 0.0 };
+    let points = vec![point(0.0), point(10.0), point(20.0)];
+    let line = SurfaceLine { kind: LineKind::Own(0), order: 1, points, closed: false, joins: None };
+    let land = Land::new(&dem, 1.0, vec![line]).expect("lines");
+    // 200 m.
+    let at = |px_per_metre: f64| Overhead { area: dem.extent(), size: [100; 2], px_per_metre }.land(&land, 0.0, None);
+    let most = f64::from(1 << 24) / 200.0;
+    assert_eq!(at(1.0).expect("a line").len(), 1);
+    let refused = at(most * 1.01).expect_err("too long");
+    let words = "lines of the land are 16944988 px long on the page, 16777216 can be laid; use --scale 1:N with a larger N, or fewer --creases or --lines";
+    assert_eq!(hachure::cli::words::line(&refused), words);
 }
 
 /// Twice the area to the left of a ring as seen from above; rows run down.

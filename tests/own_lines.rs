@@ -1,6 +1,8 @@
 //! Lines of the user's own: from every format and system to the land, and what is said of wrong files.
 
+mod layers;
 mod refused;
+mod sheets;
 mod voids;
 
 use std::path::Path;
@@ -51,7 +53,7 @@ fn placed(path: &str) -> Vec<SurfaceLine> {
 }
 
 fn on(path: &str, dem: &Dem) -> Vec<SurfaceLine> {
-    let lines = own_lines(Path::new(path), false).and_then(|given| relief::own_lines(Path::new(path), &given, dem));
+    let lines = own_lines(Path::new(path), false).and_then(|given| relief::own_lines(Path::new(path), &given, dem, 0));
     lines.unwrap_or_else(|e| panic!("{}", line(&e)))
 }
 
@@ -73,7 +75,7 @@ fn away(place: DVec2, line: &[DVec2]) -> f64 {
 fn check(line: &SurfaceLine, dem: &Dem) {
     let far = DVec2::new((dem.columns() - 1) as f64, (dem.rows() - 1) as f64);
     let at = places(line);
-    assert!(at.len() > 1 && line.kind == LineKind::Own && line.joins.is_none());
+    assert!(at.len() > 1 && matches!(line.kind, LineKind::Own(_)) && line.joins.is_none());
     assert!(at.iter().all(|place| place.cmpge(DVec2::ZERO).all() && place.cmple(far).all()));
     assert!(at.windows(2).all(|pair| pair[0] != pair[1] && pair[0].distance(pair[1]) <= 1.0 + 1e-9));
     assert!(line.points.iter().all(|point| point.across == [f32::INFINITY; 3] && point.drop == f32::INFINITY));
@@ -249,7 +251,7 @@ fn dems_in_feet_and_degrees_have_them_where_they_are() {
         let degrees = world.map(|world| georeference.place_in(&globe, world).expect("a place"));
         for (crs, places) in [(None, places), (Some(globe), degrees)] {
             let own = OwnLine { places: places.to_vec(), closed: false, order: 3 };
-            let found = relief::own_lines(Path::new("a"), &given(crs, vec![own]), &dem)
+            let found = relief::own_lines(Path::new("a"), &given(crs, vec![own]), &dem, 0)
                 .unwrap_or_else(|e| panic!("{}", line(&e)));
             assert_eq!((found.len(), found[0].order), (1, 3));
             check(&found[0], &dem);

@@ -8,6 +8,7 @@ mod kept;
 mod laid;
 mod orders;
 mod stranger;
+mod told;
 
 use std::path::Path;
 

@@ -80,7 +80,8 @@ fn frame(metres_on: f64, drawn: &[Level40], true_ones: &[Level40]) -> (Looked, L
 /// The default drawing of chains as they are.
 fn looked(camera: &Camera, chains: Vec<Chain>) -> Looked {
     let recession = Recession::of(std::iter::once((1.0, 1.0)));
-    let lines = Lines { width: PAGE[0], height: PAGE[1], eye: camera.eye, chains, hidden: Vec::new(), recession };
+    let (eye, hidden, own) = (camera.eye, Vec::new(), Vec::new());
+    let lines = Lines { width: PAGE[0], height: PAGE[1], eye, chains, hidden, recession, own };
     let drawing = draw(&lines, &Sheet::for_frame(PAGE), &Style::default(), &[]).expect("a drawing");
     Looked::of_strokes(camera, &lines, &drawing)
 }

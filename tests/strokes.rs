@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 use hachure::error::Error;
 use hachure::ink::style::{Dashes, Plot, Weight, Wobble};
-use hachure::ink::{Drawing, Form, Sheet, Stroke, Style, draw};
+use hachure::ink::{Drawing, Form, Pen, Sheet, Stroke, Style, draw};
 use hachure::line::{Chain, ChainPoint, Id, Line, Lines, Recession, ends};
 
 /// A sheet of 200 x 100 mm without margins, and its frame of 2 pixels a millimetre.
@@ -41,7 +41,7 @@ fn plain(id: u64, ends: [i32; 2], y: f64) -> Chain {
 fn lines(chains: Vec<Chain>, hidden: Vec<Chain>) -> Lines {
     let recession = Recession::of(chains.iter().flat_map(|chain| &chain.points).map(|point| (point.depth, 1.0)));
     let [width, height] = FRAME;
-    Lines { width, height, eye: DVec3::ZERO, chains, hidden, recession }
+    Lines { width, height, eye: DVec3::ZERO, chains, hidden, recession, own: vec![] }
 }
 
 /// Blunt lines that are as wide as their pen.
@@ -145,6 +145,49 @@ fn varying_widths_become_a_layer_a_pen() {
     let own = drawn(vec![thinning()], &pens(&[]), &[]);
     assert_eq!(names(&own), ["1 silhouette 1 mm"]);
     assert!(near(extent(&own.layers[0].strokes[0])[1], 112.0));
+}
+
+/// A chain of a layer of the user's own lines, 1 km away up to 100 px and 9 km from there on.
+fn own(layer: u16, y: f64) -> Chain {
+    let mut chain = level(u64::from(layer), [10, 190], y, |x| (if x < 100.0 { 1000.0 } else { 9000.0 }, 1.0));
+    chain.points.iter_mut().for_each(|point| point.line = Line::Own(layer));
+    chain
+}
+
+#[test]
+fn layers_of_own_lines_have_their_order_name_and_pen() {
+    let chains = vec![own(2, 50.0), plain(9, [10, 190], 60.0), own(0, 20.0), own(1, 30.0), own(3, 40.0)];
+    let called = |names: &[&str]| Lines {
+        own: names.iter().map(|name| (*name).to_owned()).collect(),
+        ..lines(chains.clone(), vec![])
+    };
+    let mut style = even();
+    let road = Pen { width: 0.7, ..Pen::default() };
+    style.pens.lines = [("roads".to_owned(), road), ("nowhere".to_owned(), Pen::default())].into();
+    let of = |names: &[&str], style: &Style, split: &[f64]| {
+        let drawing = draw(&called(names), &SHEET, style, split).expect("a drawing");
+        drawing.layers.iter().map(|layer| (layer.name.clone(), layer.pen.width)).collect::<Vec<_>>()
+    };
+    let listed =
+        |layers: &[(&str, f64)]| layers.iter().map(|(name, pen)| ((*name).to_owned(), *pen)).collect::<Vec<_>>();
+    let own = style.pens.own.width;
+    let all = ["roads", "silhouette", "roads", "roads 2"];
+    assert_eq!(
+        of(&all, &style, &[]),
+        listed(&[
+            ("1 roads", 0.7),
+            ("2 silhouette 2", own),
+            ("3 roads 2", 0.7),
+            ("4 roads 2 2", own),
+            ("5 silhouette", style.pens.silhouette.width)
+        ])
+    );
+    // Without a name, the pen of all.
+    assert_eq!(of(&[], &style, &[])[..2], listed(&[("1 own", own), ("2 own", own)]));
+    let zones = of(&all, &style, &[5000.0]);
+    assert_eq!(zones[..2], listed(&[("1 roads beyond 5 km", 0.7), ("2 roads to 5 km", 0.7)]));
+    style.plot = Plot { centre_lines: true, widths: vec![0.3, 0.7], ..Plot::default() };
+    assert_eq!(of(&all, &style, &[])[..2], listed(&[("1 roads 0.7 mm", 0.7), ("2 silhouette 2 0.3 mm", 0.3)]));
 }
 
 #[test]

@@ -6,7 +6,7 @@ use std::path::Path;
 use hachure::error::Error;
 use hachure::ink::style::Plot;
 use hachure::ink::styles::{BuiltIn, find, parse};
-use hachure::ink::{Colour, Style};
+use hachure::ink::{Colour, Pen, Style};
 use serde_json::Value;
 
 use crate::cli::{DRAW, Place, refuses, stderr};
@@ -45,8 +45,25 @@ fn what_a_style_does_not_say_is_as_in_its_base() {
     assert_eq!(wide.pens.border.width, 2.0);
     assert_eq!(wide.pens.border.colour, Colour([0; 3]), "the rest of the pen stays");
     assert_eq!((wide.pens.silhouette, &wide.plot), (plotter.pens.silhouette, &plotter.plot));
+    // What a base does not say is as in the first style, key by key.
+    let red = read("[pens.own]\ncolour = \"#ff0000\"").pens;
+    assert_eq!((red.own.width, red.own.colour), (Style::default().pens.own.width, Colour([255, 0, 0])));
     let none = read("base = \"plotter\"\nplot.widths = []");
     assert_eq!(none.plot, Plot { widths: vec![], ..plotter.plot });
+}
+
+#[test]
+fn layers_of_own_lines_have_pens_by_their_names() {
+    let style =
+        read("[pens.own]\nwidth = 0.4\n[pens.lines.rivers]\ncolour = \"#2b5c8a\"\n[pens.lines.\"a: b\"]\nwidth = 3");
+    let pens = &style.pens;
+    assert_eq!(pens.of_own("rivers"), Pen { colour: Colour([0x2b, 0x5c, 0x8a]), ..pens.own });
+    assert_eq!((pens.of_own("rivers").width, pens.of_own("a: b").width), (0.4, 3.0));
+    assert_eq!((pens.of_own("roads"), pens.of_own("own")), (pens.own, pens.own));
+    assert_eq!((pens.all().count(), style.broadest()), (9, 3.0));
+    assert!(pens.all().any(|pen| pen == pens.of_own("rivers")));
+    assert_eq!(read(&toml::to_string(&style).expect("TOML")), style);
+    assert!(!toml::to_string(&Style::default()).expect("TOML").contains("pens.lines"), "no empty table");
 }
 
 #[test]
@@ -54,6 +71,8 @@ fn mistakes_are_told_with_their_place_and_what_was_meant() {
     for (text, words) in [
         ("[pens.silhouette]\nwidht = 1", "line 2, column 1: unknown key `widht`; use `width`"),
         ("[pens.silhuette]\nwidth = 1", "line 1, column 7: unknown key `silhuette`; use `silhouette`"),
+        ("[pens.lines.rivers]\ncolor = 1", "line 2, column 1: unknown key `color`; use `colour`"),
+        ("[pens.lines]\nrivers = 1", "line 2, column 10: invalid type"),
         ("min_jump = 1", "line 1, column 1: unknown key `min_jump`; use `min-jump`"),
         ("papier = 1", "unknown key `papier`; use `paper`"),
         ("zzz = 1", "unknown key `zzz`; use one of `base`, `paper`"),
@@ -96,6 +115,9 @@ fn bounds(schema: &Value, of: &Value, path: &[String], found: &mut Vec<(Vec<Stri
     for (key, inner) in of["properties"].as_object().into_iter().flatten() {
         bounds(schema, inner, &[path, std::slice::from_ref(key)].concat(), found);
     }
+    if of["additionalProperties"].is_object() {
+        bounds(schema, &of["additionalProperties"], &[path, &["any".to_owned()]].concat(), found);
+    }
 }
 
 #[test]
@@ -104,6 +126,7 @@ fn the_schema_has_every_key_and_the_bounds_that_are_kept() {
     let mut found = Vec::new();
     bounds(&schema, &schema, &[], &mut found);
     assert!(found.len() > 20, "{found:?}");
+    assert!(found.iter().any(|(path, ..)| path.join(".") == "pens.lines.any.width"), "{found:?}");
     for (path, least, most) in found.iter().filter(|(path, ..)| path[path.len() - 1] != "seed") {
         let takes = |value: f64| {
             // The only number that another bounds.

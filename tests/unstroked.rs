@@ -57,7 +57,7 @@ fn chain(row: i64, weight: f32) -> Chain {
 fn found(rows: &[i64], chains: Vec<Chain>) -> Vec<Unstroked> {
     let [width, height] = FRAME;
     let recession = Recession::of([(0.01, 1.0)].into_iter());
-    let lines = Lines { width, height, eye: DVec3::ZERO, chains, hidden: vec![], recession };
+    let lines = Lines { width, height, eye: DVec3::ZERO, chains, hidden: vec![], recession, own: vec![] };
     let plot = Plot { centre_lines: true, ..Plot::default() };
     let weight = Weight { far: 1.0, flat: 1.0, taper: 0.0, ..Weight::default() };
     let drawing = draw(&lines, &SHEET, &Style { plot, weight, ..Style::default() }, &[]).expect("a drawing");

@@ -114,6 +114,7 @@ pub fn run(arguments: &BatchArguments, talk: &Talk) -> Result<()> {
     let cache = arguments.cache.cache();
     let entries = arguments.sheets.sheets(entry::read(&arguments.file)?, &cache, talk)?;
     entry::each_output_once(&arguments.file, &entries)?;
+    warn_of_creases(&entries, talk);
     let share = arguments.jobs.share(entries.len() as u32, "drawings")?;
     let folder = entries.first().and_then(|entry| entry.draw.outputs.files().0.first().map(|path| folder_of(path)));
     let folder = folder.unwrap_or_default();
@@ -254,6 +255,20 @@ impl Studio<'_> {
             self.scene = Some(Scene { of, files, surface, renderer: None, land: None });
         }
         self.scene.as_mut().ok_or_else(|| Error::mistake("a DEM was read and is not there"))
+    }
+}
+
+/// Warns once of drawings whose style has lines that their method does not draw. What cannot be told fails as it is made.
+fn warn_of_creases(entries: &[Entry], talk: &Talk) {
+    let views = entries.iter().filter(|entry| entry.draw.scale().is_none());
+    let words = |entry: &Entry| entry.draw.drawing.left_out_of_style().ok().flatten();
+    let mut all = views.filter_map(|entry| Some((&entry.called, words(entry)?)));
+    if let Some((called, words)) = all.next() {
+        let more = match all.count() {
+            0 => String::new(),
+            count => format!(" and {count} more"),
+        };
+        talk.warn(&format!("{called}{more}: {words}"));
     }
 }
 

@@ -113,6 +113,7 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
         return plan::run(arguments, scale, talk);
     }
     let illustration = arguments.check()?;
+    arguments.drawing.left_out_of_style()?.into_iter().for_each(|words| talk.warn(&words));
     let started = Instant::now();
     let cache = arguments.cache.cache();
     let (reading, beside) = (arguments.open(cache.clone())?, arguments.drawing.land.lines.files());
@@ -157,14 +158,22 @@ impl DrawArguments {
         self.outputs.fill_stdout()
     }
 
-    /// The same of a sheet of a map: of the DEM in `crop`, in the file's coordinates; a plan is of `area`, metres of the world;
-    /// its files are `renamed`.
+    /// The same of a sheet of a map, which is `called` so: of the DEM in `crop`, in the file's coordinates; a plan is of `area`,
+    /// metres of the world; its files are `renamed`.
     ///
     /// # Errors
     /// Those of `renamed`; [`Error::Setting`] where there is a crop already.
-    pub fn of_sheet(&self, crop: [f64; 4], area: [f64; 4], renamed: impl Fn(&Path) -> Result<PathBuf>) -> Result<Self> {
+    pub fn of_sheet(
+        &self,
+        called: &str,
+        crop: [f64; 4],
+        area: [f64; 4],
+        renamed: impl Fn(&Path) -> Result<PathBuf>,
+    ) -> Result<Self> {
         let (terrain, outputs) = (self.terrain.cropped(crop)?, self.outputs.renamed(renamed)?);
-        Ok(Self { terrain, outputs, area: Some(area), ..self.clone() })
+        let mut sheet = Self { terrain, outputs, area: Some(area), ..self.clone() };
+        sheet.drawing.land.lines.on_sheet(called);
+        Ok(sheet)
     }
 
     /// The scale of a plan, where one is drawn.

@@ -2,7 +2,7 @@
 //! page they stand, in which style.
 
 use super::choices;
-use super::land::LandArguments;
+use super::land::{LandArguments, creases_word};
 use super::page::{Layout, PageArguments};
 use super::style::StyleArguments;
 use super::values::{self, LevelChoice, Size};
@@ -110,6 +110,20 @@ impl DrawingArguments {
         };
         let split = self.style.split().to_vec();
         Ok(Illustration { plan, style, land, economy, split, sheet: layout.sheet, frame, px_per_mm: layout.px_per_mm })
+    }
+
+    /// What is to be told where the style has lines of the land and the method draws none.
+    ///
+    /// # Errors
+    /// As [`Self::plan`] and [`StyleArguments::style`].
+    pub fn left_out_of_style(&self) -> Result<Option<String>> {
+        if self.land.says_creases() || self.plan(Wanted::Drawing)?.has_curves() {
+            return Ok(None);
+        }
+        let creases = self.style.style()?.creases;
+        let words = "they go with contours only; leave out --method, or add --creases none";
+        Ok((!creases.is_empty())
+            .then(|| format!("the style's {} are left out: {words}", creases_word(&creases, " and "))))
     }
 
     /// Which lines of the land are to be drawn; none where no curves are.

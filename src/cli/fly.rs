@@ -8,7 +8,7 @@ use super::blank;
 use super::cache::CacheArguments;
 use super::cells;
 use super::device::DeviceArguments;
-use super::drawing::DrawingArguments;
+use super::drawing::{DrawingArguments, Wanted};
 use super::film;
 use super::flight::{FlightArguments, FlightPlan};
 use super::frames::{FrameArguments, FrameFiles};
@@ -106,6 +106,9 @@ pub fn run(arguments: &FlyArguments, talk: &Talk) -> Result<()> {
         return arguments.preview(path, &cache, talk);
     }
     let (asked, jobs) = arguments.asked(&cache, talk)?;
+    if asked.files.wanted() == Wanted::Drawing {
+        arguments.drawing.left_out_of_style()?.into_iter().for_each(|words| talk.warn(&words));
+    }
     if arguments.jobs.list {
         return arguments.list(&asked, &jobs, &cache, talk);
     }

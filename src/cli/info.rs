@@ -3,7 +3,7 @@
 use super::talk::Talk;
 use super::terrain::{TerrainArguments, words};
 use super::words::told;
-use super::{peaks, values};
+use super::{channels, peaks, values};
 use crate::cache::Cache;
 use crate::error::Result;
 use crate::geo;
@@ -12,7 +12,8 @@ use crate::geo;
 const EXAMPLES: &str = "\
 Examples:
   hachure info dem/golden-gate.tif
-  hachure info dem/golden-gate.tif --peaks 5";
+  hachure info dem/golden-gate.tif --peaks 5
+  hachure info dem/golden-gate.tif --channels";
 
 /// Peaks that are listed where nobody says how many.
 pub const PEAKS: &str = "20";
@@ -28,17 +29,21 @@ pub struct InfoArguments {
         help = format!("Also list the N most prominent peaks, with the saddles that part them from higher ground [default: {PEAKS}]")
     )]
     peaks: Option<usize>,
+    /// Also list from how much land on water was tried to run in channels, and which of them --channel-area auto takes and why
+    #[arg(long)]
+    channels: bool,
 }
 
-/// Prints size, CRS, extent, cell, range, voids, what was converted and assumed, and peaks.
+/// Prints size, CRS, extent, cell, range, voids, what was converted and assumed, peaks and areas of channels.
 ///
 /// # Errors
-/// As [`geo::info()`]; for peaks of a DEM that stays in its files [`Error::Limit`](crate::error::Error::Limit).
+/// As [`geo::info()`]; for peaks and channels of a DEM that stays in its files [`Error::Limit`](crate::error::Error::Limit).
 pub fn run(arguments: &InfoArguments, talk: &Talk) -> Result<()> {
     let terrain = &arguments.terrain;
     let options = terrain.options(1.0, Cache::none());
     let (info, dem) = geo::info_and_dem(&terrain.dems, &options, &|stage, share| talk.progress(words(stage), share))?;
-    // Peaks first: where they cannot be told, nothing is.
+    // These first: where they cannot be told, nothing is.
     let peaks = arguments.peaks.map(|count| peaks::told(&dem, count)).transpose()?;
-    talk.answer(&[Some(info.told(told)), peaks].into_iter().flatten().collect::<Vec<_>>().join("\n"))
+    let channels = arguments.channels.then(|| channels::told(&dem)).transpose()?;
+    talk.answer(&[Some(info.told(told)), peaks, channels].into_iter().flatten().collect::<Vec<_>>().join("\n"))
 }

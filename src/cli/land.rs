@@ -22,7 +22,7 @@ pub struct LandArguments {
         long, value_name = "NAME,…|none", value_parser = creases,
         help = format!(
             "Lines of the land, each kind in a layer of its own: {}; or none [default: as the style has it, {}]",
-            Crease::ALL.map(Crease::name).join(", "), creases_word(&Style::default().creases)
+            Crease::ALL.map(Crease::name).join(", "), creases_word(&Style::default().creases, ",")
         )
     )]
     creases: Option<Creases>,
@@ -39,11 +39,11 @@ pub struct LandArguments {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Creases(pub Vec<Crease>);
 
-/// What users call them.
-fn creases_word(creases: &[Crease]) -> String {
+/// What users call them, with this between them.
+pub(super) fn creases_word(creases: &[Crease], between: &str) -> String {
     match creases {
         [] => "none".to_owned(),
-        creases => creases.iter().map(|crease| crease.name()).collect::<Vec<_>>().join(","),
+        creases => creases.iter().map(|crease| crease.name()).collect::<Vec<_>>().join(between),
     }
 }
 
@@ -59,8 +59,19 @@ impl LandArguments {
             let what = "goes with drainage only";
             return Err(Error::setting(Setting::ChannelArea, what, "add --creases drainage, or leave it out"));
         }
-        let own = self.lines.open(allow_remote)?.asked();
-        Ok(LandWanted { creases, channel_area, own, slopes: style.hachures.rules() })
+        let own = self.lines.open(allow_remote)?;
+        Ok(LandWanted {
+            creases,
+            channel_area,
+            own: own.asked(),
+            own_layers: own.layers(),
+            slopes: style.hachures.rules(),
+        })
+    }
+
+    /// Whether it is said which creases are drawn, or none, whatever the style has.
+    pub fn says_creases(&self) -> bool {
+        self.creases.is_some()
     }
 
     /// Refuses what only contours can be drawn with.

@@ -4,6 +4,7 @@ pub mod batch;
 pub mod blank;
 pub mod cache;
 pub mod cells;
+mod channels;
 pub mod choices;
 pub mod compare;
 pub mod device;

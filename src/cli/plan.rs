@@ -20,7 +20,7 @@ use crate::error::{Error, Result, Setting};
 use crate::files::Taken;
 use crate::ink::strokes::inset;
 use crate::ink::{self, Drawing, Sheet, Style};
-use crate::line::{Land, Overhead};
+use crate::line::{Land, Lines, Overhead};
 use crate::message;
 use crate::plan::Hachures;
 use crate::relief::LandWanted;
@@ -72,16 +72,16 @@ pub fn check(arguments: &DrawArguments) -> Result<(Style, LandWanted)> {
 /// Draws the plan of a DEM: no GPU, no view.
 ///
 /// # Errors
-/// As [`check`]; [`Error::Setting`] for a scale that fits no page.
+/// As [`check`] and [`Overhead::land`]; [`Error::Setting`] for a scale that fits no page.
 pub fn draw(arguments: &DrawArguments, scale: f64, dem: &Dem, land: Option<&Land>) -> Result<Planned> {
-    let (style, _) = check(arguments)?;
+    let (style, wanted) = check(arguments)?;
     let area = arguments.area.unwrap_or(dem.extent());
     let layout = layout(area, scale, inset(style.broadest()) + style.wobble.reach, arguments)?;
     let frame = [layout.frame.width, layout.frame.height];
     let px_per_mm = layout.sheet.placement(frame).px_per_mm;
     let economy = arguments.drawing.style.economy(&style, px_per_mm);
     let overhead = Overhead { area, size: frame, px_per_metre: px_per_mm * MM / scale };
-    let mut lines = overhead.lines(dem)?;
+    let mut lines = Lines { own: wanted.own_layers, ..overhead.lines(dem)? };
     // Light is of a map's north-west, and black is black.
     let hachures = style.hachures(px_per_mm).map(|look| Hachures { most_black: 1.0, ..look });
     if let Some(land) = land {

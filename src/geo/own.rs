@@ -1,11 +1,14 @@
 //! Lines of the user's own as a file has them.
 
 use std::fmt::Write;
+use std::path::Path;
 
 use glam::DVec2;
 use xxhash_rust::xxh3::Xxh3;
 
+use super::with_layer;
 use crate::dem::Crs;
+use crate::error::shown;
 
 /// The lines of a file, layer by layer.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,10 +42,26 @@ pub struct OwnLine {
 }
 
 impl OwnLines {
+    /// The layers that have lines.
+    pub fn drawn(&self) -> impl Iterator<Item = &OwnLayer> {
+        self.layers.iter().filter(|layer| !layer.lines.is_empty())
+    }
+
+    /// What the layers that have lines are called in a drawing: as in the file, one that nobody named and that is the only one
+    /// as the file. `path`: what the user wrote, `FILE` or `FILE:LAYER`.
+    pub fn names(&self, path: &Path) -> Vec<String> {
+        let (file, layer) = with_layer(path);
+        let mut names: Vec<String> = self.drawn().map(|layer| shown(Path::new(&layer.name))).collect();
+        if let ([only], None, Some(stem)) = (&mut names[..], layer, file.file_stem()) {
+            *only = shown(Path::new(stem));
+        }
+        names
+    }
+
     /// What was taken and what was left out, in words.
     pub fn taken(&self) -> String {
         let mut words = Vec::new();
-        for layer in self.layers.iter().filter(|layer| !layer.lines.is_empty()) {
+        for layer in self.drawn() {
             let count = layer.lines.len();
             words.push(format!("{count} line{} of layer {}", plural(count), layer.name));
         }

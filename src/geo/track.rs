@@ -21,11 +21,13 @@ pub struct Track {
     pub taken: String,
 }
 
-/// The file and the layer in the name of a track, `FILE:LAYER` where no file is called so.
+/// The file and the layer in a name, `FILE:LAYER` where no file is called so. Either may hold colons: the longest name of a file
+/// is the file.
 pub fn with_layer(path: &Path) -> (PathBuf, Option<String>) {
-    let parts = path.to_str().and_then(|text| text.rsplit_once(':')).filter(|_| !path.exists());
-    match parts.map(|(file, layer)| (PathBuf::from(file), layer)) {
-        Some((file, layer)) if file.is_file() => (file, Some(layer.to_owned())),
-        _ => (path.to_owned(), None),
+    let text = path.to_str().filter(|_| !path.exists()).unwrap_or_default();
+    let mut parts = text.rmatch_indices(':').map(|(colon, _)| (Path::new(&text[..colon]), &text[colon + 1..]));
+    match parts.find(|(file, _)| file.is_file()) {
+        Some((file, layer)) => (file.to_owned(), Some(layer.to_owned())),
+        None => (path.to_owned(), None),
     }
 }

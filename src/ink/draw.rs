@@ -4,7 +4,7 @@
 //! one width, so do those. From bottom to top, which is the order of plotting: hidden lines, lines on the
 //! land, borders, silhouettes, of each the farthest first and the finest.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 
 use glam::DVec2;
 use rustc_hash::FxHashMap;
@@ -26,29 +26,23 @@ const GAP: f64 = 1.5;
 const MARK: f64 = 4.0;
 
 /// What a layer draws, from bottom to top.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Kind {
     Hidden,
     Hachure,
     Shore,
     Drainage,
     Ridge,
-    Own,
+    /// Of the layer of this number.
+    Own(u16),
     Border,
     Silhouette,
 }
 
 impl Kind {
-    const ALL: [Self; 8] = [
-        Self::Hidden,
-        Self::Hachure,
-        Self::Shore,
-        Self::Drainage,
-        Self::Ridge,
-        Self::Own,
-        Self::Border,
-        Self::Silhouette,
-    ];
+    /// All but the user's own.
+    const NAMED: [Self; 7] =
+        [Self::Hidden, Self::Hachure, Self::Shore, Self::Drainage, Self::Ridge, Self::Border, Self::Silhouette];
 
     /// What shows a kind of line.
     fn of(line: Line) -> Self {
@@ -58,12 +52,13 @@ impl Kind {
             Line::Shore => Self::Shore,
             Line::Drainage => Self::Drainage,
             Line::Ridge => Self::Ridge,
-            Line::Own => Self::Own,
+            Line::Own(layer) => Self::Own(layer),
             Line::Hachure => Self::Hachure,
         }
     }
 
-    fn name(self) -> &'static str {
+    /// What its layer is called, given the names of the user's own.
+    fn name(self, own: &[String]) -> &str {
         match self {
             Self::Hidden => "hidden",
             Self::Border => "border",
@@ -71,12 +66,12 @@ impl Kind {
             Self::Shore => "shore",
             Self::Drainage => "drainage",
             Self::Ridge => "ridge",
-            Self::Own => "own",
+            Self::Own(layer) => own.get(usize::from(layer)).map_or("own", String::as_str),
             Self::Hachure => "hachure",
         }
     }
 
-    fn pen(self, style: &Style) -> Pen {
+    fn pen(self, style: &Style, own: &[String]) -> Pen {
         match self {
             Self::Hidden => style.pens.hidden,
             Self::Border => style.pens.border,
@@ -84,7 +79,7 @@ impl Kind {
             Self::Shore => style.pens.shore,
             Self::Drainage => style.pens.drainage,
             Self::Ridge => style.pens.ridge,
-            Self::Own => style.pens.own,
+            Self::Own(layer) => own.get(usize::from(layer)).map_or(style.pens.own, |name| style.pens.of_own(name)),
             Self::Hachure => style.pens.hachure,
         }
     }
@@ -111,20 +106,25 @@ pub fn draw(lines: &Lines, sheet: &Sheet, style: &Style, split: &[f64]) -> Resul
     let free = ends::free(&lines.chains, [lines.width, lines.height]);
     let mut layers: Vec<Layer> = Vec::new();
     let mut pieces = FxHashMap::default();
-    for kind in Kind::ALL {
+    let mut kinds = BTreeMap::from([(Kind::Hidden, Vec::new())]);
+    for (chain, free) in lines.chains.iter().zip(&free) {
+        kinds.entry(Kind::of(chain.line())).or_default().push((chain, *free));
+    }
+    let own = names(&lines.own);
+    for (kind, chains) in kinds {
         let runs = match kind {
             Kind::Hidden => of_each(lines.hidden.iter(), |chain| inking.dashed(chain, &style.dashes)),
             _ => {
-                let shown = lines.chains.iter().zip(&free).filter(|(chain, _)| Kind::of(chain.line()) == kind);
-                let drawn = shown.filter(|(chain, _)| style.dots || chain.points.len() > 1);
-                drawn.flat_map(|(chain, free)| of_each([chain], |chain| inking.weighed(chain, *free))).collect()
+                let drawn = chains.into_iter().filter(|(chain, _)| style.dots || chain.points.len() > 1);
+                drawn.flat_map(|(chain, free)| of_each([chain], |chain| inking.weighed(chain, free))).collect()
             }
         };
+        let whole = kind.pen(style, &lines.own);
         for (zone, runs) in by_distance(runs, split) {
-            for (width, runs) in by_width(runs, kind.pen(style), style) {
-                let pen = Pen { width: width.unwrap_or(kind.pen(style).width), ..kind.pen(style) };
+            for (width, runs) in by_width(runs, whole, style) {
+                let pen = Pen { width: width.unwrap_or(whole.width), ..whole };
                 let words = [zone_name(zone, split), width.map(|width| format!("{width} mm"))];
-                let number = format!("{} {}", layers.len() + 1, kind.name());
+                let number = format!("{} {}", layers.len() + 1, kind.name(&own));
                 let name = [number].into_iter().chain(words.into_iter().flatten()).collect::<Vec<_>>().join(" ");
                 let finished = |(id, run)| inking.finished(run, pen.width).into_iter().map(move |run| (id, run));
                 let finished = runs.into_iter().flat_map(finished);
@@ -136,6 +136,18 @@ pub fn draw(lines: &Lines, sheet: &Sheet, style: &Style, split: &[f64]) -> Resul
         }
     }
     Ok(Drawing { sheet: *sheet, paper: style.paper, layers, seal: None })
+}
+
+/// Names of layers of the user's own lines, each once: what is taken is counted.
+fn names(own: &[String]) -> Vec<String> {
+    let mut taken: HashSet<String> = Kind::NAMED.map(|kind| kind.name(&[]).to_owned()).into();
+    let mut free = |name: &String| {
+        let counted = (2..).map(|count| format!("{name} {count}"));
+        let name = std::iter::once(name.clone()).chain(counted).find(|name| !taken.contains(name)).unwrap_or_default();
+        taken.insert(name.clone());
+        name
+    };
+    own.iter().map(&mut free).collect()
 }
 
 /// The runs of each chain, with its name.

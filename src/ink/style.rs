@@ -3,6 +3,7 @@
 //! Lengths are millimetres on the sheet. The look of [`Style::default`] is `field-sketch`; [`styles`](super::styles) has
 //! the others, and reads those that users write.
 
+use std::collections::BTreeMap;
 use std::fmt::Display;
 
 use schemars::JsonSchema;
@@ -106,7 +107,7 @@ pub struct Wobble {
 }
 
 /// A pen for each kind of line.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Pens {
     /// Land before farther land, and before the sky.
@@ -125,6 +126,10 @@ pub struct Pens {
     pub hachure: Pen,
     /// Lines that land hides.
     pub hidden: Pen,
+    /// Lines that the user gives, by the names of their layers; of all others `own`, which also has what one of these does not
+    /// say. Names that no layer has are no mistake.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub lines: BTreeMap<String, Pen>,
 }
 
 /// Dashes of hidden lines.
@@ -213,15 +218,21 @@ impl Default for Pens {
             own: pen(0.24),
             hachure: pen(0.3),
             hidden: pen(0.15),
+            lines: BTreeMap::new(),
         }
     }
 }
 
 impl Pens {
     /// All of them.
-    pub fn all(&self) -> [Pen; 8] {
-        let Self { silhouette, border, shore, drainage, ridge, own, hachure, hidden } = *self;
-        [silhouette, border, shore, drainage, ridge, own, hachure, hidden]
+    pub fn all(&self) -> impl Iterator<Item = Pen> {
+        let Self { silhouette, border, shore, drainage, ridge, own, hachure, hidden, lines } = self;
+        [silhouette, border, shore, drainage, ridge, own, hachure, hidden].into_iter().chain(lines.values()).copied()
+    }
+
+    /// That of a layer of the user's own lines.
+    pub fn of_own(&self, layer: &str) -> Pen {
+        self.lines.get(layer).copied().unwrap_or(self.own)
     }
 }
 
@@ -273,7 +284,7 @@ impl Style {
 
     /// Width of the broadest pen.
     pub fn broadest(&self) -> f64 {
-        let own = self.pens.all().map(|pen| pen.width).into_iter().fold(0.0, f64::max);
+        let own = self.pens.all().map(|pen| pen.width).fold(0.0, f64::max);
         self.plot.widths.last().copied().filter(|_| self.plot.centre_lines).unwrap_or(own)
     }
 

@@ -95,11 +95,24 @@ pub fn parse(text: &str, path: &Path) -> Result<Style> {
     let mistake = |e: &toml::de::Error| typed::mistake(text, path, e, "mend it as the schema of styles says");
     // By itself first: what was laid over a base has no places.
     let own: Style = toml::from_str(text).map_err(|e| mistake(&e))?;
-    let mut whole: Table = toml::from_str(own.base.text()).map_err(|e| Error::mistake(e.to_string()))?;
+    let mut whole = Table::try_from(Style::default()).map_err(|e| Error::mistake(e.to_string()))?;
+    overlay(&mut whole, toml::from_str(own.base.text()).map_err(|e| Error::mistake(e.to_string()))?);
     overlay(&mut whole, toml::from_str(text).map_err(|e| mistake(&e))?);
+    complete(&mut whole);
     let style: Style = Value::Table(whole).try_into().map_err(|e: toml::de::Error| mistake(&e))?;
     style.check().map_err(|(what, remedy)| Error::input(path, what, remedy))?;
     Ok(style)
+}
+
+/// Gives the pens of layers of the user's own lines what they do not say, from `own`.
+fn complete(style: &mut Table) {
+    let Some(Value::Table(pens)) = style.get_mut("pens") else { return };
+    let Some(Value::Table(own)) = pens.get("own").cloned() else { return };
+    let Some(Value::Table(lines)) = pens.get_mut("lines") else { return };
+    for pen in lines.iter_mut().filter_map(|(_, pen)| pen.as_table_mut()) {
+        let said = std::mem::replace(pen, own.clone());
+        overlay(pen, said);
+    }
 }
 
 /// Puts the values of `over` in the place of those of `under`, key by key.

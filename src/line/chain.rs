@@ -19,8 +19,8 @@ pub enum Line {
     Drainage,
     /// Where water parts.
     Ridge,
-    /// A line that the user gives.
-    Own,
+    /// A line that the user gives, of the layer of this number.
+    Own(u16),
     /// A line down the slope that is drawn for its tone.
     Hachure,
 }
@@ -141,6 +141,6 @@ impl Chain {
         let mut lines: Vec<Line> = self.points.iter().map(|point| point.line).collect();
         lines.sort_unstable();
         let runs = lines.chunk_by(|a, b| a == b);
-        runs.rev().max_by_key(|run| run.len()).map_or(Line::Own, |run| run[0])
+        runs.rev().max_by_key(|run| run.len()).map_or(Line::Own(0), |run| run[0])
     }
 }

@@ -260,7 +260,7 @@ fn width(line: &SurfaceLine, point: &SurfacePoint, length: f64) -> f64 {
             let end = line.points.last().map_or(1.0, |end| end.length).max(f32::MIN_POSITIVE);
             by_order * f64::from(point.length / end).sqrt()
         }
-        LineKind::Own => by_order,
+        LineKind::Own(_) => by_order,
         LineKind::Ridge => fade(RIDGE_WIDTH, length),
         LineKind::Shore => 1.0,
     };

@@ -12,7 +12,7 @@ use super::Line;
 use super::curve::{Bound, Curve, CurvePoint, Place, Sight, Stretch};
 use super::identity::CELL;
 use super::way::Way;
-use crate::error::{Error, Result, Setting};
+use crate::error::{Error, Message, Result, Setting};
 use crate::gpu::uniforms::{Segment, code, seen};
 use crate::message;
 use crate::relief::LineKind;
@@ -53,22 +53,7 @@ impl Laid {
     pub fn new(ways: &[Way], perspective: &Perspective) -> Result<Self> {
         let runs: Vec<Run> = ways.par_iter().flat_map_iter(|way| runs(way, perspective)).collect();
         let places: Vec<Place> = runs.iter().flat_map(|run| run.places.iter().copied()).collect();
-        if places.len() > MOST {
-            let what = format!("lines of the land are {} px long on the page, {MOST} can be laid", places.len());
-            return Err(Error::limit(
-                what,
-                message![
-                    "use a smaller ",
-                    Setting::Size,
-                    ", or fewer ",
-                    Setting::Creases,
-                    ", ",
-                    Setting::Hachures,
-                    " or ",
-                    Setting::Lines
-                ],
-            ));
-        }
+        check_length(places.len(), message!["use a smaller ", Setting::Size])?;
         Ok(Self { places, runs })
     }
 
@@ -88,6 +73,18 @@ impl Laid {
     }
 }
 
+/// Fails where lines of the land are longer on a page than can be drawn, px; `less`: what makes them shorter.
+pub(super) fn check_length(px: usize, less: Message) -> Result<()> {
+    if px <= MOST {
+        return Ok(());
+    }
+    let what = format!("lines of the land are {px} px long on the page, {MOST} can be laid");
+    Err(Error::limit(
+        what,
+        message![less, ", or fewer ", Setting::Creases, ", ", Setting::Hachures, " or ", Setting::Lines],
+    ))
+}
+
 /// Whether a segment is a point of a line on the land.
 pub fn is_laid(segment: &Segment) -> bool {
     segment.code & code::CORNER == code::LAID
@@ -99,7 +96,7 @@ pub(super) fn line_of(kind: LineKind) -> Line {
         LineKind::Shore => Line::Shore,
         LineKind::Drainage => Line::Drainage,
         LineKind::Ridge => Line::Ridge,
-        LineKind::Own => Line::Own,
+        LineKind::Own(layer) => Line::Own(layer),
     }
 }
 

@@ -80,6 +80,8 @@ pub struct Lines {
     pub hidden: Vec<Chain>,
     /// From near to far.
     pub recession: Recession,
+    /// What the layers of the user's own lines are called, by their numbers.
+    pub own: Vec<String>,
 }
 
 impl Lines {
@@ -93,6 +95,7 @@ impl Lines {
             hidden: Vec::new(),
             chains: crowded(&chains, marks, perspective),
             recession: Recession::of(marks.depths().map(|depth| (depth, 1.0))),
+            own: Vec::new(),
         }
     }
 
@@ -108,6 +111,6 @@ impl Lines {
         let inked = of_surface.flat_map(Chain::pairs).map(inked);
         let [width, height] = perspective.size().to_array().map(|px| px as u32);
         let recession = Recession::of(inked);
-        Self { width, height, eye: perspective.eye(), chains, hidden, recession }
+        Self { width, height, eye: perspective.eye(), chains, hidden, recession, own: Vec::new() }
     }
 }

@@ -11,13 +11,14 @@ use rustc_hash::FxHashMap;
 use super::detail::{From, Land};
 use super::hachures::{self, Seen};
 use super::identity::{Held, key, names};
-use super::laid::on_lattice;
+use super::laid::{check_length, on_lattice};
 use super::simplify::needed;
 use super::tone::toned;
 use super::way::{Way, WayPoint};
 use super::{Chain, ChainPoint, Economy, Id, Line, Lines, Recession, economised};
 use crate::dem::Dem;
-use crate::error::Result;
+use crate::error::{Result, Setting};
+use crate::message;
 use crate::plan::Hachures;
 use crate::surface::rim::{RimEdge, rim};
 
@@ -65,20 +66,27 @@ impl Overhead {
             chains: rings(&rim(dem)?).into_iter().map(chain).collect(),
             hidden: Vec::new(),
             recession: Recession::of(std::iter::once((1.0, 1.0))),
+            own: Vec::new(),
         })
     }
 
     /// Lines on the land, `min_gap` px apart, and hachures.
     ///
     /// # Errors
-    /// As [`hachures::ways`].
+    /// [`Error::Limit`](crate::error::Error::Limit) where they are longer than those of a view may be; as [`hachures::ways`].
     pub fn land(&self, land: &Land, min_gap: f64, hachures: Option<&Hachures>) -> Result<Vec<Chain>> {
-        let lines = self.chains(&land.ways(From::Above(self.px_per_metre)));
-        let lines = economised(&lines, &Economy { min_jump: 0.0, min_gap });
+        let lines = land.ways(From::Above(self.px_per_metre));
         let strokes = match land.slopes().zip(hachures) {
-            Some((slopes, look)) => toned(self.chains(&hachures::ways(slopes, look, Seen::Above(self))?), &lines, look),
+            Some((slopes, look)) => hachures::ways(slopes, look, Seen::Above(self))?,
             None => Vec::new(),
         };
+        let length = |way: &Way| {
+            way.points.windows(2).map(|pair| (pair[1].world - pair[0].world).truncate().length()).sum::<f64>()
+        };
+        let px = lines.iter().chain(&strokes).map(length).sum::<f64>() * self.px_per_metre;
+        check_length(px as usize, message!["use ", Setting::Scale.with_value(), " with a larger N"])?;
+        let lines = economised(&self.chains(&lines), &Economy { min_jump: 0.0, min_gap });
+        let strokes = hachures.map_or(Vec::new(), |look| toned(self.chains(&strokes), &lines, look));
         Ok([lines, strokes].concat())
     }
 

@@ -40,6 +40,8 @@ pub struct LandWanted {
     pub channel_area: ChannelArea,
     /// What tells the lines that the user gives from any others; empty where there are none.
     pub own: String,
+    /// What the layers of those are called, by their numbers.
+    pub own_layers: Vec<String>,
     /// When lines down its slopes end; none where there are none.
     pub slopes: Option<SlopeRules>,
 }

@@ -40,11 +40,11 @@ pub use coarse::{lowest_and_highest, on_samples, spacing};
 pub use crease::{Crease, LandWanted};
 pub use flat_water::FlatWater;
 pub use kept::FlowLines;
-pub use own::own_lines;
+pub use own::{own_lines, own_lines_if_any};
 pub use peaks::{Base, Peak, peaks};
 pub use shores::Shores;
 pub use slope::{Need, SlopeBlock, SlopeLine, SlopePoint, SlopeRules, Slopes};
-pub use whole::{ChannelArea, Relief};
+pub use whole::{ChannelArea, Relief, auto_cells};
 
 /// What a line of the land is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -55,8 +55,8 @@ pub enum LineKind {
     Drainage,
     /// Where water parts.
     Ridge,
-    /// A line that the user gives.
-    Own,
+    /// A line that the user gives, of the layer of this number.
+    Own(u16),
 }
 
 /// A line on the land. Drainage runs from its head down to where it joins another line or ends, a ridge from its outer end to where

@@ -16,15 +16,38 @@ use crate::dem::{Crs, Dem, Whereabouts};
 use crate::error::{Error, Result};
 use crate::geo::{OwnLayer, OwnLine, OwnLines};
 
-/// The lines of a file on a DEM, in the order of the file, at steps of at most a cell. Places of layers that name no system
-/// are taken for those of the DEM's file. `path`: what the file is called.
+/// The lines of a file on a DEM, in the order of the file, at steps of at most a cell; layers that have lines are numbered from
+/// `first` on. Places of layers that name no system are taken for those of the DEM's file. `path`: what the file is called.
 ///
 /// # Errors
 /// [`Error::Input`] where nothing leads from the file's system to the DEM's, and where no line has a part on the land; as
 /// [`Dem::validity`].
-pub fn own_lines(path: &Path, given: &OwnLines, dem: &Dem) -> Result<Vec<SurfaceLine>> {
+pub fn own_lines(path: &Path, given: &OwnLines, dem: &Dem, first: usize) -> Result<Vec<SurfaceLine>> {
+    match on_dem(path, given, dem, first)? {
+        (lines, _) if !lines.is_empty() => Ok(lines),
+        (_, true) => Err(Error::input(
+            path,
+            "its lines lie in voids of the DEM alone",
+            "give lines over its land, or fill its voids",
+        )),
+        (_, false) => Err(outside(path, given, dem)),
+    }
+}
+
+/// The same for who draws without where no line has a part on the land.
+///
+/// # Errors
+/// As [`own_lines`], but for that.
+pub fn own_lines_if_any(path: &Path, given: &OwnLines, dem: &Dem, first: usize) -> Result<Vec<SurfaceLine>> {
+    on_dem(path, given, dem, first).map(|(lines, _)| lines)
+}
+
+/// The lines, and whether the DEM has a place for any, be it a void.
+fn on_dem(path: &Path, given: &OwnLines, dem: &Dem, first: usize) -> Result<(Vec<SurfaceLine>, bool)> {
     let (mut lines, mut reach_dem) = (Vec::new(), false);
-    for layer in &given.layers {
+    for (number, layer) in (first..).zip(given.drawn()) {
+        // What is beyond the last number goes with that.
+        let kind = LineKind::Own(u16::try_from(number).unwrap_or(u16::MAX));
         let crs = system(layer.crs.as_ref(), dem);
         Whereabouts::check_way(dem, path, crs, "lines")?;
         let parts = carry::to_grid(&layer.lines, crs, dem);
@@ -34,19 +57,11 @@ pub fn own_lines(path: &Path, given: &OwnLines, dem: &Dem) -> Result<Vec<Surface
             lines.extend(
                 joined(on_land.concat(), line)
                     .into_iter()
-                    .filter_map(|(part, closed)| surface_line(&part, closed, line.order, dem.cell())),
+                    .filter_map(|(part, closed)| surface_line(kind, &part, closed, line.order, dem.cell())),
             );
         }
     }
-    match (lines.is_empty(), reach_dem) {
-        (false, _) => Ok(lines),
-        (true, true) => Err(Error::input(
-            path,
-            "its lines lie in voids of the DEM alone",
-            "give lines over its land, or fill its voids",
-        )),
-        (true, false) => Err(outside(path, given, dem)),
-    }
+    Ok((lines, reach_dem))
 }
 
 /// The system of places of which a file says this.
@@ -74,14 +89,14 @@ fn joined(mut parts: Vec<Vec<DVec2>>, line: &OwnLine) -> Vec<(Vec<DVec2>, bool)>
 }
 
 /// A line through places of the grid; `None` where it has no length.
-fn surface_line(places: &[DVec2], closed: bool, order: u8, cell: DVec2) -> Option<SurfaceLine> {
+fn surface_line(kind: LineKind, places: &[DVec2], closed: bool, order: u8, cell: DVec2) -> Option<SurfaceLine> {
     let mut length = 0.0;
     let point = |i: usize| {
         length += i.checked_sub(1).map_or(0.0, |before| ((places[i] - places[before]) * cell).length());
         SurfacePoint { at: places[i], across: [f32::INFINITY; 3], length: length as f32, drop: f32::INFINITY }
     };
     let points: Vec<_> = (0..places.len()).map(point).collect();
-    (points.len() > 1).then_some(SurfaceLine { kind: LineKind::Own, order, points, closed, joins: None })
+    (points.len() > 1).then_some(SurfaceLine { kind, order, points, closed, joins: None })
 }
 
 /// The error for lines that are nowhere over the DEM.

@@ -15,9 +15,9 @@ pub const FIRST: u32 = 10;
 /// How many times the last the next is.
 const GROWTH: f64 = 1.67;
 /// |t| from which the means differ.
-const LIMIT: f64 = 2.0;
+pub const LIMIT: f64 = 2.0;
 /// Least streams of the first order and of higher ones.
-const ENOUGH: [usize; 2] = [20, 5];
+pub const ENOUGH: [usize; 2] = [20, 5];
 
 /// An area that was tried.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -26,11 +26,17 @@ const LEAST: usize = 5;
 /// How much land makes a channel.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum ChannelArea {
-    /// As the falls of the streams tell, between 25 and 100 cells.
+    /// As the falls of the streams tell, between 25 and 100 cells: [`auto_cells`].
     #[default]
     Auto,
     /// So many square metres.
     SquareMetres(f64),
+}
+
+/// Samples that make a channel where the falls of the streams tell this: at least 25, which are taken where they tell nothing, at
+/// most 100.
+pub fn auto_cells(found: Option<Trial>) -> u32 {
+    found.map_or(CELLS, |trial| trial.cells.clamp(CELLS, MOST_CELLS))
 }
 
 /// A DEM's heights, and where water goes on them.
@@ -91,7 +97,7 @@ impl Relief {
     /// Samples that make a channel.
     pub fn channel_cells(&self, area: ChannelArea) -> u32 {
         match area {
-            ChannelArea::Auto => found(&self.trials()).map_or(CELLS, |trial| trial.cells.clamp(CELLS, MOST_CELLS)),
+            ChannelArea::Auto => auto_cells(found(&self.trials())),
             ChannelArea::SquareMetres(area) => (area / self.grid.frame.area()).ceil().max(1.0) as u32,
         }
     }

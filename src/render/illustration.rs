@@ -44,7 +44,8 @@ impl Illustration {
     /// As [`ink::draw`].
     pub fn drawing(&self, page: &Page) -> Result<(Lines, Drawing)> {
         let tolerance = self.style.tolerance * self.sheet.placement(self.frame).px_per_mm;
-        let lines = page.lines(&self.economy, tolerance);
+        let own = self.land.own_layers.clone();
+        let lines = Lines { own, ..page.lines(&self.economy, tolerance) };
         let drawing = ink::draw(&lines, &self.sheet, &self.style, &self.split)?;
         Ok((lines, drawing))
     }

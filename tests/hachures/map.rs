@@ -48,8 +48,15 @@ impl Map {
         let [width, height] = self.overhead.size;
         let sheet = Sheet { size: DVec2::new(f64::from(width), f64::from(height)) / PX_PER_MM, margin: 0.0 };
         let recession = Recession::of([(1.0, 1.0)].into_iter());
-        let lines =
-            Lines { width, height, eye: DVec3::Z * 1e9, chains: self.strokes.clone(), hidden: Vec::new(), recession };
+        let lines = Lines {
+            width,
+            height,
+            eye: DVec3::Z * 1e9,
+            chains: self.strokes.clone(),
+            hidden: Vec::new(),
+            recession,
+            own: Vec::new(),
+        };
         ink::draw(&lines, &sheet, &self.style, &[]).expect("a drawing")
     }
 

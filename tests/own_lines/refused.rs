@@ -53,7 +53,7 @@ fn the_flag_is_repeatable_and_names_what_was_asked() {
 
 /// The line of an error about a file of lines.
 fn refused(path: &str, dem: &Dem) -> String {
-    let lines = own_lines(Path::new(path), false).and_then(|given| relief::own_lines(Path::new(path), &given, dem));
+    let lines = own_lines(Path::new(path), false).and_then(|given| relief::own_lines(Path::new(path), &given, dem, 0));
     let said = line(&lines.expect_err(path));
     assert!(!said.contains('\n'), "{said}");
     said
@@ -114,7 +114,7 @@ fn wrong_files_are_refused_in_one_line() {
             .contains("lies in WGS 84 (EPSG:4326), and the DEM in no named system, of which nobody knows")
     );
     let all: Vec<[usize; 2]> = (0..21 * 21).map(|i| [i % 21, i / 21]).filter(|place| place[1] > 5).collect();
-    let in_void = relief::own_lines(Path::new("a"), &through(&[(&[[5.0, 9.0], [9.0, 9.0]], false)]), &grid(&all));
+    let in_void = relief::own_lines(Path::new("a"), &through(&[(&[[5.0, 9.0], [9.0, 9.0]], false)]), &grid(&all), 0);
     assert_eq!(
         line(&in_void.expect_err("no land")),
         "a: its lines lie in voids of the DEM alone; give lines over its land, or fill its voids"

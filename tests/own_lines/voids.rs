@@ -29,7 +29,7 @@ pub fn through(lines: &[(&[[f64; 2]], bool)]) -> OwnLines {
 
 fn on_grid(lines: &[(&[[f64; 2]], bool)], voids: &[[usize; 2]]) -> Vec<SurfaceLine> {
     let dem = grid(voids);
-    let lines = relief::own_lines(Path::new("a"), &through(lines), &dem).unwrap_or_else(|e| panic!("{}", line(&e)));
+    let lines = relief::own_lines(Path::new("a"), &through(lines), &dem, 0).unwrap_or_else(|e| panic!("{}", line(&e)));
     lines.iter().for_each(|line| check(line, &dem));
     lines
 }

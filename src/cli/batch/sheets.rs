@@ -178,7 +178,8 @@ impl Grid {
         };
         let crop = bounds(self.halo, &in_file).ok_or_else(nowhere)?;
         let area = bounds(0.0, &in_world).ok_or_else(nowhere)?;
-        let draw = entry.draw.of_sheet(crop, area, |path| {
+        let called = format!("{}, sheet {name}", entry.called);
+        let draw = entry.draw.of_sheet(&called, crop, area, |path| {
             let text = path.to_string_lossy();
             match text.contains(MARK) {
                 true => Ok(PathBuf::from(text.replace(MARK, &name))),
@@ -188,7 +189,7 @@ impl Grid {
                 }
             }
         })?;
-        Ok(Entry { called: format!("{}, sheet {name}", entry.called), draw })
+        Ok(Entry { called, draw })
     }
 
     /// A sheet is called after its corner: in kilometres where these are whole, else in metres.

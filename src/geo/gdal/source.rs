@@ -268,7 +268,7 @@ pub(super) fn check_file(path: &Path, file: &Path) -> Result<()> {
         return Err(Error::input(path, "is a directory", "name the file in it"));
     }
     if !found.is_file() {
-        return Err(Error::input(path, "is not a regular file", "save the raster to a file and name that"));
+        return Err(Error::input(path, "is not a regular file", "save it to a file and name that"));
     }
     if found.len() == 0 {
         return Err(Error::input(path, "is empty (0 bytes)", "copy or download it again"));

@@ -71,7 +71,7 @@ struct Palette {
 impl Palette {
     fn of(Inks(inks): &Inks) -> Self {
         let paper = inks.first().map_or([255; 3], |paper| paper.0);
-        let pens: Vec<[u8; 3]> = inks.iter().skip(1).map(|ink| ink.0).collect();
+        let pens: Vec<[u8; 3]> = inks.iter().skip(1).take(COLOURS - 1).map(|ink| ink.0).collect();
         let steps = (COLOURS - 1) / pens.len().max(1);
         let mix = |pen: [u8; 3], step: usize| {
             let share = (step + 1) as f64 / steps as f64;
