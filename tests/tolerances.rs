@@ -88,11 +88,33 @@ pub const FADE_STEP: f32 = 0.02;
 /// Example: 30 000 px of line, of which 300 px fade by a tenth: .1 %.
 pub const LAND_POPS: [(f64, f64); 2] = [(1.0, 0.005), (10.0, 0.02)];
 
+/// By how much the ink of hachures on a map may differ from what slopes of a class want, as a share of the paper: up to 40 degrees,
+/// and above, where strokes must touch.
+///
+/// Example: slopes of 20 to 25 degrees want half of the paper to be ink, and .47 is.
+pub const HACHURE_INK: f64 = 0.04;
+pub const HACHURE_INK_DARK: f64 = 0.08;
+
+/// The same on real land, where slopes are not one from a stroke's top to its foot.
+///
+/// Example: slopes of 5 to 10 degrees want .17 of the paper to be ink, and .10 is.
+pub const HACHURE_INK_LAND: f64 = 0.1;
+
+/// Distances from a stroke to the nearest other one, in spacings that its tone wants, and the least share that keeps them.
+///
+/// Example: where strokes should stand 7 px apart, from 4.2 to 11.2 px.
+pub const HACHURES_APART: [f64; 2] = [0.6, 1.6];
+pub const HACHURES_APART_SHARE: f64 = 0.95;
+
 /// Steps of a flight, m, and the share of length of strokes broader than a tenth of a millimetre that may come or go in one but
 /// for hiding.
 ///
 /// Example: of 20 000 px of strokes 100 px are gone: .5 %.
 pub const HACHURE_POPS: [(f64, f64); 2] = [(1.0, 0.005), (10.0, 0.02)];
+/// Of all that is seen, the most that may be gone and was of full width.
+///
+/// Example: of 1 000 000 px of strokes 100 px, where a line begins that was not looked for.
+pub const HACHURE_POPS_BROAD: f64 = 1e-4;
 
 /// Share of ink of one level that may lie farther than [`REACH_PX`] from any ink of the next finer level.
 ///
@@ -635,8 +657,8 @@ pub const DOWNHILL_WAVES: (f64, f64) = (2.0, 0.9);
 
 /// How far points of slope lines may lie from the surface, cells: between vertices of level 64 it is taken to be flat.
 ///
-/// Example: in cells of 30 m on a slope of 60 degrees, 9 cm.
-pub const ON_SURFACE: f64 = 0.003;
+/// Example: in cells of 30 m where two patches meet on a slope of 65 degrees, 30 cm.
+pub const ON_SURFACE: f64 = 0.01;
 
 /// By how much places with room for a spacing may lie nearer to each other, as a share of it: lines bend between the middles of
 /// pieces, and room is known at points alone.
@@ -651,8 +673,8 @@ pub const SPACED_SHARE: f64 = 0.95;
 
 /// Most places of an even slope that are farther than a spacing and a quarter from every slope line, as a share.
 ///
-/// Example: 6 of 4 000, beside ends of lines.
-pub const HOLES: f64 = 0.0015;
+/// Example: 12 of 4 000, beside ends of lines.
+pub const HOLES: f64 = 0.003;
 
 /// By how much the room of a point may be from that by its definition, as a share of it, and the least share of points that are no
 /// farther off: where a line comes to be drawn that was not, room leaps.

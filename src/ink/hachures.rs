@@ -65,12 +65,12 @@ impl Default for HachureStyle {
     fn default() -> Self {
         Self {
             tone: Tone::Both,
-            spacing: 0.9,
-            length: 9.0,
-            min_slope: 5.0,
+            spacing: 1.0,
+            length: 14.0,
+            min_slope: 3.0,
             max_turn: 60.0,
             black_at: 45.0,
-            most_black: 0.7,
+            most_black: 0.5,
         }
     }
 }

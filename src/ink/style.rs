@@ -216,7 +216,7 @@ impl Default for Pens {
             drainage: pen(0.18),
             ridge: pen(0.15),
             own: pen(0.24),
-            hachure: pen(0.3),
+            hachure: pen(0.38),
             hidden: pen(0.15),
             lines: BTreeMap::new(),
         }

@@ -12,6 +12,7 @@ use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 use super::along::fade;
+use super::cover::Cover;
 use super::way::{Way, WayPoint};
 use super::{Line, Overhead};
 use crate::error::Result;
@@ -25,10 +26,12 @@ const ROOM: [f64; 2] = [0.75, 0.95];
 const AROUND: f64 = 1.5;
 /// The share of that up to which it is left out, and from which it is whole.
 const LASTS: [f64; 2] = [0.4, 0.9];
+/// So far beside the page no line is looked for, px.
+const BESIDE: f64 = 64.0;
 /// A cut between two pieces of a line, spacings.
 const CUT: f64 = 0.8;
 /// The share of it that is blank; to both sides strokes run out.
-const BLANK: f64 = 0.5;
+const BLANK: f64 = 0.3;
 /// Lengths of a piece on the page, in lengths of a stroke, between which it is cut in two.
 const LONG: [f64; 2] = [1.0, 1.6];
 /// Most times that a piece is cut in two.
@@ -37,8 +40,8 @@ const MOST_CUTS: u32 = 12;
 /// What sees the lines.
 #[derive(Debug, Clone, Copy)]
 pub enum Seen<'a> {
-    /// An eye, and the azimuth to which it looks, degrees.
-    By(&'a Perspective, f64),
+    /// An eye, the azimuth to which it looks, degrees, and what its page is known to hide.
+    By(&'a Perspective, f64, Option<&'a Cover>),
     /// A frame over the land.
     Above(&'a Overhead),
 }
@@ -48,7 +51,7 @@ pub enum Seen<'a> {
 /// # Errors
 /// As [`Slopes::blocks`].
 pub fn ways(slopes: &Slopes, look: &Hachures, seen: Seen) -> Result<Vec<Way>> {
-    let azimuth = if let Seen::By(_, azimuth) = seen { azimuth } else { 0.0 };
+    let azimuth = if let Seen::By(_, azimuth, _) = seen { azimuth } else { 0.0 };
     let page = Page { seen, look, shade: look.shade(azimuth, slopes.exaggeration()), slopes };
     let blocks = slopes.blocks(&page)?;
     Ok(blocks.par_iter().flat_map_iter(|block| block.lines.iter().flat_map(|line| page.ways(line))).collect())
@@ -58,7 +61,7 @@ impl Seen<'_> {
     /// Most pixels that a metre takes in a box of the world; 0 beside the page.
     fn most_px_per_metre(self, [low, high]: [DVec3; 2]) -> f64 {
         match self {
-            Self::By(perspective, _) => perspective.most_px_per_metre([low, high]),
+            Self::By(perspective, ..) => perspective.most_px_per_metre([low, high]),
             Self::Above(overhead) => {
                 let [west, south, east, north] = overhead.area;
                 let is_beside = low.x > east || high.x < west || low.y > north || high.y < south;
@@ -70,17 +73,25 @@ impl Seen<'_> {
     /// Where a place of the world stands, px; `None` behind the eye.
     fn place(self, world: DVec3) -> Option<DVec2> {
         match self {
-            Self::By(perspective, _) => {
+            Self::By(perspective, ..) => {
                 (perspective.distance(world) > perspective.near()).then(|| perspective.project(world).0)
             }
             Self::Above(overhead) => Some(overhead.place(world.truncate())),
         }
     }
 
+    /// Whether the page is known not to show a place of the world.
+    fn hides(self, world: DVec3) -> bool {
+        let Self::By(perspective, _, Some(cover)) = self else { return false };
+        let (place, depth) = perspective.project(world);
+        let is_beside = place.cmplt(DVec2::splat(-BESIDE)).any() || place.cmpgt(perspective.size() + BESIDE).any();
+        is_beside || cover.hides(place, depth)
+    }
+
     /// How a place before the eye moves on the page where it moves so in the world, px.
     fn moves(self, world: DVec3, by: DVec3) -> DVec2 {
         match self {
-            Self::By(perspective, _) => perspective.moves(world, by),
+            Self::By(perspective, ..) => perspective.moves(world, by),
             Self::Above(overhead) => by.truncate() * DVec2::new(1.0, -1.0) * overhead.px_per_metre,
         }
     }
@@ -88,7 +99,7 @@ impl Seen<'_> {
     /// Whether land of this gradient turns away.
     fn is_away(self, world: DVec3, gradient: DVec2) -> bool {
         match self {
-            Self::By(perspective, _) => (-gradient).extend(1.0).dot(perspective.eye() - world) <= 0.0,
+            Self::By(perspective, ..) => (-gradient).extend(1.0).dot(perspective.eye() - world) <= 0.0,
             Self::Above(_) => false,
         }
     }
@@ -158,16 +169,17 @@ impl Page<'_> {
         for i in 1..points.len() {
             points[i].arc = points[i - 1].arc + points[i].place.distance(points[i - 1].place);
         }
-        lasting(&mut points);
+        lasting(&mut points, AROUND * self.look.spacing);
         let mut cuts = Vec::new();
         self.halve(id, 1, [0.0, metres], &points, &mut cuts);
         cut(&mut points, &cuts);
-        let is_shown = |point: &Point| point.of_way.weight > 0.0;
-        let pieces = points.chunk_by(|a, b| is_shown(a) || is_shown(b));
-        let pieces = pieces.filter(|piece| piece.len() > 1 && piece.iter().any(is_shown));
-        let way = |piece: &[Point]| Way {
+        let is_shown = |point: &Point| point.of_way.weight > 0.0 && !self.seen.hides(point.of_way.world);
+        let points: Vec<(WayPoint, bool)> = points.iter().map(|point| (point.of_way, is_shown(point))).collect();
+        let pieces = points.chunk_by(|(_, a), (_, b)| *a || *b);
+        let pieces = pieces.filter(|piece| piece.len() > 1 && piece.iter().any(|(_, is_shown)| *is_shown));
+        let way = |piece: &[(WayPoint, bool)]| Way {
             line: Line::Hachure,
-            points: piece.iter().map(|point| point.of_way).collect(),
+            points: piece.iter().map(|(point, _)| *point).collect(),
             closed: false,
         };
         pieces.map(way).collect()
@@ -224,8 +236,10 @@ impl Need for Page<'_> {
 
     fn at(&self, place: DVec3, gradient: DVec2) -> f64 {
         match self.seen.place(place) {
-            Some(_) => ROOM[0] * self.metres_apart(place, gradient, self.shade.black(gradient)),
-            None => f64::INFINITY,
+            Some(_) if !self.seen.hides(place) => {
+                ROOM[0] * self.metres_apart(place, gradient, self.shade.black(gradient))
+            }
+            _ => f64::INFINITY,
         }
     }
 }
@@ -238,25 +252,24 @@ fn share_of(id: u64, number: u64) -> f64 {
     (xxhash_rust::xxh3::xxh3_64(&bytes) >> 11) as f64 / (1_u64 << 53) as f64
 }
 
-/// Fades what is but a short piece.
-fn lasting(points: &mut [Point]) {
+/// Fades what is but a short piece, by how much of the line there is within a reach, px: the more is shown the more stays.
+fn lasting(points: &mut [Point], reach: f64) {
     let n = points.len();
-    let step = |i: usize| if i + 1 < n { points[i + 1].arc - points[i].arc } else { 0.0 };
+    let step = |i: usize| points[i + 1].arc - points[i].arc;
     let weight = |i: usize| f64::from(points[i].of_way.weight);
-    let of_step = |i: usize| if i + 1 < n { f64::midpoint(weight(i), weight(i + 1)) * step(i) } else { 0.0 };
     // What there is of the line to both sides, the less the farther it is, px.
     let mut around = vec![0.0; n];
     for backward in [false, true] {
         let mut sum = 0.0;
         for k in 1..n {
             let (i, between) = if backward { (n - 1 - k, n - 1 - k) } else { (k, k - 1) };
-            let reach = AROUND * points[i].apart;
-            sum = sum * (-step(between) / reach).exp() + of_step(between).min(reach);
-            around[i] += sum.min(reach);
+            let there = f64::midpoint(weight(between), weight(between + 1)) * step(between).min(reach);
+            sum = (sum * (-step(between) / reach).exp() + there).min(reach);
+            around[i] += sum;
         }
     }
     for (point, around) in points.iter_mut().zip(around) {
-        point.of_way.weight *= fade(LASTS, around / (AROUND * point.apart)) as f32;
+        point.of_way.weight *= fade(LASTS, around / reach) as f32;
     }
 }
 

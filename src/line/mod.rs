@@ -10,6 +10,7 @@ mod along;
 mod cells;
 pub mod chain;
 pub mod clearance;
+pub mod cover;
 mod crossing;
 pub mod crowd;
 pub mod curve;

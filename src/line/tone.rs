@@ -1,12 +1,14 @@
 //! How broad hachures are, once it is known what of them the eye sees: as broad as makes their tone.
 //!
 //! Of the paper between a stroke and those beside it half belongs to it, and the share of black of that is its width: by the gap
-//! that is there, not by that which was wanted. A stroke ends half a spacing short of silhouettes and lines of the land that lie
+//! that is there, not by that which was wanted, and by how much of the strokes about it runs out or is cut. A stroke ends half a spacing short of silhouettes and lines of the land that lie
 //! no farther than it does, and is a little finer at its top, and runs out at its foot. All measures are continuous in the places
 //! of strokes: those that come or go take their share of the paper as they get their width.
 //!
 //! Source: Lehmann (1799) for widths by gaps. Cost: a look at what lies within two spacings of each piece of stroke. Does not
 //! handle: strokes that cross.
+
+use std::f32::consts::PI;
 
 use glam::Vec2;
 use rayon::prelude::*;
@@ -22,6 +24,10 @@ const LEAST_STEP: f64 = 1.0;
 /// Farthest neighbour, and the paper to one side of a stroke without one, spacings.
 const REACH: f64 = 2.0;
 const ALONE: f64 = 1.3;
+/// Most paper that belongs to a stroke, gaps: at the rim of what is hatched there is no more ink for the bare land beside it.
+const MOST_PAPER: f64 = 1.5;
+/// A stroke finds more ink about it than there is, for it is there itself: so much more, on cones.
+const OWN: f64 = 1.07;
 /// Cosine of the angle to a stroke from which it runs beside: 40 degrees.
 const BESIDE: f32 = 0.77;
 /// Strokes whose ln depth differs by more lie on other land.
@@ -31,7 +37,7 @@ const SHORT_OF: [f64; 2] = [0.3, 0.7];
 /// A line this much farther than a stroke, in ln depth, does not stop it.
 const IN_FRONT: f32 = 0.02;
 /// Lengths over which strokes broaden at their tops and run out at their feet, spacings; of short ones at most half.
-const TAPER: [f64; 2] = [0.5, 2.0];
+const TAPER: [f64; 2] = [0.4, 1.4];
 
 /// A place on the page where a stroke or a line passes.
 #[derive(Debug, Clone, Copy)]
@@ -49,11 +55,12 @@ struct Sample {
 /// The strokes of hachures with their widths as shares of the broadest stroke, beside the lines of a page.
 pub fn toned(strokes: Vec<Chain>, lines: &[Chain], look: &Hachures) -> Vec<Chain> {
     let longest = (STEP * look.least_apart()).max(LEAST_STEP);
-    let strokes: Vec<Chain> = strokes.par_iter().map(|chain| stepped(chain, longest)).collect();
-    let others = Passing::new(&strokes, REACH * look.spacing);
     let lines: Vec<Chain> = lines.par_iter().map(|chain| stepped(chain, longest)).collect();
     let lines = Passing::new(&lines, SHORT_OF[1] * look.spacing);
-    let toned = |(chain, stroke): (usize, &Chain)| toned_stroke(chain as u32, stroke, &others, &lines, look);
+    let shaped = |stroke: &Chain| shaped(stepped(stroke, longest), &lines, look);
+    let strokes: Vec<Chain> = strokes.par_iter().map(shaped).collect();
+    let others = Passing::new(&strokes, REACH * look.spacing);
+    let toned = |(number, stroke): (usize, &Chain)| widened(number as u32, stroke, &others, look);
     strokes.par_iter().enumerate().map(toned).collect()
 }
 
@@ -93,22 +100,34 @@ fn samples(number: u32, chain: &Chain) -> Vec<Sample> {
     chain.points.iter().enumerate().map(sample).collect()
 }
 
-fn toned_stroke(number: u32, stroke: &Chain, others: &Passing, lines: &Passing, look: &Hachures) -> Chain {
-    let along = Along::new(stroke);
-    let own = samples(number, stroke);
+/// A stroke as strong as it is shown, short of lines and run out at its ends.
+fn shaped(stroke: Chain, lines: &Passing, look: &Hachures) -> Chain {
+    let along = Along::new(&stroke);
     let apart: Vec<f64> = stroke.points.iter().map(|point| look.apart(point.black.into())).collect();
-    let gaps: Vec<[f64; 1]> = own.iter().zip(&apart).map(|(sample, apart)| [gap(sample, others, *apart)]).collect();
     let mean = apart.iter().sum::<f64>() / apart.len().max(1) as f64;
-    let gaps = along.averaged(&gaps, mean);
     let taper = TAPER.map(|spacings| (spacings * mean).min(along.length / 2.0).max(f64::MIN_POSITIVE));
+    let own = samples(0, &stroke);
     let point = |(i, point): (usize, &ChainPoint)| {
         let [top, foot] = [along.arcs[i] / taper[0], (along.length - along.arcs[i]) / taper[1]];
-        let ends = runs_out(top) * runs_out(foot);
-        let width = f64::from(point.black) * gaps[i][0] / look.broadest;
-        let weight = f64::from(point.weight) * room(&own[i], lines, apart[i]) * width * ends;
-        ChainPoint { weight: weight.min(1.0) as f32, ..*point }
+        let shape = runs_out(top) * runs_out(foot) * room(&own[i], lines, apart[i]);
+        ChainPoint { weight: point.weight * shape as f32, ..*point }
     };
-    Chain { points: stroke.points.iter().enumerate().map(point).collect(), ..*stroke }
+    Chain { points: stroke.points.iter().enumerate().map(point).collect(), ..stroke }
+}
+
+/// The stroke as broad as makes its tone among the others.
+fn widened(number: u32, stroke: &Chain, others: &Passing, look: &Hachures) -> Chain {
+    let along = Along::new(stroke);
+    let own = samples(number, stroke);
+    let paper =
+        |(sample, point): (&Sample, &ChainPoint)| [paper(sample, others, look.apart(point.black.into()), look.spacing)];
+    let papers: Vec<[f64; 1]> = own.iter().zip(&stroke.points).map(paper).collect();
+    let papers = along.averaged(&papers, look.spacing);
+    let point = |(point, [paper]): (&ChainPoint, &[f64; 1])| {
+        let width = f64::from(point.weight) * f64::from(point.black) * paper / look.broadest;
+        ChainPoint { weight: width.min(1.0) as f32, ..*point }
+    };
+    Chain { points: stroke.points.iter().zip(&papers).map(point).collect(), ..*stroke }
 }
 
 /// Width at a share of a taper.
@@ -117,23 +136,30 @@ fn runs_out(t: f64) -> f64 {
     t * (2.0 - t)
 }
 
-/// The paper that belongs to a stroke, across, px: half of what lies between it and its neighbours.
-fn gap(sample: &Sample, others: &Passing, apart: f64) -> f64 {
-    let alone = (ALONE * apart) as f32;
-    let mut sides = [alone; 2];
+/// The paper that belongs to a stroke, across, px: half of what lies between it and its neighbours, and a share of what lies before
+/// the ends of strokes about it, for these run out.
+fn paper(sample: &Sample, others: &Passing, apart: f64, spacing: f64) -> f64 {
+    let (alone, reach) = ((ALONE * apart) as f32, (REACH * spacing) as f32);
+    let (mut sides, mut density) = ([alone; 2], 0.0);
     for other in others.about(sample.place) {
+        if (sample.log_depth - other.log_depth).abs() > OTHER_LAND {
+            continue;
+        }
         let to = other.place - sample.place;
-        let across = sample.along.perp_dot(to);
+        // Length of full strokes on a square px, the nearer the more.
+        let near = (1.0 - to.length_squared() / (reach * reach)).max(0.0);
+        density += other.weight * 2.0 * other.half * near * near * 3.0 / (PI * reach * reach);
         let is_beside = other.chain != sample.chain
             && sample.along.dot(to).abs() <= other.half + sample.half
-            && sample.along.dot(other.along).abs() >= BESIDE
-            && (sample.log_depth - other.log_depth).abs() <= OTHER_LAND;
+            && sample.along.dot(other.along).abs() >= BESIDE;
         if is_beside {
+            let across = sample.along.perp_dot(to);
             let side = &mut sides[usize::from(across > 0.0)];
             *side = side.min(alone + (across.abs() - alone).min(0.0) * other.weight);
         }
     }
-    f64::from(sides[0] + sides[1]) / 2.0
+    let gap = f64::midpoint(sides[0].into(), sides[1].into());
+    (OWN / f64::from(density.max(f32::MIN_POSITIVE))).clamp(gap, MOST_PAPER * gap)
 }
 
 /// How far a stroke is clear of lines in front of it, 0 to 1.

@@ -8,6 +8,9 @@ use glam::{DVec2, DVec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+/// The share of the broadest stroke that makes the tone between strokes without ends: what is left makes up for these.
+const FULL: f64 = 0.7;
+
 /// What the darkness of hachures says.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
@@ -109,7 +112,7 @@ impl Hachures {
 
     /// How far apart strokes of a tone stand, px.
     pub fn apart(&self, black: f64) -> f64 {
-        self.spacing.min(self.broadest / black.max(f64::MIN_POSITIVE))
+        self.spacing.min(FULL * self.broadest / black.max(f64::MIN_POSITIVE))
     }
 
     /// The least of that, px.

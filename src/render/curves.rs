@@ -5,9 +5,10 @@ use crate::error::Result;
 use crate::gpu::clock::Timer;
 use crate::gpu::uniforms::Segment;
 use crate::gpu::work::Work;
+use crate::line::cover::Cover;
 use crate::line::detail::From;
 use crate::line::hachures::{self, Seen};
-use crate::line::{Chain, Curve, Laid, link, visible};
+use crate::line::{Chain, Curve, InkRaster, Laid, link, visible};
 use crate::plan::{Frame, LandLines, Piece};
 
 impl Renderer {
@@ -32,8 +33,9 @@ impl Renderer {
         Ok(visible::chains(curves, size))
     }
 
-    /// Lays lines on the land over a frame that has room for them: those that its page shows.
-    pub(super) fn lay(&mut self, frame: &Frame) -> Result<Laid> {
+    /// Lays lines on the land over a frame that has room for them: those that its page shows, and not what its pixels, where they
+    /// are known, are known to hide.
+    pub(super) fn lay(&mut self, frame: &Frame, pixels: Option<&InkRaster>) -> Result<Laid> {
         let Some(land) = self.land.clone().filter(|_| frame.plan.has_curves() && frame.plan.land == LandLines::On)
         else {
             return Ok(Laid::default());
@@ -41,7 +43,8 @@ impl Renderer {
         let perspective = self.perspective(frame);
         let mut ways = land.ways(From::Eye(perspective.eye(), perspective.focal()));
         if let (Some(slopes), Some(look)) = (land.slopes(), &frame.plan.hachures) {
-            ways.extend(hachures::ways(slopes, look, Seen::By(&perspective, frame.camera.azimuth))?);
+            let cover = pixels.map(Cover::new);
+            ways.extend(hachures::ways(slopes, look, Seen::By(&perspective, frame.camera.azimuth, cover.as_ref()))?);
         }
         let laid = Laid::new(&ways, &perspective)?;
         self.curves.lay(&self.gpu, &laid.places)?;

@@ -132,7 +132,9 @@ impl Renderer {
         let (mut list, mut segments, mut covered, mut longest_walk) = (Vec::new(), Vec::new(), 0, 0);
         let (count, yields) = (frame.pieces.iter().len() as f64, frame.plan.method.entry().yields);
         self.upload(&frame)?;
-        let laid = self.lay(&frame)?;
+        // Hachures are laid when pixels tell what they hide, if one piece tells it all.
+        let waits = frame.plan.hachures.is_some() && frame.pieces.iter().len() == 1;
+        let mut laid = if waits { None } else { Some(self.lay(&frame, None)?) };
         for (done, piece) in (1..).zip(frame.pieces.iter()) {
             self.passes(&frame, piece, None)?;
             let drawn = self.read_piece(&frame, piece)?;
@@ -141,12 +143,16 @@ impl Renderer {
             }
             covered += marks::covered(&drawn.raster, piece);
             longest_walk = longest_walk.max(drawn.longest_walk);
+            if laid.is_none() {
+                laid = Some(self.lay(&frame, Some(&drawn.raster))?);
+            }
             if frame.plan.has_curves() {
                 segments.append(&mut self.segments(&frame, piece)?);
             }
             progress(f64::from(done) / count);
         }
         let perspective = self.perspective(&frame);
+        let laid = laid.unwrap_or_default();
         Ok(Listed { marks: list, segments, laid, covered, longest_walk, frame, perspective })
     }
 

@@ -29,7 +29,15 @@ impl Renderer {
     pub fn timed_frame(&mut self, plan: &Plan, camera: &Camera) -> Result<FrameTime> {
         let frame = self.plan(plan, camera)?;
         self.upload(&frame)?;
-        self.lay(&frame)?;
+        // Which hachures there are is told by the pixels.
+        let pixels = match (frame.plan.hachures.is_some(), frame.pieces.iter().next()) {
+            (true, Some(piece)) if frame.pieces.iter().len() == 1 => {
+                self.passes(&frame, piece, None)?;
+                Some(self.read_piece(&frame, piece)?.raster)
+            }
+            _ => None,
+        };
+        self.lay(&frame, pixels.as_ref())?;
         let time = frame.pieces.iter().try_fold(FrameTime::default(), |time, piece| {
             let mut timer = Timer::new(&self.gpu);
             self.passes(&frame, piece, Some(&mut timer))?;

@@ -5,9 +5,9 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3, Vec3};
 use hachure::dem::Dem;
 use hachure::ink::{self, Drawing, HachureStyle, Sheet, Style, write_png};
-use hachure::line::{Chain, Land, Line, Lines, Overhead, Recession};
+use hachure::line::{Chain, Land, Lines, Overhead, Recession};
 use hachure::plan::{Hachures, Tone};
-use hachure::relief::{ChannelArea, FlatWater, Relief, Slopes, SurfaceLine};
+use hachure::relief::{ChannelArea, FlatWater, Relief, Slopes};
 use hachure::surface::{LatticePoint, Surface};
 
 /// Pixels of pictures and of frames for each millimetre.
@@ -16,8 +16,7 @@ pub const PX_PER_MM: f64 = 8.0;
 /// A map of a DEM's hachures.
 pub struct Map {
     pub surface: Arc<Surface>,
-    /// Drainage and ridges.
-    pub creases: Vec<SurfaceLine>,
+    land: Land,
     pub overhead: Overhead,
     pub look: Hachures,
     pub style: Style,
@@ -41,7 +40,11 @@ impl Map {
         let overhead = Overhead { area, size, px_per_metre };
         let look = Hachures { most_black: 1.0, ..style.hachures(PX_PER_MM).expect("hachures") };
         let strokes = overhead.land(&land, 0.0, Some(&look)).expect("strokes");
-        Self { surface, creases, overhead, look, style, strokes }
+        Self { surface, land, overhead, look, style, strokes }
+    }
+
+    pub fn slopes(&self) -> &Slopes {
+        self.land.slopes().expect("slope lines")
     }
 
     pub fn drawing(&self) -> Drawing {
@@ -108,9 +111,4 @@ pub fn classes(map: &Map) -> Vec<[f64; 3]> {
     }
     let all = ink.len() as f64;
     sums.into_iter().map(|[count, wanted, ink]| [count / all, wanted / count, ink / count]).collect()
-}
-
-/// Metres of the lines of strokes on the page.
-pub fn strokes(map: &Map) -> impl Iterator<Item = &Chain> {
-    map.strokes.iter().filter(|chain| chain.line() == Line::Hachure)
 }

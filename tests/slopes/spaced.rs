@@ -149,7 +149,10 @@ fn room_is_what_its_definition_says() {
     let (mut lower, mut good, mut good_of_all, mut all) = (Vec::new(), 0.0, 0.0, 0.0);
     let mut pressed = Vec::new();
     for line in lines {
-        let most = 64.0 * scene.unit() * f64::exp2((1.0 - rank(line.id)[0] as f64) / 2.0);
+        let most = match rank(line.id)[0] {
+            0 => 128.0 * scene.unit(),
+            level => 32.0 * scene.unit() * f64::exp2((1.0 - level as f64) / 2.0),
+        };
         for point in line.points.iter().step_by(5) {
             let told = f64::from(point.room);
             let is_near = |room: f64| (room.min(most) - told).abs() <= ROOM * told;

@@ -19,7 +19,7 @@ use crate::surface::{Pyramid, Surface};
 const MOST_POINTS: usize = 6_000_000;
 
 /// Along the side of a block its land is looked at in about so many places.
-const LOOKS: f64 = 6.0;
+const LOOKS: f64 = 8.0;
 /// How far beyond its sides, spacings: where its lines mostly are.
 const BEYOND: f64 = 2.0;
 /// Between these, places may need as much less.
@@ -150,20 +150,17 @@ impl Slopes {
 
     /// Blocks whose lines may have the room that is needed. A block needs no less than the one around it two levels above.
     fn wanted(&self, pyramid: &Pyramid, need: &dyn Need) -> Vec<BlockAt> {
-        let needs = |at: &BlockAt| {
-            let in_box = need.in_box(self.bounds(pyramid, *at)?);
-            // The next but one level has less room.
-            let may_be = in_box <= self.blocks.most_room(at.level);
-            Some((*at, if may_be { in_box.max(SLACK * self.least_need(*at, need)) } else { in_box }))
-        };
+        let in_box = |at: &BlockAt| self.bounds(pyramid, *at).map(|bounds| (*at, need.in_box(bounds)));
         let has = |level: u32| move |(_, need): &(BlockAt, f64)| *need <= self.blocks.most_room(level);
         let mut open = [0, 1].map(|level| self.blocks.of(level).collect::<Vec<_>>());
         let of_level = |level: u32| {
             let here = &mut open[level as usize % 2];
-            let known: Vec<_> = here.par_iter().filter_map(needs).collect();
+            let known: Vec<_> = here.par_iter().filter_map(in_box).collect();
             let split = known.iter().copied().filter(has(level + 2));
             *here = split.flat_map(|(at, _)| at.quarters()).filter(|at| self.is_on_land(*at)).collect();
-            known.into_iter().filter(has(level)).map(|(at, _)| at).collect::<Vec<_>>()
+            let is_needed =
+                |(at, _): &(BlockAt, f64)| SLACK * self.least_need(*at, need) <= self.blocks.most_room(level);
+            known.into_par_iter().filter(has(level)).filter(is_needed).map(|(at, _)| at).collect::<Vec<_>>()
         };
         let mut wanted: Vec<BlockAt> = (0..LEVELS).flat_map(of_level).collect();
         wanted.sort_unstable();
