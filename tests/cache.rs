@@ -75,7 +75,8 @@ impl Place {
     /// Draws `two.tif` from its file with these flags too; the mask, and what was said on standard error.
     fn draw(&self, flags: &[&str]) -> (Vec<u8>, String) {
         let view = ["--eye", "502250,4194000,260", "--azimuth", "0", "--altitude", "-8", "--size", "160x100"];
-        let words = ["draw", "two.tif", "--memory", "64KiB", "-o", "out.png", "--mask", "mask.png"];
+        let words =
+            ["draw", "--hachures", "none", "two.tif", "--memory", "64KiB", "-o", "out.png", "--mask", "mask.png"];
         let output = self.run(&[&words[..], &view, flags].concat());
         assert!(output.status.success(), "{flags:?}: {}", stderr(&output));
         (fs::read(self.path("mask.png")).expect("a mask"), stderr(&output))

@@ -40,9 +40,16 @@ impl Place {
         self.command(arguments).output().expect("hachure runs")
     }
 
+    /// The program; drawings of which no word is said on hachures have none: these are the business of their own tests.
     pub fn command(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_hachure"));
-        command.current_dir(self.folder.path()).args(arguments);
+        command.current_dir(self.folder.path());
+        match arguments {
+            [draws @ ("draw" | "fly"), rest @ ..] if !arguments.contains(&"--hachures") => {
+                command.args([*draws, "--hachures", "none"]).args(rest)
+            }
+            all => command.args(all),
+        };
         command
     }
 

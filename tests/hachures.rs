@@ -3,6 +3,8 @@
 mod map;
 mod pops;
 
+use std::fs;
+
 use glam::DVec2;
 use hachure::dem::Dem;
 use hachure::geo::{ReadOptions, read};
@@ -13,9 +15,13 @@ use hachure::plan::{Hachures, Tone};
 use rstar::RTree;
 use rstar::primitives::{GeomWithData, Line};
 use rustc_hash::FxHashMap;
+use serde_json::Value;
 
+use crate::cli::{Place, refuses, stderr};
 use crate::common::shared_dems;
-use crate::tolerances::{HACHURE_INK, HACHURE_INK_DARK, HACHURE_INK_LAND, HACHURES_APART, HACHURES_APART_SHARE};
+use crate::tolerances::{
+    HACHURE_INK, HACHURE_INK_DARK, HACHURE_INK_LAND, HACHURES_APART, HACHURES_APART_SHARE, HACHURES_APART_SHARE_LAND,
+};
 
 use map::{Map, classes, lehmann};
 
@@ -137,7 +143,7 @@ fn apart(map: &Map) -> Vec<f64> {
     map.strokes.iter().enumerate().filter_map(nearest).collect()
 }
 
-fn are_apart(name: &str, map: &Map) {
+fn are_apart(name: &str, map: &Map, least: f64) {
     let mut apart = apart(map);
     apart.sort_by(f64::total_cmp);
     let [low, half, high] = [0.05, 0.5, 0.95].map(|share| apart[(share * apart.len() as f64) as usize]);
@@ -147,16 +153,14 @@ fn are_apart(name: &str, map: &Map) {
         "{name}: {} strokes, 5 % {low:.2} spacings apart, half {half:.2}, 95 % {high:.2}; {share:.3} within",
         apart.len()
     );
-    assert!(share >= HACHURES_APART_SHARE, "{name}: {share}");
+    assert!(share >= least, "{name}: {share}");
 }
 
 #[test]
 fn strokes_are_as_far_apart_as_wanted() {
-    are_apart("plane", &Map::new(land(|at| at.x * 0.4 + at.y * 0.1), 50_000.0, lehmann()));
-    are_apart(
-        "sample",
-        &Map::new(read("dem/golden-gate.tif", &ReadOptions::default()).expect("the sample"), 100_000.0, lehmann()),
-    );
+    are_apart("plane", &Map::new(land(|at| at.x * 0.4 + at.y * 0.1), 50_000.0, lehmann()), HACHURES_APART_SHARE);
+    let sample = read("dem/golden-gate.tif", &ReadOptions::default()).expect("the sample");
+    are_apart("sample", &Map::new(sample, 100_000.0, lehmann()), HACHURES_APART_SHARE_LAND);
 }
 
 #[test]
@@ -168,7 +172,7 @@ fn ink_is_as_the_slope_on_real_land() {
     let shared = [("west-temple", "west_temple_50m.tif", 50_000.0), ("yosemite", "yosemite_utm11n_30m.tif", 100_000.0)];
     if let Some(folder) = shared_dems() {
         maps.extend(shared.map(|(name, file, scale)| {
-            let dem = read(&folder.join(file), &ReadOptions::default()).expect("a DEM");
+            let dem = read(folder.join(file), &ReadOptions::default()).expect("a DEM");
             (name, Map::new(dem, scale, lehmann()))
         }));
     }
@@ -176,4 +180,30 @@ fn ink_is_as_the_slope_on_real_land() {
         let classes = classes(&map).into_iter().enumerate().skip(1).filter(|(_, found)| found[0] > 0.01);
         are_as_wanted(name, classes.map(|(class, found)| (class as f64 * 5.0 + 2.5, found)), HACHURE_INK_LAND);
     }
+}
+
+/// The layers of a drawing of the hill.
+fn layers(arguments: &[&str]) -> Vec<String> {
+    let place = Place::new();
+    let output = place.run(&[&["draw", "hill.asc", "-o", "a.svg", "--json", "a.json"], arguments].concat());
+    assert!(output.status.success(), "{}", stderr(&output));
+    let report: Value = serde_json::from_slice(&fs::read(place.path("a.json")).expect("a report")).expect("JSON");
+    let layers = report["layers"].as_array().expect("layers");
+    layers.iter().map(|layer| layer["name"].as_str().expect("a name").to_owned()).collect()
+}
+
+#[test]
+fn hachures_are_a_layer_of_views_and_plans() {
+    let has = |arguments: &[&str]| layers(arguments).iter().any(|name| name == "1 hachure");
+    for view in [&["--size", "160x120"][..], &["--plan", "--scale", "1:2000"]] {
+        for (tone, is_drawn) in [("lehmann", true), ("shadow", true), ("both", true), ("none", false)] {
+            assert_eq!(has(&[view, &["--hachures", tone]].concat()), is_drawn, "{view:?} {tone}");
+        }
+    }
+}
+
+#[test]
+fn hachures_want_contours() {
+    let traced = ["draw", "hill.asc", "-o", "a.png", "--method", "adjacency", "--hachures", "both"];
+    refuses(&Place::new(), &traced, 2, "--hachures: goes with contours only");
 }

@@ -45,7 +45,7 @@ fn lines_on_the_land_that_no_page_holds_are_refused() {
     let most = f64::from(1 << 24) / 200.0;
     assert_eq!(at(1.0).expect("a line").len(), 1);
     let refused = at(most * 1.01).expect_err("too long");
-    let words = "lines of the land are 16944988 px long on the page, 16777216 can be laid; use --scale 1:N with a larger N, or fewer --creases or --lines";
+    let words = "lines of the land are 16944988 px long on the page, 16777216 can be laid; use --scale 1:N with a larger N, or fewer --creases, --hachures or --lines";
     assert_eq!(hachure::cli::words::line(&refused), words);
 }
 

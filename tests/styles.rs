@@ -60,7 +60,7 @@ fn layers_of_own_lines_have_pens_by_their_names() {
     assert_eq!(pens.of_own("rivers"), Pen { colour: Colour([0x2b, 0x5c, 0x8a]), ..pens.own });
     assert_eq!((pens.of_own("rivers").width, pens.of_own("a: b").width), (0.4, 3.0));
     assert_eq!((pens.of_own("roads"), pens.of_own("own")), (pens.own, pens.own));
-    assert_eq!((pens.all().count(), style.broadest()), (9, 3.0));
+    assert_eq!((pens.all().count(), style.broadest()), (10, 3.0));
     assert!(pens.all().any(|pen| pen == pens.of_own("rivers")));
     assert_eq!(read(&toml::to_string(&style).expect("TOML")), style);
     assert!(!toml::to_string(&Style::default()).expect("TOML").contains("pens.lines"), "no empty table");

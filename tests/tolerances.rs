@@ -91,20 +91,22 @@ pub const LAND_POPS: [(f64, f64); 2] = [(1.0, 0.005), (10.0, 0.02)];
 /// By how much the ink of hachures on a map may differ from what slopes of a class want, as a share of the paper: up to 40 degrees,
 /// and above, where strokes must touch.
 ///
-/// Example: slopes of 20 to 25 degrees want half of the paper to be ink, and .47 is.
-pub const HACHURE_INK: f64 = 0.04;
-pub const HACHURE_INK_DARK: f64 = 0.08;
+/// Example: slopes of 20 to 25 degrees want half of the paper to be ink, and .42 is.
+pub const HACHURE_INK: f64 = 0.08;
+pub const HACHURE_INK_DARK: f64 = 0.12;
 
 /// The same on real land, where slopes are not one from a stroke's top to its foot.
 ///
-/// Example: slopes of 5 to 10 degrees want .17 of the paper to be ink, and .10 is.
-pub const HACHURE_INK_LAND: f64 = 0.1;
+/// Example: slopes of 25 to 30 degrees want .60 of the paper to be ink, and .32 is: lines end at every crest and channel.
+pub const HACHURE_INK_LAND: f64 = 0.32;
 
 /// Distances from a stroke to the nearest other one, in spacings that its tone wants, and the least share that keeps them.
 ///
 /// Example: where strokes should stand 7 px apart, from 4.2 to 11.2 px.
 pub const HACHURES_APART: [f64; 2] = [0.6, 1.6];
 pub const HACHURES_APART_SHARE: f64 = 0.95;
+/// The same on real land, where lines end at every crest and channel.
+pub const HACHURES_APART_SHARE_LAND: f64 = 0.65;
 
 /// Steps of a flight, m, and the share of length of strokes broader than a tenth of a millimetre that may come or go in one but
 /// for hiding.

@@ -23,7 +23,7 @@ use crate::view::Perspective;
 /// Shares of the wanted spacing up to which a line is left out, and from which it is whole.
 const ROOM: [f64; 2] = [0.75, 0.95];
 /// How far along a line, in spacings, is looked for how much of it is there.
-const AROUND: f64 = 1.5;
+const AROUND: f64 = 0.7;
 /// The share of that up to which it is left out, and from which it is whole.
 const LASTS: [f64; 2] = [0.4, 0.9];
 /// So far beside the page no line is looked for, px.

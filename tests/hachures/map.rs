@@ -80,7 +80,7 @@ impl Map {
         let cells = place / self.overhead.px_per_metre / self.surface.dem().cell();
         let at = |off: DVec2| {
             let at = ((cells + off) * 64.0).round();
-            (at.cmpge(DVec2::ZERO).all()).then(|| LatticePoint { x: at.x as u32, y: at.y as u32 })
+            at.cmpge(DVec2::ZERO).all().then_some(LatticePoint { x: at.x as u32, y: at.y as u32 })
         };
         let step = 1.0 / 64.0;
         let [a, b, c] =

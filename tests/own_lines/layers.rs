@@ -112,7 +112,7 @@ fn each_file_is_a_layer_with_the_pen_of_its_name() {
     assert!(output.status.success() && output.stderr.is_empty(), "{}", stderr(&output));
     assert_eq!(colours(&place, "p.svg")[..2], own);
     let list = format!(
-        "[[drawing]]\ndem = \"valley.asc\"\noutput = \"d.svg\"\nstyle = \"my.toml\"\nlines = [{}]\neye = [500900, 3999700, 230]\nazimuth = 0\naltitude = 2\nsize = \"480x320\"\n",
+        "[[drawing]]\ndem = \"valley.asc\"\noutput = \"d.svg\"\nstyle = \"my.toml\"\nhachures = \"none\"\nlines = [{}]\neye = [500900, 3999700, 230]\nazimuth = 0\naltitude = 2\nsize = \"480x320\"\n",
         "\"road.geojson\", \"river.geojson\""
     );
     fs::write(place.path("list.toml"), list).expect("a list");
