@@ -109,7 +109,7 @@ fn each_file_is_a_layer_with_the_pen_of_its_name() {
     assert!(["road 0.3 mm", "river 0.3 mm"].iter().all(|name| plotted.contains(&(*name).to_owned())), "{plotted:?}");
     let plan = ["draw", "valley.asc", "--plan", "--scale", "1:20000", "-o", "p.svg"];
     let output = place.run(&[&plan[..], &styled].concat());
-    assert!(output.status.success() && output.stderr.is_empty(), "{}", stderr(&output));
+    assert!(output.status.success() && stderr(&output).is_empty(), "{}", stderr(&output));
     assert_eq!(colours(&place, "p.svg")[..2], own);
     let list = format!(
         "[[drawing]]\ndem = \"valley.asc\"\noutput = \"d.svg\"\nstyle = \"my.toml\"\nhachures = \"none\"\nlines = [{}]\neye = [500900, 3999700, 230]\nazimuth = 0\naltitude = 2\nsize = \"480x320\"\n",
@@ -117,7 +117,7 @@ fn each_file_is_a_layer_with_the_pen_of_its_name() {
     );
     fs::write(place.path("list.toml"), list).expect("a list");
     let output = place.run(&["batch", "list.toml"]);
-    assert!(output.status.success() && output.stderr.is_empty(), "{}", stderr(&output));
+    assert!(output.status.success() && stderr(&output).is_empty(), "{}", stderr(&output));
     assert_eq!(colours(&place, "d.svg"), colours(&place, "a.svg"));
     let fly = ["fly", "valley.asc", "--orbit", "500900,4000800", "--radius", "900", "--height", "+300", "--count", "2"];
     let output = place.run(&[&fly[..], &["--size", VIEW[7], "-o", "%d.svg"], &styled].concat());
