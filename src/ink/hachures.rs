@@ -50,7 +50,7 @@ pub struct HachureStyle {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct LightStyle {
-    /// Degrees clockwise from north; else from 45 degrees left of where the eye looks, in a flight at its first frame, and from
+    /// Degrees clockwise from the y axis of the DEM's coordinates; else from 45 degrees left of where the eye looks, in a flight at its first frame, and from
     /// the north-west in plans.
     #[serde(deserialize_with = "azimuth", skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = AZIMUTH[0], max = AZIMUTH[1]))]

@@ -1,8 +1,9 @@
 //! How broad hachures are, once it is known what of them the eye sees: as broad as makes their tone.
 //!
 //! Of the paper between a stroke and those beside it half belongs to it, and the share of black of that is its width: by the gap
-//! that is there, not by that which was wanted, and by how much of the strokes about it runs out or is cut. A stroke ends half a spacing short of silhouettes and lines of the land that lie
-//! no farther than it does, and is a little finer at its top, and runs out at its foot. All measures are continuous in the places
+//! that is there, not by that which was wanted, and by how much of the strokes about it runs out or is cut. A stroke ends half a
+//! spacing short of silhouettes and lines of the land that lie no farther than it does, is a little finer at its top, and runs out
+//! at its foot. All measures are continuous in the places
 //! of strokes: those that come or go take their share of the paper as they get their width.
 //!
 //! Source: Lehmann (1799) for widths by gaps. Cost: a look at what lies within two spacings of each piece of stroke. Does not

@@ -113,7 +113,8 @@ impl Renderer {
             return Ok(Found { seen: self.list(frame, progress)?, all: None });
         }
         // Land behind the horizon is as fine as before it, which may make that finer too: what is seen is not to change.
-        let all = self.plan(plan, camera)?;
+        // Of what it finds hidden curves alone are kept, and hachures are none.
+        let all = self.plan(&Plan { hachures: None, ..*plan }, camera)?;
         let all = self.list(all, |share| progress(share / 2.0))?;
         let seen = self.plan(&Plan { curves: Curves::On, ..*plan }, camera)?;
         let seen = self.list(seen, |share| progress(0.5 + share / 2.0))?;
