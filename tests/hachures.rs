@@ -2,6 +2,7 @@
 
 mod map;
 mod pops;
+mod views;
 
 use std::fs;
 

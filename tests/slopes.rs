@@ -2,6 +2,7 @@
 
 mod costs;
 mod filed;
+mod kept;
 mod same;
 mod spaced;
 mod traced;
@@ -12,7 +13,7 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
 use hachure::geo::{ReadOptions, read};
-use hachure::relief::slope::{SlopeBlock, SlopeLine, SlopeRules, Slopes};
+use hachure::relief::slope::{Need, SlopeBlock, SlopeLine, SlopeRules, Slopes};
 use hachure::relief::{ChannelArea, FlatWater, Relief, SurfaceLine};
 use hachure::surface::Surface;
 
@@ -56,8 +57,13 @@ impl Scene {
 
     /// All blocks whose lines may have so much room, cells.
     fn blocks(&self, room: f64) -> Vec<Arc<SlopeBlock>> {
-        self.slopes().blocks(&|_| room * self.unit()).expect("blocks")
+        blocks(&self.slopes(), &|_| room * self.unit())
     }
+}
+
+/// The blocks that somebody needs.
+fn blocks(slopes: &Slopes, need: &dyn Need) -> Vec<Arc<SlopeBlock>> {
+    slopes.blocks(need).expect("blocks").into_iter().map(|needed| needed.block).collect()
 }
 
 /// All lines of blocks.

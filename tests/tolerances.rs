@@ -92,13 +92,13 @@ pub const LAND_POPS: [(f64, f64); 2] = [(1.0, 0.005), (10.0, 0.02)];
 /// and above, where strokes must touch.
 ///
 /// Example: slopes of 20 to 25 degrees want half of the paper to be ink, and .42 is.
-pub const HACHURE_INK: f64 = 0.08;
-pub const HACHURE_INK_DARK: f64 = 0.12;
+pub const HACHURE_INK: f64 = 0.045;
+pub const HACHURE_INK_DARK: f64 = 0.11;
 
 /// The same on real land, where slopes are not one from a stroke's top to its foot.
 ///
-/// Example: slopes of 25 to 30 degrees want .60 of the paper to be ink, and .32 is: lines end at every crest and channel.
-pub const HACHURE_INK_LAND: f64 = 0.32;
+/// Example: slopes of 45 to 50 degrees want all of the paper to be ink, and .78 is: lines end at every crest and channel.
+pub const HACHURE_INK_LAND: f64 = 0.24;
 
 /// Distances from a stroke to the nearest other one, in spacings that its tone wants, and the least share that keeps them.
 ///
@@ -106,7 +106,7 @@ pub const HACHURE_INK_LAND: f64 = 0.32;
 pub const HACHURES_APART: [f64; 2] = [0.6, 1.6];
 pub const HACHURES_APART_SHARE: f64 = 0.95;
 /// The same on real land, where lines end at every crest and channel.
-pub const HACHURES_APART_SHARE_LAND: f64 = 0.65;
+pub const HACHURES_APART_SHARE_LAND: f64 = 0.85;
 
 /// Steps of a flight, m, and the share of length of strokes broader than a tenth of a millimetre that may come or go in one but
 /// for hiding.
@@ -117,6 +117,21 @@ pub const HACHURE_POPS: [(f64, f64); 2] = [(1.0, 0.005), (10.0, 0.02)];
 ///
 /// Example: of 1 000 000 px of strokes 100 px, where a line begins that was not looked for.
 pub const HACHURE_POPS_BROAD: f64 = 1e-4;
+
+/// Of places of a view where land is dark and no other line is near, the least share with a hachure within a spacing and a quarter.
+///
+/// Example: 960 of 1 000 places; channels and crests that are not drawn, at which strokes end, are among them.
+pub const HACHURES_IN_VIEW: f64 = 0.95;
+
+/// Width of a pen, mm: within half of it lines of two sheets of a map join.
+///
+/// Example: a stream that leaves a sheet 12.00 mm from its corner enters the next at 12.14 mm.
+pub const PEN_MM: f64 = 0.3;
+
+/// Crossings of strokes with lines of nearer hills, for each pixel of stroke.
+///
+/// Example: none on a page with 20 000 px of strokes.
+pub const HACHURE_CROSSINGS: f64 = 0.0;
 
 /// Share of ink of one level that may lie farther than [`REACH_PX`] from any ink of the next finer level.
 ///
@@ -667,6 +682,11 @@ pub const ON_SURFACE: f64 = 0.01;
 ///
 /// Example: at 4 cells, places 3.8 cells apart.
 pub const SPACED_TOLERANCE: f64 = 0.05;
+/// Least share of places that keep the spacing: what lies ahead of an end and what beside it is a matter of the last piece, which
+/// may bend.
+///
+/// Example: of 10 000 places, 9 900.
+pub const KEPT_SHARE: f64 = 0.99;
 
 /// Least share of the middles of lines that have another at most two spacings away.
 ///
@@ -681,10 +701,10 @@ pub const HOLES: f64 = 0.003;
 /// By how much the room of a point may be from that by its definition, as a share of it, and the least share of points that are no
 /// farther off: where a line comes to be drawn that was not, room leaps.
 ///
-/// Example: of 8 000 points, 40 beside places where another line has just as much room as it is away.
+/// Example: of 8 000 points, 140 beside places where another line has just as much room as it is away.
 pub const ROOM: f64 = 0.02;
 /// See [`ROOM`].
-pub const ROOM_SHARE: f64 = 0.99;
+pub const ROOM_SHARE: f64 = 0.98;
 
 /// Longest time for all slope lines of a million samples down to a spacing of a cell, s: ten times what two idle cores take.
 ///

@@ -122,7 +122,9 @@ impl LandArguments {
         let shores = (draws_shores || ends_at_shores).then(|| Shores::of(dem, exaggeration)).transpose()?;
         let slopes = wanted.slopes.map(|rules| {
             let water = shores.as_ref().map(|shores| &shores.water);
-            Slopes::new(surface.clone(), exaggeration, rules, &found.concat(), water).map(Arc::new)
+            let stops = found.concat();
+            let slopes = Slopes::new(surface.clone(), exaggeration, rules, &stops, water)?;
+            slopes.kept_in(cache, dem, rules, &stops).map(Arc::new)
         });
         let slopes = slopes.transpose()?;
         let mut drawn: Vec<Vec<SurfaceLine>> = known

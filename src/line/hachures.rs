@@ -17,7 +17,7 @@ use super::way::{Way, WayPoint};
 use super::{Line, Overhead};
 use crate::error::Result;
 use crate::plan::{Hachures, Shade};
-use crate::relief::{Need, SlopeLine, SlopePoint, Slopes};
+use crate::relief::{Need, Needed, SlopeLine, SlopePoint, Slopes};
 use crate::view::Perspective;
 
 /// Shares of the wanted spacing up to which a line is left out, and from which it is whole.
@@ -26,10 +26,12 @@ const ROOM: [f64; 2] = [0.75, 0.95];
 const AROUND: f64 = 0.7;
 /// The share of that up to which it is left out, and from which it is whole.
 const LASTS: [f64; 2] = [0.4, 0.9];
-/// So far beside the page no line is looked for, px.
-const BESIDE: f64 = 64.0;
+/// So far beside the page lines are looked for, px: they tell those on it how broad they are, and how close.
+pub const BESIDE: f64 = 64.0;
 /// A cut between two pieces of a line, spacings.
 const CUT: f64 = 0.8;
+/// By how much of the share that is to be black it is shorter.
+const DARK: f64 = 0.95;
 /// The share of it that is blank; to both sides strokes run out.
 const BLANK: f64 = 0.3;
 /// Lengths of a piece on the page, in lengths of a stroke, between which it is cut in two.
@@ -54,7 +56,8 @@ pub fn ways(slopes: &Slopes, look: &Hachures, seen: Seen) -> Result<Vec<Way>> {
     let azimuth = if let Seen::By(_, azimuth, _) = seen { azimuth } else { 0.0 };
     let page = Page { seen, look, shade: look.shade(azimuth, slopes.exaggeration()), slopes };
     let blocks = slopes.blocks(&page)?;
-    Ok(blocks.par_iter().flat_map_iter(|block| block.lines.iter().flat_map(|line| page.ways(line))).collect())
+    let of_block = |needed: &Needed| needed.block.lines.iter().flat_map(|line| page.ways(line, needed.share)).collect();
+    Ok(blocks.par_iter().flat_map_iter::<_, Vec<Way>>(of_block).collect())
 }
 
 impl Seen<'_> {
@@ -63,9 +66,11 @@ impl Seen<'_> {
         match self {
             Self::By(perspective, ..) => perspective.most_px_per_metre([low, high]),
             Self::Above(overhead) => {
-                let [west, south, east, north] = overhead.area;
-                let is_beside = low.x > east || high.x < west || low.y > north || high.y < south;
-                if is_beside { 0.0 } else { overhead.px_per_metre }
+                if overhead.is_beside([low, high].map(DVec3::truncate)) {
+                    0.0
+                } else {
+                    overhead.px_per_metre
+                }
             }
         }
     }
@@ -139,8 +144,8 @@ struct Cut {
 }
 
 impl Page<'_> {
-    /// The pieces of a line that are shown.
-    fn ways(&self, line: &SlopeLine) -> Vec<Way> {
+    /// The pieces of a line that are shown, at most as strongly as `most`.
+    fn ways(&self, line: &SlopeLine, most: f64) -> Vec<Way> {
         let worlds: Vec<DVec3> = line.points.iter().map(|point| self.slopes.world(point)).collect();
         let mut metres = 0.0;
         let steps = worlds.windows(2).map(|pair| {
@@ -150,7 +155,9 @@ impl Page<'_> {
         let metres: Vec<f64> = [0.0].into_iter().chain(steps).collect();
         let on_page = |((point, world), metres): ((&SlopePoint, &DVec3), &f64)| {
             let place = self.seen.place(*world)?;
-            Some(self.point(point, *world, place, *metres))
+            let point = self.point(point, *world, place, *metres);
+            let weight = point.of_way.weight * most as f32;
+            Some(Point { of_way: WayPoint { weight, ..point.of_way }, ..point })
         };
         let points: Vec<Option<Point>> = line.points.iter().zip(&worlds).zip(&metres).map(on_page).collect();
         // Behind the eye there is no page.
@@ -222,7 +229,7 @@ impl Page<'_> {
         }
         let middle = from + (to - from) * (0.35 + 0.3 * share_of(id, number));
         let at = between(points, |point| point.metres, middle);
-        cuts.push(Cut { arc: at.arc, half: CUT * at.apart / 2.0, open });
+        cuts.push(Cut { arc: at.arc, half: CUT * at.apart * (1.0 - DARK * f64::from(at.of_way.black)) / 2.0, open });
         self.halve(id, 2 * number, [from, middle], points, cuts);
         self.halve(id, 2 * number + 1, [middle, to], points, cuts);
     }
@@ -234,13 +241,10 @@ impl Need for Page<'_> {
         ROOM[0] * self.look.least_apart() / self.seen.most_px_per_metre(corners)
     }
 
-    fn at(&self, place: DVec3, gradient: DVec2) -> f64 {
-        match self.seen.place(place) {
-            Some(_) if !self.seen.hides(place) => {
-                ROOM[0] * self.metres_apart(place, gradient, self.shade.black(gradient))
-            }
-            _ => f64::INFINITY,
-        }
+    fn at(&self, place: DVec3, gradient: DVec2) -> Option<f64> {
+        let is_seen = self.seen.place(place).is_some() && !self.seen.hides(place);
+        let need = || ROOM[0] * self.metres_apart(place, gradient, self.shade.black(gradient));
+        is_seen.then(need).filter(|need| need.is_finite())
     }
 }
 

@@ -75,7 +75,12 @@ impl Overhead {
     /// # Errors
     /// [`Error::Limit`](crate::error::Error::Limit) where they are longer than those of a view may be; as [`hachures::ways`].
     pub fn land(&self, land: &Land, min_gap: f64, hachures: Option<&Hachures>) -> Result<Vec<Chain>> {
-        let lines = land.ways(From::Above(self.px_per_metre));
+        let mut lines = land.ways(From::Above(self.px_per_metre));
+        lines.retain(|way| {
+            let places = || way.points.iter().map(|point| point.world.truncate());
+            let none = [DVec2::INFINITY, DVec2::NEG_INFINITY];
+            !self.is_beside(places().fold(none, |[low, high], at| [low.min(at), high.max(at)]))
+        });
         let strokes = match land.slopes().zip(hachures) {
             Some((slopes, look)) => hachures::ways(slopes, look, Seen::Above(self))?,
             None => Vec::new(),
@@ -88,6 +93,12 @@ impl Overhead {
         let lines = economised(&self.chains(&lines), &Economy { min_jump: 0.0, min_gap });
         let strokes = hachures.map_or(Vec::new(), |look| toned(self.chains(&strokes), &lines, look));
         Ok([lines, strokes].concat())
+    }
+
+    /// Whether nothing in a box of the map, by its low and high corner, plays a part on the page.
+    pub(super) fn is_beside(&self, [low, high]: [DVec2; 2]) -> bool {
+        let ([west, south, east, north], beside) = (self.area, hachures::BESIDE / self.px_per_metre);
+        low.x > east + beside || high.x < west - beside || low.y > north + beside || high.y < south - beside
     }
 
     fn middle(&self) -> DVec2 {

@@ -37,8 +37,13 @@ const OTHER_LAND: f32 = 0.2;
 const SHORT_OF: [f64; 2] = [0.3, 0.7];
 /// A line this much farther than a stroke, in ln depth, does not stop it.
 const IN_FRONT: f32 = 0.02;
-/// Lengths over which strokes broaden at their tops and run out at their feet, spacings; of short ones at most half.
+/// Lengths of a stroke, spacings, up to which it is left out, and from which it is whole.
+const SHORT: [f64; 2] = [0.5, 1.5];
+/// Lengths over which strokes broaden at their tops and run out at their feet, spacings; at most these parts of the stroke.
 const TAPER: [f64; 2] = [0.4, 1.4];
+const MOST_TAPER: [f64; 2] = [0.15, 0.35];
+/// By how much of the share that is to be black tapers are shorter: in deep shadow strokes run into each other.
+const DARK: f64 = 0.95;
 
 /// A place on the page where a stroke or a line passes.
 #[derive(Debug, Clone, Copy)]
@@ -106,11 +111,16 @@ fn shaped(stroke: Chain, lines: &Passing, look: &Hachures) -> Chain {
     let along = Along::new(&stroke);
     let apart: Vec<f64> = stroke.points.iter().map(|point| look.apart(point.black.into())).collect();
     let mean = apart.iter().sum::<f64>() / apart.len().max(1) as f64;
-    let taper = TAPER.map(|spacings| (spacings * mean).min(along.length / 2.0).max(f64::MIN_POSITIVE));
+    let black = stroke.points.iter().map(|point| f64::from(point.black)).sum::<f64>() / apart.len().max(1) as f64;
+    let taper = [0, 1].map(|end| {
+        let wanted = TAPER[end] * mean * (1.0 - DARK * black);
+        wanted.min(MOST_TAPER[end] * along.length).max(f64::MIN_POSITIVE)
+    });
     let own = samples(0, &stroke);
+    let short = fade(SHORT.map(|spacings| spacings * mean), along.length);
     let point = |(i, point): (usize, &ChainPoint)| {
         let [top, foot] = [along.arcs[i] / taper[0], (along.length - along.arcs[i]) / taper[1]];
-        let shape = runs_out(top) * runs_out(foot) * room(&own[i], lines, apart[i]);
+        let shape = short * runs_out(top) * runs_out(foot) * room(&own[i], lines, apart[i]);
         ChainPoint { weight: point.weight * shape as f32, ..*point }
     };
     Chain { points: stroke.points.iter().enumerate().map(point).collect(), ..stroke }

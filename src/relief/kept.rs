@@ -146,7 +146,7 @@ fn both(dem: &Dem, exaggeration: f64, progress: &dyn Fn(f64)) -> Result<(Relief,
 }
 
 /// Of all that the lines of a DEM depend on.
-fn digest(dem: &Dem, exaggeration: f64) -> Result<Option<u128>> {
+pub(super) fn digest(dem: &Dem, exaggeration: f64) -> Result<Option<u128>> {
     let mut hash = Xxh3::new();
     match dem.held() {
         Ok(samples) => {

@@ -43,7 +43,7 @@ pub use kept::FlowLines;
 pub use own::{own_lines, own_lines_if_any};
 pub use peaks::{Base, Peak, peaks};
 pub use shores::Shores;
-pub use slope::{Need, SlopeBlock, SlopeLine, SlopePoint, SlopeRules, Slopes};
+pub use slope::{Need, Needed, SlopeBlock, SlopeLine, SlopePoint, SlopeRules, Slopes};
 pub use whole::{ChannelArea, Relief, auto_cells};
 
 /// What a line of the land is.

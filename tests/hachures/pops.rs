@@ -29,17 +29,19 @@ const MARGIN: f64 = 8.0;
 const SAME_DEPTH: f64 = 0.003;
 
 /// The hachures of a frame, and what its pixels show.
-struct Frame {
-    perspective: Perspective,
-    raster: InkRaster,
-    strokes: Vec<Chain>,
+pub struct Frame {
+    pub perspective: Perspective,
+    pub raster: InkRaster,
+    pub strokes: Vec<Chain>,
+    /// All others.
+    pub lines: Vec<Chain>,
     widths: RTree<GeomWithData<[f64; 2], f64>>,
 }
 
 /// A flight over land with hachures.
 pub struct Flight {
     renderer: Renderer,
-    plan: Plan,
+    pub plan: Plan,
     style: Style,
 }
 
@@ -58,16 +60,17 @@ impl Flight {
         Self { renderer, plan, style }
     }
 
-    fn frame(&mut self, camera: &Camera) -> Frame {
+    pub fn frame(&mut self, camera: &Camera) -> Frame {
         let page = self.renderer.page(&self.plan, camera, |_| ()).expect("a page");
         let raster = self.renderer.draw(&self.plan, camera).expect("a frame").raster;
         let px_per_mm = Sheet::for_frame(SIZE).placement(SIZE).px_per_mm;
         let lines = page.lines(&self.style.economy(px_per_mm), self.style.tolerance * px_per_mm);
-        let strokes: Vec<Chain> = lines.chains.into_iter().filter(|chain| chain.line() == Line::Hachure).collect();
+        let (strokes, lines): (Vec<Chain>, _) =
+            lines.chains.into_iter().partition(|chain| chain.line() == Line::Hachure);
         let pen = self.style.pens.hachure.width;
         let width = |point: ChainPoint| GeomWithData::new(point.place.to_array(), f64::from(point.weight) * pen);
         let widths = RTree::bulk_load(strokes.iter().flat_map(points).map(width).collect());
-        Frame { perspective: page.perspective, raster, strokes, widths }
+        Frame { perspective: page.perspective, raster, strokes, lines, widths }
     }
 
     /// Length of strokes that are seen in a frame of a flight straight on in steps of so many metres and are not there in the next

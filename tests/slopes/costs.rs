@@ -25,7 +25,7 @@ fn lines_of_a_million_samples_take_little() {
     let start = Instant::now();
     slopes.blocks(&|_| ROOM * scene.unit()).expect("blocks");
     let again = start.elapsed().as_secs_f64();
-    let (finest, points) = (blocks.iter().map(|block| block.level).max(), slopes.points());
+    let (finest, points) = (blocks.iter().map(|needed| needed.block.level).max(), slopes.points());
     assert_eq!(finest, Some(10));
     println!("{points} points of {} bytes: {first:.3} s, {again:.4} s again", size_of::<SlopePoint>());
     assert!(first <= SLOPE_SECONDS, "{first} s");

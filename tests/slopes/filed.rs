@@ -7,7 +7,7 @@ use hachure::error::{Error, Message, Result};
 use hachure::relief::slope::Slopes;
 use hachure::surface::Surface;
 
-use super::{RULES, Scene, sample};
+use super::{RULES, Scene, blocks, sample};
 
 /// Samples as a file's.
 #[derive(Debug)]
@@ -65,6 +65,6 @@ fn lines_of_a_file_are_those_of_its_samples() {
     let slopes =
         Slopes::new(Arc::new(Surface::new(filed)), 1.0, RULES, &scene.stops, Some(&scene.water)).expect("slopes");
     let need = |_: [glam::DVec3; 2]| 4.0 * scene.unit();
-    let (of_file, of_samples) = (slopes.blocks(&need).expect("blocks"), scene.slopes().blocks(&need).expect("blocks"));
+    let (of_file, of_samples) = (blocks(&slopes, &need), blocks(&scene.slopes(), &need));
     assert!(!of_samples.is_empty() && of_file == of_samples);
 }

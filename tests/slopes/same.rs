@@ -6,7 +6,7 @@ use glam::DVec3;
 use hachure::relief::slope::SlopeBlock;
 use rayon::ThreadPoolBuilder;
 
-use super::{Scene, lines, plane, sample};
+use super::{Scene, blocks, lines, plane, sample};
 
 /// Least room of all lines, cells.
 const ROOM: f64 = 1.5;
@@ -47,11 +47,11 @@ fn lines_are_the_same_however_they_are_asked_for() {
         assert!(lines(&whole).count() > 100);
         for shares in [[0.3, 0.5], [0.0, 0.2], [0.7, 1.0]] {
             let slopes = scene.slopes();
-            let part = slopes.blocks(&window(&scene, shares)).expect("blocks");
+            let part = blocks(&slopes, &window(&scene, shares));
             assert!(!part.is_empty() && part.len() < whole.len(), "{} of {}", part.len(), whole.len());
             assert!(are_among(&part, &whole), "{}: a window", scene.name);
             // And the rest after it.
-            let rest = slopes.blocks(&|_| ROOM * scene.unit()).expect("blocks");
+            let rest = blocks(&slopes, &|_| ROOM * scene.unit());
             assert!(rest.len() == whole.len() && are_among(&rest, &whole), "{}: the whole after a window", scene.name);
         }
     }

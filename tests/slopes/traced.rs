@@ -105,7 +105,7 @@ fn lines_are_those_of_the_land_as_it_is() {
         |times: f64| Scene::bare("plain", land([60, 60], |at| times * 0.9 * RULES.min_slope.to_radians().tan() * at.x));
     let count = |scene: &Scene, exaggeration: f64| {
         let slopes = hachure::relief::slope::Slopes::new(scene.surface.clone(), exaggeration, RULES, &[], None);
-        let blocks = slopes.expect("slopes").blocks(&|_| 2.0 * CELL).expect("blocks");
+        let blocks = super::blocks(&slopes.expect("slopes"), &|_| 2.0 * CELL);
         lines(&blocks).count()
     };
     assert_eq!(count(&scene(2.0), 2.0), 0);

@@ -39,7 +39,7 @@ pub fn made<'a>(
 }
 
 /// Least and most column and row.
-fn bounds(line: &SlopeLine) -> [DVec2; 2] {
+pub fn bounds(line: &SlopeLine) -> [DVec2; 2] {
     let none = [DVec2::INFINITY, DVec2::NEG_INFINITY];
     line.points.iter().fold(none, |[low, high], point| [low.min(point.at), high.max(point.at)])
 }

@@ -1,11 +1,11 @@
 //! Levels of spacing, and the blocks in which lines of a level are made.
 //!
-//! A block is a square of 16 spacings. Its lines reach 6 spacings out of it and look as far as their most room for others. Blocks
+//! A block is a square of 12 spacings. Its lines reach 5 spacings out of it and look as far as their most room for others. Blocks
 //! of a level are made in four phases, by whether their column and row are odd:
 //!
 //! ```text
-//! 0 1 0 1     between two blocks of a phase lies another: 16 spacings, of which the lines
-//! 2 3 2 3     of both cross 12 at most. The 4 that are left are more than their most room,
+//! 0 1 0 1     between two blocks of a phase lies another: 12 spacings, of which the lines
+//! 2 3 2 3     of both cross 10 at most. The 2 that are left are more than their most room,
 //! 0 1 0 1     1.42: blocks of a phase do not know each other, and can be made at once.
 //! ```
 
@@ -18,9 +18,9 @@ pub const LEVELS: u32 = 17;
 /// Spacing of level 0, cells; that of each next is less by the square root of 2.
 const WIDEST: f64 = 32.0;
 /// Side of a block, spacings of its level.
-const SIDE: f64 = 16.0;
+pub const SIDE: f64 = 12.0;
 /// How far a line goes from its seed, each way, spacings of its level.
-const REACH: f64 = 6.0;
+const REACH: f64 = 5.0;
 
 /// A block of a level. Blocks come in the order of their levels, rows and columns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -117,7 +117,7 @@ impl Blocks {
     }
 
     /// Blocks of a level that a rectangle overlaps.
-    fn within(&self, level: u32, [low, high]: [DVec2; 2]) -> impl Iterator<Item = BlockAt> + use<> {
+    pub fn within(&self, level: u32, [low, high]: [DVec2; 2]) -> impl Iterator<Item = BlockAt> + use<> {
         let side = SIDE * self.spacing(level);
         let last = (self.extent / side).ceil().max(DVec2::ONE) - 1.0;
         let [first, last] =

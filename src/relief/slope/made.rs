@@ -7,9 +7,12 @@ use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::block::made;
+use super::kept::Store;
 use super::land::Land;
 use super::level::{BlockAt, Blocks, LEVELS};
 use super::{SlopeBlock, SlopePoint, SlopeRules};
+use crate::cache::Cache;
+use crate::dem::Dem;
 use crate::error::Result;
 use crate::relief::{FlatWater, SurfaceLine};
 use crate::surface::lattice::{CELL_STEPS, CHUNK_QUADS};
@@ -19,11 +22,13 @@ use crate::surface::{Pyramid, Surface};
 const MOST_POINTS: usize = 6_000_000;
 
 /// Along the side of a block its land is looked at in about so many places.
-const LOOKS: f64 = 8.0;
+const LOOKS: f64 = 7.0;
 /// How far beyond its sides, spacings: where its lines mostly are.
-const BEYOND: f64 = 2.0;
-/// Between these, places may need as much less.
-const SLACK: f64 = 0.75;
+const BEYOND: f64 = 1.5;
+/// Most room of a block, in parts of what a place needs, up to which the place asks for none of it, and from which for all.
+const ASKED: [f64; 2] = [0.9, 1.3];
+/// Shares of the places that ask for a block up to which it is left out, and from which it is whole.
+const SHARES: [f64; 2] = [0.1, 0.3];
 
 /// Which lines somebody needs: with how much room they are drawn, metres on the map.
 pub trait Need: Sync {
@@ -31,8 +36,9 @@ pub trait Need: Sync {
     /// less in a box inside another.
     fn in_box(&self, corners: [DVec3; 2]) -> f64;
 
-    /// At a place of the exaggerated world, on land of this gradient: metres for a metre east and north.
-    fn at(&self, place: DVec3, gradient: DVec2) -> f64;
+    /// At a place of the exaggerated world, on land of this gradient, metres for a metre east and north; nothing where none is
+    /// drawn or nobody looks.
+    fn at(&self, place: DVec3, gradient: DVec2) -> Option<f64>;
 }
 
 /// The same on all land.
@@ -41,9 +47,15 @@ impl<F: Fn([DVec3; 2]) -> f64 + Sync> Need for F {
         self(corners)
     }
 
-    fn at(&self, place: DVec3, _: DVec2) -> f64 {
-        self([place; 2])
+    fn at(&self, place: DVec3, _: DVec2) -> Option<f64> {
+        let need = self([place; 2]);
+        need.is_finite().then_some(need)
     }
+}
+
+/// What part of the way from one value to another a third has come, 0 to 1.
+fn part([from, to]: [f64; 2], value: f64) -> f64 {
+    ((value - from) / (to - from)).clamp(0.0, 1.0)
 }
 
 /// All slope lines of a DEM: those of each block are made when they are first needed, and are the same whatever was asked
@@ -55,9 +67,19 @@ pub struct Slopes {
     exaggeration: f64,
     blocks: Blocks,
     made: Mutex<Made>,
+    store: Option<Store>,
 }
 
 type Made = FxHashMap<BlockAt, Arc<SlopeBlock>>;
+
+/// Lines that somebody needs.
+#[derive(Debug, Clone)]
+pub struct Needed {
+    /// The block that they begin in.
+    pub block: Arc<SlopeBlock>,
+    /// How many of its places ask for them: 1 for enough, less for few.
+    pub share: f64,
+}
 
 impl Slopes {
     /// Of a surface whose heights are multiplied by `exaggeration`; lines end at `stops`, drainage and ridges, and at the shores of
@@ -77,34 +99,56 @@ impl Slopes {
         let dem = land.surface.dem();
         let extent = DVec2::new(dem.columns() as f64, dem.rows() as f64) - 1.0;
         let blocks = Blocks { unit: land.cell.min_element(), extent: extent * land.cell };
-        Ok(Self { land, exaggeration, blocks, made: Mutex::default() })
+        Ok(Self { land, exaggeration, blocks, made: Mutex::default(), store: None })
+    }
+
+    /// The same, whose lines are kept in a cache from one process to the next: those of a DEM, these rules and stops.
+    ///
+    /// # Errors
+    /// Those of reading the samples.
+    pub fn kept_in(self, cache: &Cache, dem: &Dem, rules: SlopeRules, stops: &[SurfaceLine]) -> Result<Self> {
+        let store = Store::new(cache, dem, self.exaggeration, rules, stops)?;
+        Ok(Self { store, ..self })
     }
 
     /// Blocks whose lines may be drawn, by level, row and column: those whose lines may have as much room as is needed in the box
-    /// that they are in, and somewhere on the land of it. Those that are not known yet are made, on every core.
+    /// that they are in, and in more than a few places on the land of it. Those that are not known yet are made, on every core.
     ///
     /// # Errors
     /// As [`Surface::pyramid`].
-    pub fn blocks(&self, need: &dyn Need) -> Result<Vec<Arc<SlopeBlock>>> {
-        let wanted = self.wanted(self.land.surface.pyramid()?, need);
+    pub fn blocks(&self, need: &dyn Need) -> Result<Vec<Needed>> {
+        let shares = self.wanted(self.land.surface.pyramid()?, need);
+        let wanted: Vec<BlockAt> = shares.iter().map(|(at, _)| *at).collect();
         // No lock is held while threads are at work: they might be asked for blocks themselves.
         let mut known = self.lock().clone();
         let missing = self.with_needed(&wanted, |at| !known.contains_key(&at));
-        let is_one_go = |a: &BlockAt, b: &BlockAt| (a.level, a.phase()) == (b.level, b.phase());
-        for go in missing.chunk_by(is_one_go) {
-            let make = |at: &BlockAt| {
-                let needed = self.blocks.needs(*at);
-                let needed: Vec<_> = needed.filter_map(|other| known.get(&other)).collect();
-                (*at, Arc::new(made(&self.land, &self.blocks, *at, needed.into_iter())))
-            };
-            let new: Vec<_> = go.par_iter().map(make).collect();
-            known.extend(new);
-        }
-        let blocks = wanted.iter().filter_map(|at| known.get(at).cloned()).collect();
+        let new = match &self.store {
+            Some(store) if known.is_empty() => store.blocks(&missing, || self.make(&missing, &known))?,
+            _ => self.make(&missing, &known),
+        };
+        known.extend(missing.iter().copied().zip(new));
+        let needed = |(at, share): &(BlockAt, f64)| Some(Needed { block: known.get(at)?.clone(), share: *share });
+        let blocks = shares.iter().filter_map(needed).collect();
         if !missing.is_empty() {
             self.keep(known, &wanted);
         }
         Ok(blocks)
+    }
+
+    /// Blocks in the order in which they are made, after those that are known.
+    fn make(&self, missing: &[BlockAt], known: &Made) -> Vec<Arc<SlopeBlock>> {
+        let mut new = Made::default();
+        let is_one_go = |a: &BlockAt, b: &BlockAt| (a.level, a.phase()) == (b.level, b.phase());
+        for go in missing.chunk_by(is_one_go) {
+            let make = |at: &BlockAt| {
+                let needed = self.blocks.needs(*at);
+                let needed: Vec<_> = needed.filter_map(|other| new.get(&other).or_else(|| known.get(&other))).collect();
+                (*at, Arc::new(made(&self.land, &self.blocks, *at, needed.into_iter())))
+            };
+            let of_go: Vec<_> = go.par_iter().map(make).collect();
+            new.extend(of_go);
+        }
+        missing.iter().filter_map(|at| new.get(at).cloned()).collect()
     }
 
     /// Exaggerated metres for one of the land.
@@ -148,8 +192,9 @@ impl Slopes {
         found
     }
 
-    /// Blocks whose lines may have the room that is needed. A block needs no less than the one around it two levels above.
-    fn wanted(&self, pyramid: &Pyramid, need: &dyn Need) -> Vec<BlockAt> {
+    /// Blocks whose lines may have the room that is needed, each with its share: that of its own places, or of the blocks of
+    /// narrower levels on them, whose lines keep away from its own. A block needs no less than the one around it two levels above.
+    fn wanted(&self, pyramid: &Pyramid, need: &dyn Need) -> Vec<(BlockAt, f64)> {
         let in_box = |at: &BlockAt| self.bounds(pyramid, *at).map(|bounds| (*at, need.in_box(bounds)));
         let has = |level: u32| move |(_, need): &(BlockAt, f64)| *need <= self.blocks.most_room(level);
         let mut open = [0, 1].map(|level| self.blocks.of(level).collect::<Vec<_>>());
@@ -158,17 +203,27 @@ impl Slopes {
             let known: Vec<_> = here.par_iter().filter_map(in_box).collect();
             let split = known.iter().copied().filter(has(level + 2));
             *here = split.flat_map(|(at, _)| at.quarters()).filter(|at| self.is_on_land(*at)).collect();
-            let is_needed =
-                |(at, _): &(BlockAt, f64)| SLACK * self.least_need(*at, need) <= self.blocks.most_room(level);
-            known.into_par_iter().filter(has(level)).filter(is_needed).map(|(at, _)| at).collect::<Vec<_>>()
+            let here = known.into_par_iter().filter(has(level)).map(|(at, _)| (at, self.share(at, need)));
+            here.filter(|(_, share)| *share > 0.0).collect::<Vec<_>>()
         };
-        let mut wanted: Vec<BlockAt> = (0..LEVELS).flat_map(of_level).collect();
-        wanted.sort_unstable();
+        let mut levels: Vec<Vec<(BlockAt, f64)>> = (0..LEVELS).map(of_level).collect();
+        for level in (1..LEVELS).rev() {
+            let mut wider: FxHashMap<BlockAt, f64> = levels[level as usize - 1].drain(..).collect();
+            for (at, share) in &levels[level as usize] {
+                for around in self.blocks.within(level - 1, self.blocks.square(*at)) {
+                    let known = wider.entry(around).or_default();
+                    *known = known.max(*share);
+                }
+            }
+            levels[level as usize - 1] = wider.into_iter().collect();
+        }
+        let mut wanted = levels.concat();
+        wanted.sort_unstable_by_key(|(at, _)| *at);
         wanted
     }
 
-    /// The least room that is needed at places of a block and a little beyond.
-    fn least_need(&self, at: BlockAt, need: &dyn Need) -> f64 {
+    /// How many of the places of a block and a little beyond where lines are drawn ask for those of its level: 1 for enough.
+    fn share(&self, at: BlockAt, need: &dyn Need) -> f64 {
         let surface = &self.land.surface;
         let last = DVec2::new(surface.dem().columns() as f64, surface.dem().rows() as f64) - 1.0;
         let [low, high] = self.blocks.square(at).map(|corner| corner / self.land.cell);
@@ -181,9 +236,11 @@ impl Slopes {
         let needs = places.filter_map(|place| {
             let [c, r] = (low + place * step).min(high).to_array().map(|at| at as usize);
             surface.dem().height(c, r)?;
-            Some(need.at(surface.dem().position(c, r), surface.gradient(c, r)))
+            need.at(surface.dem().position(c, r), surface.gradient(c, r))
         });
-        needs.fold(f64::INFINITY, f64::min)
+        let asks = needs.map(|need| part(ASKED, self.blocks.most_room(at.level) / need));
+        let (sum, count) = asks.fold((0.0, 0), |(sum, count), ask| (sum + ask, count + 1));
+        part(SHARES, sum / f64::from(count.max(1)))
     }
 
     /// Whether a block begins on the DEM.

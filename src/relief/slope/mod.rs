@@ -5,21 +5,22 @@
 //! lines have a rank, and every point of one knows the spacing up to which it may be drawn: its `room`. Seeds are tried in the
 //! order of a blue-noise tile (`tile`), so that the first are far apart.
 //!
-//! Room of a place of a line: how far it is, across, to the nearest line of lower rank that itself has more room than that, and
-//! so is there whenever lines so far apart are drawn. The places with room for a spacing keep that from each other, and those of
+//! Room of a place of a line: how far it is to the nearest line of lower rank that itself has more room than that, and so is there
+//! whenever lines so far apart are drawn: across that line, and ahead of its ends twice as far, for rows of strokes show no gaps. The places with room for a spacing keep that from each other, and those of
 //! a wider spacing are among those of a narrower one.
 //!
-//! Lines are made block by block where they are asked for. A block depends on the blocks of coarser levels in its reach and on
+//! Lines are made block by block where enough of the land asks for them, and [kept](Slopes::kept_in). A block depends on the blocks of coarser levels in its reach and on
 //! those beside it that have an earlier phase, of four (`level`): its lines are the same, to the last bit, whatever was asked
 //! for before, on as many threads as there are.
 //!
 //! Distances are those of the map of the DEM, on which samples lie evenly: where the surface bends sideways between samples,
 //! places lie up to a tenth of a cell beside. Cost: about 3 us a point on a core, 32 bytes a point; a million samples down to a
-//! spacing of one cell have 1.6 million points. Not handled: land that folds over itself, where lines end; lines longer than 12 of
+//! spacing of one cell have 1.6 million points. Not handled: land that folds over itself, where lines end; lines longer than 10 of
 //! their spacings, of which each level has its own pieces; room at the last place of a line, where others may come nearer from
 //! ahead than across.
 
 mod block;
+mod kept;
 mod land;
 mod level;
 mod made;
@@ -31,7 +32,7 @@ mod trace;
 
 use glam::{DVec2, Vec2};
 
-pub use made::{Need, Slopes};
+pub use made::{Need, Needed, Slopes};
 
 /// When slope lines end.
 #[derive(Debug, Clone, Copy, PartialEq)]

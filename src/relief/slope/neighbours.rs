@@ -4,12 +4,14 @@
 //! nearer than the next ring. Cost: 0.1 us where a line is near, 1 us where the farthest room is looked for. Memory: 28 bytes a
 //! piece, 4 a bucket, while a block is made.
 
-use glam::{DVec2, Vec2};
+use glam::{DVec2, IVec2, Vec2};
 
 use super::SlopePoint;
 
 /// Longest piece, buckets: it is told from the bend of the line by less than a hundredth of the spacing.
 const LONGEST: f32 = 0.125;
+/// A line ends so many times as near to the end of another as it runs beside one.
+const AHEAD: f32 = 2.0;
 /// The end of a chain.
 const NONE: u32 = u32::MAX;
 
@@ -40,6 +42,16 @@ struct Piece {
     before: u32,
 }
 
+impl Piece {
+    /// From a place, squared: across, and [`AHEAD`] times as far before its ends.
+    fn distance_squared(&self, place: Vec2) -> f32 {
+        let off = place - self.middle;
+        let beyond = AHEAD * (off.dot(self.way).abs() - self.half).max(0.0);
+        let across = off.perp_dot(self.way);
+        beyond * beyond + across * across
+    }
+}
+
 impl Neighbours {
     /// None yet, in a rectangle with buckets of a side; metres.
     pub fn new([low, high]: [DVec2; 2], side: f64) -> Self {
@@ -48,13 +60,23 @@ impl Neighbours {
         Self { low, side: side as f32, size, last, pieces: Vec::new(), half: 0.0 }
     }
 
-    /// Takes in a line whose points lie a step apart, metres, as far as it lies in the rectangle; `place` tells their metres.
+    /// Takes in a line whose points lie at most a step apart, metres, as far as it lies in the rectangle; `place` tells their
+    /// metres.
     pub fn add(&mut self, line: &[SlopePoint], step: f64, place: impl Fn(&SlopePoint) -> DVec2) {
         let (low, last) = (self.low, line.len() - 1);
+        let size = IVec2::from(self.size).as_vec2() * self.side;
         let points = (f64::from(self.side * LONGEST) / step).max(1.0) as usize;
         let near = |k: usize| (place(&line[k]) - low).as_vec2();
-        let mut from = near(0);
-        for k in (0..last).step_by(points) {
+        let (mut k, mut from) = (0, near(0));
+        while k < last {
+            // So many pieces at least lie outside.
+            let outside = (from - size).max(-from).max_element();
+            let skipped = (f64::from(outside) / step) as usize / points;
+            if skipped > 1 {
+                k += (skipped - 1) * points;
+                from = near(k.min(last));
+                continue;
+            }
             let end = (k + points).min(last);
             let to = near(end);
             let middle = from.midpoint(to);
@@ -66,12 +88,27 @@ impl Neighbours {
                 *before = self.pieces.len() as u32 - 1;
                 self.half = self.half.max(half);
             }
-            from = to;
+            (k, from) = (end, to);
         }
     }
 
-    /// How far a place is from the nearest line that has more room than that, at most `most`; metres. Anything below `enough` is as
-    /// good as the least: the search ends there.
+    /// Whether no line is so near to a place that has more room than that, metres.
+    pub fn leave(&self, place: DVec2, distance: f32) -> bool {
+        let place = (place - self.low).as_vec2();
+        // Buckets are as wide as spacings: all that is nearer than one lies in those about the place, and in its own most likely.
+        let Some([x, y]) = self.bucket(place) else { return true };
+        let [columns, rows] = self.size;
+        let reach = ((distance + self.half) / self.side).ceil() as i32;
+        let is_far = |piece: &Piece| piece.distance_squared(place) >= distance.min(piece.room).powi(2);
+        let is_clear = |column: i32, row: i32| {
+            let is_inside = (0..columns).contains(&column) && (0..rows).contains(&row);
+            !is_inside || self.of_bucket(row * columns + column).all(is_far)
+        };
+        is_clear(x, y) && (y - reach..=y + reach).all(|row| (x - reach..=x + reach).all(|column| is_clear(column, row)))
+    }
+
+    /// How far a place is from the nearest line that has more room than that, at most `most`, metres: across the line, and ahead
+    /// of its ends [`AHEAD`] times as far. Anything below `enough` is as good as the least: the search ends there.
     pub fn room(&self, place: DVec2, most: f32, enough: f32) -> f32 {
         let place = (place - self.low).as_vec2();
         let Some([x, y]) = self.bucket(place) else { return most };
@@ -99,15 +136,15 @@ impl Neighbours {
 
     /// The same, of the lines in a bucket.
     fn room_in(&self, bucket: i32, place: Vec2, most: f32) -> f32 {
-        let first = self.pieces.get(self.last[bucket as usize] as usize);
-        let chain = std::iter::successors(first, |piece| self.pieces.get(piece.before as usize));
-        chain.fold(most, |room, piece| {
-            let off = place - piece.middle;
-            let beyond = (off.dot(piece.way).abs() - piece.half).max(0.0);
-            let across = off.perp_dot(piece.way);
-            let squared = beyond * beyond + across * across;
-            if squared < room * room && squared < piece.room * piece.room { squared.sqrt() } else { room }
+        self.of_bucket(bucket).fold(most, |room, piece| {
+            let distance = piece.distance_squared(place);
+            if distance < room * room && distance < piece.room * piece.room { distance.sqrt() } else { room }
         })
+    }
+
+    fn of_bucket(&self, bucket: i32) -> impl Iterator<Item = &Piece> {
+        let first = self.pieces.get(self.last[bucket as usize] as usize);
+        std::iter::successors(first, |piece| self.pieces.get(piece.before as usize))
     }
 
     /// Column and row of the bucket of a place in the rectangle.

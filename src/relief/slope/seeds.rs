@@ -3,10 +3,10 @@
 use glam::DVec2;
 use xxhash_rust::xxh3::xxh3_64_with_seed;
 
-use super::level::{BlockAt, Blocks};
+use super::level::{self, BlockAt, Blocks};
 use super::tile::{PLACES, SIDE, order};
 
-/// The seeds of a block, the first to be tried first, each with its number: one somewhere in each of half of 32 x 32 squares. The tile is
+/// The seeds of a block, the first to be tried first, each with its number: one somewhere in each of some of 32 x 32 squares. The tile is
 /// turned, mirrored and shifted anew in each block, so that blocks and levels do not look alike.
 pub fn seeds(blocks: &Blocks, at: BlockAt) -> impl Iterator<Item = (usize, DVec2)> {
     let [low, high] = blocks.square(at);
@@ -28,7 +28,7 @@ pub fn seeds(blocks: &Blocks, at: BlockAt) -> impl Iterator<Item = (usize, DVec2
 }
 
 /// Seeds that are tried: two on a square of the spacing. More find hardly any room.
-const TRIED: usize = PLACES / 2;
+const TRIED: usize = (2.0 * level::SIDE * level::SIDE) as usize;
 /// One more than the largest number in a field.
 const FIELD: u32 = 1 << 24;
 

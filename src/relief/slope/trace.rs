@@ -60,8 +60,7 @@ impl<'a> Tracer<'a> {
 
     /// The line through a seed among others; none where it may not begin or gets too short.
     pub fn line(&mut self, others: &Neighbours, seed: DVec2) -> Option<Vec<SlopePoint>> {
-        let spacing = self.spacing as f32;
-        if !self.walker.land.may_slope(seed) || others.room(seed, spacing, spacing) < spacing {
+        if !others.leave(seed, self.spacing as f32) || !self.walker.land.may_slope(seed) {
             return None;
         }
         let seed = self.walker.place(seed).filter(|seed| self.walker.land.allows(seed, seed))?;

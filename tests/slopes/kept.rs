@@ -1,0 +1,57 @@
+//! Slope lines that are kept from one process to the next are those that were made.
+
+use std::fs;
+use std::os::unix::fs::MetadataExt;
+use std::path::PathBuf;
+
+use hachure::cache::Cache;
+use hachure::relief::slope::{SlopeBlock, SlopeRules, Slopes};
+
+use super::{RULES, Scene, blocks, sample};
+
+/// Least room that is asked for, cells.
+const ROOM: f64 = 1.5;
+
+/// A scene's lines by a cache.
+fn slopes(scene: &Scene, cache: &Cache, rules: SlopeRules) -> Slopes {
+    let slopes = Slopes::new(scene.surface.clone(), 1.0, rules, &scene.stops, Some(&scene.water)).expect("slopes");
+    slopes.kept_in(cache, scene.surface.dem(), rules, &scene.stops).expect("a cache")
+}
+
+#[test]
+fn lines_are_found_again_as_they_were_made() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (scene, cache) = (sample(), Cache::in_folder(folder.path().to_owned()));
+    let draw = |rules: SlopeRules| -> Vec<SlopeBlock> {
+        let blocks = blocks(&slopes(&scene, &cache, rules), &|_| ROOM * scene.unit());
+        blocks.iter().map(|block| SlopeBlock::clone(block)).collect()
+    };
+    // A file that is made anew is another one.
+    let files = || -> Vec<(PathBuf, u64)> {
+        let files = fs::read_dir(folder.path()).expect("a folder").map(|entry| entry.expect("an entry").path());
+        let files =
+            files.filter(|path| path.file_name().is_some_and(|name| name.to_string_lossy().starts_with("slopes-")));
+        files.map(|path| (path.clone(), fs::metadata(path).expect("a file").ino())).collect()
+    };
+    let made = draw(RULES);
+    assert!(
+        made == blocks(&scene.slopes(), &|_| ROOM * scene.unit())
+            .iter()
+            .map(|block| SlopeBlock::clone(block))
+            .collect::<Vec<_>>()
+    );
+    let [(path, file)] = &files()[..] else { panic!("not one file") };
+    // Found, not made: the file stays as it is.
+    assert!(draw(RULES) == made);
+    assert_eq!(files(), [(path.clone(), *file)]);
+    // Negative control: a byte is another one; the lines are made anew, and the file.
+    let whole = fs::read(path).expect("a file");
+    let mut damaged = whole.clone();
+    damaged[whole.len() / 2] ^= 1;
+    fs::write(path, &damaged).expect("a file");
+    assert!(draw(RULES) == made);
+    assert!(fs::read(path).expect("a file") == whole, "the damage is left");
+    // Other rules have lines of their own.
+    assert!(draw(SlopeRules { min_slope: 8.0, ..RULES }) != made);
+    assert_eq!(files().len(), 2);
+}
