@@ -41,6 +41,7 @@ mod house;
 mod identity;
 mod ink;
 mod jobs;
+mod joins;
 mod judged;
 mod kept;
 mod kernels;

@@ -158,7 +158,7 @@ impl DrawArguments {
         self.outputs.fill_stdout()
     }
 
-    /// The same of a sheet of a map, which is `called` so: of the DEM in `crop`, in the file's coordinates; a plan is of `area`,
+    /// The same of a sheet of a map, which is `called` so: of the DEM in `crop`, in the file's coordinates, or all of it; a plan is of `area`,
     /// metres of the world; its files are `renamed`.
     ///
     /// # Errors
@@ -166,11 +166,12 @@ impl DrawArguments {
     pub fn of_sheet(
         &self,
         called: &str,
-        crop: [f64; 4],
+        crop: Option<[f64; 4]>,
         area: [f64; 4],
         renamed: impl Fn(&Path) -> Result<PathBuf>,
     ) -> Result<Self> {
-        let (terrain, outputs) = (self.terrain.cropped(crop)?, self.outputs.renamed(renamed)?);
+        let terrain = crop.map_or_else(|| Ok(self.terrain.clone()), |crop| self.terrain.cropped(crop))?;
+        let outputs = self.outputs.renamed(renamed)?;
         let mut sheet = Self { terrain, outputs, area: Some(area), ..self.clone() };
         sheet.drawing.land.lines.on_sheet(called);
         Ok(sheet)

@@ -34,7 +34,8 @@ pub struct SheetArguments {
     /// The side of a sheet
     #[arg(long, value_name = "10km", value_parser = values::distance, requires = "grid")]
     sheet: Option<f64>,
-    /// Land around each sheet that is drawn from too; of a plan it stays off the page
+    /// Land around each sheet that is drawn from too; of a plan it stays off the page. A plan of a DEM that fits --memory is drawn
+    /// from all of it
     #[arg(long, value_name = "2km", value_parser = values::distance, requires = "grid", default_value = "0m")]
     halo: f64,
 }
@@ -176,7 +177,9 @@ impl Grid {
             let what = format!("sheet {name} has no place in {}", georeference.file().label());
             Error::setting(Setting::Grid, what, "give the system in which the DEM lies")
         };
-        let crop = bounds(self.halo, &in_file).ok_or_else(nowhere)?;
+        // Of samples that are held a plan is a window over the whole: lines run on from sheet to sheet.
+        let is_window = entry.draw.scale().is_some() && !dem.is_filed();
+        let crop = (!is_window).then(|| bounds(self.halo, &in_file).ok_or_else(nowhere)).transpose()?;
         let area = bounds(0.0, &in_world).ok_or_else(nowhere)?;
         let called = format!("{}, sheet {name}", entry.called);
         let draw = entry.draw.of_sheet(&called, crop, area, |path| {
