@@ -1,5 +1,6 @@
 //! Every integration test in one binary: linked once, one module a subject.
 
+mod adapters;
 mod agreement;
 mod batches;
 mod borders;
