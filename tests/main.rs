@@ -79,6 +79,7 @@ mod scenes;
 mod seams;
 mod seen;
 mod sequences;
+mod serve;
 mod sheets;
 mod shell;
 mod shores;
