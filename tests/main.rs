@@ -24,6 +24,7 @@ mod drawing;
 mod economy;
 mod examples;
 mod facets;
+mod farm;
 mod films;
 mod flight_paths;
 mod flights;
