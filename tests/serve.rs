@@ -363,10 +363,10 @@ fn what_cannot_be_served_is_told_before_any_job() {
 }
 
 #[test]
-fn a_server_that_is_told_to_end_while_it_starts_leaves_no_process() {
+fn a_server_that_is_left_while_it_starts_ends() {
     let place = Place::new();
     let mut server = Server::start(&place, &fly("early/%05d.png", &[]));
-    drop((server.answers.take(), server.jobs.take()));
+    drop(server.answers.take());
     let began = std::time::Instant::now();
     while server.child.try_wait().expect("a child").is_none() {
         assert!(began.elapsed() < Duration::from_secs(20), "it is still there");

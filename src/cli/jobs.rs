@@ -22,7 +22,8 @@ pub struct JobArguments {
     /// (which does not say how many there are: set HACHURE_SHARDS)
     #[arg(long)]
     shard_from_env: bool,
-    /// List the jobs as lines of JSON, with the seconds, memory and device memory they may take; make nothing
+    /// List the jobs as lines of JSON, with the samples that they read at most, and the seconds, memory and device memory they
+    /// may take; make nothing
     #[arg(long)]
     pub list: bool,
     /// Stay, take jobs from standard input, a line of JSON each: {"id": 7, "frames": "3,5-10"}, and answer each with a line on
