@@ -5,7 +5,7 @@ use std::fs;
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
 use std::process::{Child, ChildStdin, ChildStdout, Command, Output, Stdio};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use clap::Parser;
 use hachure::cli::Arguments;
@@ -180,7 +180,8 @@ fn jobs_that_were_sent_are_answered_after_the_input_has_ended() {
     assert_eq!((&cut["ok"], &cut["exit"]), (&json!(false), &json!(2)), "{cut}");
     assert!(cut["error"].as_str().is_some_and(|error| error.starts_with("the line ends in the middle")), "{cut}");
     assert_eq!(server.end().status.code(), Some(0));
-    assert_eq!(frames(&place.path("sent")).len(), 3);
+    let made: Vec<String> = frames(&place.path("sent")).into_keys().collect();
+    assert_eq!(made, ["00000.png", "00001.png", "00002.png"]);
 }
 
 /// A flight that lasts.
@@ -229,9 +230,10 @@ fn a_server_without_a_job_ends_in_silence_when_it_is_left() {
         } else {
             drop(server.answers.take());
         }
-        let jobs = server.jobs.take();
+        let (jobs, left) = (server.jobs.take(), Instant::now());
         let output = server.child.wait_with_output().expect("it ends");
         drop(jobs);
+        assert!(left.elapsed() < Duration::from_secs(20), "it stayed for {:?}", left.elapsed());
         assert_eq!(output.status.code(), Some(if is_asked { 75 } else { 0 }));
         assert!(!stderr(&output).contains("error"), "{}", stderr(&output));
     }
@@ -316,6 +318,7 @@ fn drawings_of_a_list_are_served_by_their_numbers() {
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let mut server = Server::start(&place, &["batch", "served.toml"]);
     assert_eq!(counts(&server.ask(&json!({"id": 1, "frames": "1-2"}))), [2, 0, 0]);
+    assert!(!place.path("served/0.png").exists() && place.path("served/1.png").exists(), "those that were asked for");
     assert_eq!(counts(&server.ask(&json!({"id": 2, "frames": "0-2"}))), [1, 2, 0]);
     let beyond = server.ask(&json!({"id": 3, "frames": 3}));
     assert!(
@@ -367,7 +370,7 @@ fn a_server_that_is_left_while_it_starts_ends() {
     let place = Place::new();
     let mut server = Server::start(&place, &fly("early/%05d.png", &[]));
     drop(server.answers.take());
-    let began = std::time::Instant::now();
+    let began = Instant::now();
     while server.child.try_wait().expect("a child").is_none() {
         assert!(began.elapsed() < Duration::from_secs(20), "it is still there");
         std::thread::sleep(Duration::from_millis(5));
