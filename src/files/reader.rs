@@ -18,7 +18,10 @@ pub fn is_there() -> bool {
 /// Waits until there is none; for ever where that cannot be told.
 pub fn wait_until_gone() {
     #[cfg(unix)]
-    while !is_gone_within(-1) {}
+    while !is_gone_within(-1) {
+        // A signal came between, or the system cannot tell of such a file.
+        std::thread::sleep(std::time::Duration::from_secs(1));
+    }
     #[cfg(not(unix))]
     loop {
         std::thread::park();
