@@ -14,7 +14,7 @@ use crate::cli::{Place, stderr};
 /// Frames of the flight.
 const COUNT: u32 = 16;
 /// The flight: around a hill, small.
-const FLY: [&str; 12] = [
+pub const FLY: [&str; 12] = [
     "fly",
     "hill.asc",
     "--orbit",
@@ -30,14 +30,14 @@ const FLY: [&str; 12] = [
 ];
 
 /// A frame's file with its bytes and the time at which it was made.
-type Files = BTreeMap<String, (Vec<u8>, SystemTime)>;
+pub type Files = BTreeMap<String, (Vec<u8>, SystemTime)>;
 
-fn fly<'a>(folder: &'a str, more: &[&'a str]) -> Vec<&'a str> {
+pub fn fly<'a>(folder: &'a str, more: &[&'a str]) -> Vec<&'a str> {
     [&FLY[..], &["-o", folder], more].concat()
 }
 
 /// The frames in a folder.
-fn frames(folder: &Path) -> Files {
+pub fn frames(folder: &Path) -> Files {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     let named = entries.map(|entry| (entry.file_name().to_string_lossy().into_owned(), entry.path()));
     let frames = named.filter(|(name, path)| name.ends_with(".png") && !name.starts_with('.') && path.is_file());
@@ -46,18 +46,18 @@ fn frames(folder: &Path) -> Files {
         .collect()
 }
 
-fn bytes(files: &Files) -> BTreeMap<&String, &Vec<u8>> {
+pub fn bytes(files: &Files) -> BTreeMap<&String, &Vec<u8>> {
     files.iter().map(|(name, (bytes, _))| (name, bytes)).collect()
 }
 
 /// What is left in a folder that has no final name.
-fn half_made(folder: &Path) -> Vec<String> {
+pub fn half_made(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     entries.map(|entry| entry.file_name().to_string_lossy().into_owned()).filter(|name| name.starts_with('.')).collect()
 }
 
 /// An undisturbed flight.
-fn undisturbed(place: &Place) -> Files {
+pub fn undisturbed(place: &Place) -> Files {
     let output = place.run(&fly("whole/%05d.png", &[]));
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let frames = frames(&place.path("whole"));
@@ -70,7 +70,7 @@ fn start(place: &Place, arguments: &[&str]) -> Child {
 }
 
 /// Waits until so many frames are there, or the child has ended.
-fn wait_for(folder: &Path, count: usize, child: &mut Child) {
+pub fn wait_for(folder: &Path, count: usize, child: &mut Child) {
     let began = Instant::now();
     while frames(folder).len() < count && child.try_wait().expect("a child").is_none() {
         assert!(began.elapsed() < Duration::from_secs(60), "no frame for a minute");
@@ -358,6 +358,7 @@ fn a_list_tells_what_each_frame_may_take() {
     assert_eq!(done, [(2, true), (3, true), (4, false), (5, false)].map(|(n, done)| (Some(n), Some(done))));
     for line in &lines[2..] {
         assert!(line["seconds"].as_f64() > Some(0.0), "{line}");
+        assert_eq!(line["samples"], 40 * 40, "{line}");
         assert!(line["memory_bytes"].as_u64() > line["device_bytes"].as_u64(), "{line}");
         assert!(line["files"][0].as_str().is_some_and(|file| file.ends_with(".png")), "{line}");
     }

@@ -1,5 +1,6 @@
 //! Every integration test in one binary: linked once, one module a subject.
 
+mod adapters;
 mod agreement;
 mod batches;
 mod borders;
@@ -23,6 +24,7 @@ mod drawing;
 mod economy;
 mod examples;
 mod facets;
+mod farm;
 mod films;
 mod flight_paths;
 mod flights;
@@ -79,6 +81,7 @@ mod scenes;
 mod seams;
 mod seen;
 mod sequences;
+mod serve;
 mod sheets;
 mod shell;
 mod shores;

@@ -1,6 +1,7 @@
 # Sourced by tests/run.sh behind examples/setup.sh: a browser, in which the tests look at a report, GDAL's tools, which
 # errors name as remedies and the tests run, poppler, a stranger to whom our PDFs are shown, vpype, which judges the order
-# of a plot, topotoolbox, which judges where water runs, and ffmpeg, which makes motion pictures.
+# of a plot, topotoolbox, which judges where water runs, Ray and Open Job Description's runner, which share out frames, and
+# ffmpeg, which makes motion pictures.
 browse() {
     for browser in chromium chromium-browser google-chrome; do
         command -v "$browser" >/dev/null 2>&1 && return 0
@@ -39,6 +40,14 @@ hydrology() {
         echo "no topotoolbox: tests of channels by a stranger are skipped; install it (pip) to run them"
     fi
 }
+farm() {
+    [ -x target/ray/bin/ray ] && [ -x target/ray/bin/openjd ] && return 0
+    echo "installing ray and openjd-cli in target/ray"
+    if ! python3 -m venv target/ray || ! target/ray/bin/pip install --quiet --disable-pip-version-check ray openjd-cli; then
+        rm -rf target/ray
+        echo "no ray or openjd-cli: tests of farms are skipped; install them (pip) to run them"
+    fi
+}
 films() {
     command -v ffmpeg >/dev/null 2>&1 && command -v ffprobe >/dev/null 2>&1 && return 0
     if ! command -v apt-get >/dev/null 2>&1 || ! install_packages ffmpeg; then
@@ -50,4 +59,5 @@ remedies
 poppler
 judge
 hydrology
+farm
 films

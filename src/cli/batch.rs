@@ -4,6 +4,7 @@ mod entry;
 mod sheets;
 
 use std::fs;
+use std::io::{stdin, stdout};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -13,8 +14,9 @@ use super::draw::DrawArguments;
 use super::jobs::JobArguments;
 use super::listing;
 use super::plan::{self, Planned};
-use super::progress::{Form, Progress};
+use super::progress::Progress;
 use super::scene;
+use super::serve;
 use super::talk::Talk;
 use super::words::told;
 use super::work::{CODES, Work};
@@ -59,7 +61,10 @@ Examples:
   hachure batch drawings.toml --grid EPSG:32610 --sheet 10km --halo 2km
 
   The first of four shares, told in lines of JSON:
-  hachure batch drawings.toml --shard 0/4 --progress json";
+  hachure batch drawings.toml --shard 0/4 --progress json
+
+  Drawings as they are asked for, on the second of a machine's GPUs:
+  echo '{\"id\": \"a\", \"frames\": \"0-3\"}' | hachure batch drawings.toml --serve --adapter 1";
 
 /// Flags of `hachure batch`, as typed.
 #[derive(Debug, clap::Args)]
@@ -109,8 +114,11 @@ enum What {
 /// Makes the drawings.
 ///
 /// # Errors
-/// As [`Work::run`]; [`Error::Input`] for a file that is no list of drawings.
+/// As [`Work::run`] and [`serve::run`]; [`Error::Input`] for a file that is no list of drawings.
 pub fn run(arguments: &BatchArguments, talk: &Talk) -> Result<()> {
+    if arguments.jobs.serve {
+        serve::end_unread();
+    }
     let cache = arguments.cache.cache();
     let entries = arguments.sheets.sheets(entry::read(&arguments.file)?, &cache, talk)?;
     entry::each_output_once(&arguments.file, &entries)?;
@@ -140,17 +148,27 @@ pub fn run(arguments: &BatchArguments, talk: &Talk) -> Result<()> {
         return studio.list(&entries, &jobs, talk);
     }
     let work = Work { sequence, share, called: "drawings", jobs, folder, dems };
+    if arguments.jobs.serve && entries.iter().any(|entry| entry.draw.scale().is_none()) {
+        // Before any job: that there is none fails them all.
+        studio.gpu()?;
+    }
+    let mut make = |work: &Work, progress: &Progress, talk: &Talk| {
+        let draw = |job: &Job| studio.draw(&entries[job.number as usize], progress);
+        work.run(talk, progress, draw, |job, drawn: Drawn| drawn.write(job))
+    };
+    if arguments.jobs.serve {
+        return serve::run(&work, talk, stdin().lock(), stdout(), make);
+    }
     let progress = Progress::start(talk, arguments.jobs.progress, work.jobs.len());
-    let draw = |job: &Job| studio.draw(&entries[job.number as usize], &progress);
-    let made = work.run(talk, &progress, draw, |job, drawn: Drawn| drawn.write(job));
+    let made = work.prepare().and_then(|()| make(&work, &progress, talk));
     progress.end(made.as_ref().err());
     made
 }
 
 impl BatchArguments {
-    /// Whether standard output holds something else than lines on the work.
-    pub fn fills_stdout(&self) -> bool {
-        self.jobs.progress == Form::Json || self.jobs.list
+    /// Which jobs, and how they are told of.
+    pub fn jobs(&self) -> &JobArguments {
+        &self.jobs
     }
 }
 
@@ -201,13 +219,7 @@ impl Studio<'_> {
             return Ok(Drawn { entry, inputs, what: What::Plan(planned) });
         }
         let illustration = entry.draw.check()?;
-        let gpu = match &self.gpu {
-            Some(gpu) => gpu.clone(),
-            None => {
-                let gpu = Arc::new(self.arguments.device.open_with(wgpu::Features::empty(), &self.talk)?);
-                self.gpu.insert(gpu).clone()
-            }
-        };
+        let gpu = self.gpu()?;
         let adapter = gpu.adapter_and_driver();
         progress.on(&adapter);
         let surface = self.scene(&entry.draw)?.surface.clone();
@@ -225,6 +237,17 @@ impl Studio<'_> {
         entry.draw.warn_of_blank(renderer, &view, &page, talk);
         let inputs = inputs(scene, &entry.draw);
         Ok(Drawn { entry, inputs, what: What::View(Box::new(page), illustration, adapter) })
+    }
+
+    /// The device: open, or opened.
+    fn gpu(&mut self) -> Result<Arc<Gpu>> {
+        match &self.gpu {
+            Some(gpu) => Ok(gpu.clone()),
+            None => {
+                let gpu = Arc::new(self.arguments.device.open_with(wgpu::Features::empty(), &self.talk)?);
+                Ok(self.gpu.insert(gpu).clone())
+            }
+        }
     }
 
     /// The lines of the land that a drawing wants: the last one's, or found.

@@ -23,9 +23,14 @@ const HIDDEN: [Word<Hidden>; 2] = [
     ("dashed", "Draw them in dashes, in a layer of their own", Hidden::Dashed),
     ("off", "Leave them out", Hidden::Off),
 ];
-const PROGRESS: [Word<Form>; 3] = [
+const PROGRESS: [Word<Form>; 4] = [
     ("bar", "As a bar on a terminal", Form::Bar),
     ("json", "As lines of JSON on standard output: start, frame, skip, fail, wait, done", Form::Json),
+    (
+        "openjd",
+        "As a session of Open Job Description reads it on standard output: openjd_progress, openjd_status, openjd_fail",
+        Form::OpenJd,
+    ),
     ("none", "Not at all", Form::None),
 ];
 const BORDERS: [Word<Border>; 2] = [("on", "Draw it", Border::On), ("off", "Leave it out", Border::Off)];

@@ -1,5 +1,6 @@
 //! `hachure fly`: the frames of a flight.
 
+use std::io::{stdin, stdout};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -15,8 +16,9 @@ use super::frames::{FrameArguments, FrameFiles};
 use super::jobs::{JobArguments, Share};
 use super::listing;
 use super::outputs::Format;
-use super::progress::{Form, Progress};
+use super::progress::Progress;
 use super::scene;
+use super::serve;
 use super::talk::Talk;
 use super::terrain::{TerrainArguments, warn_of_survey};
 use super::values::Size;
@@ -50,7 +52,11 @@ Examples:
 
   The first of four shares, on as many machines, and whether all are there:
   hachure fly dem/golden-gate.tif --path route.toml --count 1000 -o /shared/frames/%05d.png --shard 0/4
-  hachure merge /shared/frames";
+  hachure merge /shared/frames
+
+  Frames as they are asked for, on the second of a machine's GPUs:
+  echo '{\"id\": 7, \"frames\": \"3, 5-10\"}' | hachure fly dem/golden-gate.tif --path route.toml --count 1000 \\
+      -o frames/%05d.png --serve --adapter 1";
 
 /// Flags of `hachure fly`, as typed.
 #[derive(Debug, clap::Args)]
@@ -61,7 +67,7 @@ pub struct FlyArguments {
     #[command(flatten)]
     frames: FrameArguments,
     /// Draw the way from above instead, with the cones of some views over a hillshade: is it the flight that is meant?
-    #[arg(long, value_name = "OUT.png|.svg", conflicts_with_all = ["output", "mask", "video", "list"])]
+    #[arg(long, value_name = "OUT.png|.svg", conflicts_with_all = ["output", "mask", "video", "list", "serve"])]
     preview: Option<PathBuf>,
     #[command(flatten)]
     flight: FlightArguments,
@@ -69,7 +75,7 @@ pub struct FlyArguments {
     drawing: DrawingArguments,
     /// Also a motion picture of the frames: .mp4, .mov, .mkv or .webm by ffmpeg, where it is installed; .gif; .png, which is
     /// animated
-    #[arg(long, value_name = "OUT.mp4|.gif|.png", requires = "output", conflicts_with_all = ["frames", "shard", "shard_from_env"])]
+    #[arg(long, value_name = "OUT.mp4|.gif|.png", requires = "output", conflicts_with_all = ["frames", "shard", "shard_from_env", "serve"])]
     video: Option<PathBuf>,
     #[command(flatten)]
     jobs: JobArguments,
@@ -99,8 +105,11 @@ struct Aloft {
 /// Draws the frames.
 ///
 /// # Errors
-/// As [`Work::run`]; whatever keeps all frames from being drawn.
+/// As [`Work::run`] and [`serve::run`]; whatever keeps all frames from being drawn.
 pub fn run(arguments: &FlyArguments, talk: &Talk) -> Result<()> {
+    if arguments.jobs.serve {
+        serve::end_unread();
+    }
     let cache = arguments.cache.cache();
     if let Some(path) = &arguments.preview {
         return arguments.preview(path, &cache, talk);
@@ -119,48 +128,58 @@ pub fn run(arguments: &FlyArguments, talk: &Talk) -> Result<()> {
         arguments.video.as_deref().map(|path| film::of(path, asked.plan.fps(), named(), &pictures)).transpose()?;
     let folder = asked.files.folder();
     Manifest::refuse_others(&folder, &asked.sequence)?;
-    let Asked { files, illustration, share, dem, sequence, .. } = &asked;
-    let (sequence, share, dems) = (sequence.clone(), share.clone(), vec![dem.clone()]);
+    let (sequence, share, dems) = (asked.sequence.clone(), asked.share.clone(), vec![asked.dem.clone()]);
     let work = Work { sequence, share, called: "frames", jobs, folder, dems };
+    if arguments.jobs.serve {
+        let mut aloft = Some(arguments.rise(&asked, &work.jobs, &cache, talk)?);
+        let make = |work: &Work, progress: &Progress, talk: &Talk| fly(&mut aloft, &asked, work, progress, talk);
+        return serve::run(&work, talk, stdin().lock(), stdout(), make);
+    }
     let progress = Progress::start(talk, arguments.jobs.progress, work.jobs.len());
-    let fly = || {
+    let flown = || {
         let is_left = work.jobs.iter().any(|job| !job.is_done());
         let mut aloft = is_left.then(|| arguments.rise(&asked, &work.jobs, &cache, talk)).transpose()?;
-        let adapter = aloft.as_ref().map(|aloft| aloft.adapter.clone()).unwrap_or_default();
-        progress.on(&adapter);
-        let draw = |job: &Job| {
-            let Some(Aloft { renderer, flight, .. }) = &mut aloft else {
-                return Err(Error::mistake("a frame went missing as it was looked at"));
-            };
-            // Light stands still while the eye turns.
-            let plan = illustration.plan.lit_for(flight.camera(0).azimuth);
-            renderer.find(&plan, &flight.camera(job.number), |_| ())
-        };
-        let blank = AtomicUsize::new(0);
-        let finish = |job: &Job, found: Found| {
-            let page = found.page();
-            blank.fetch_add(usize::from(page.marks.inked() == 0), Ordering::Relaxed);
-            files.write(job, &page, illustration, &adapter)
-        };
-        work.run(talk, &progress, draw, finish)?;
-        match blank.into_inner() {
-            0 => {}
-            count => {
-                talk.warn(&format!("{count} of the frames drawn hold no line; see where they look with --preview"))
-            }
-        }
-        let inks = Inks::of(&illustration.style);
+        work.prepare()?;
+        fly(&mut aloft, &asked, &work, &progress, talk)?;
+        let inks = Inks::of(&asked.illustration.style);
         film.as_ref().map_or(Ok(()), |film| film::make(film, &pictures, &inks, &progress, talk))
     };
-    let flown = fly();
+    let flown = flown();
     progress.end(flown.as_ref().err());
     flown
 }
 
+/// Draws frames; with nothing where all are there.
+fn fly(aloft: &mut Option<Aloft>, asked: &Asked, work: &Work, progress: &Progress, talk: &Talk) -> Result<()> {
+    let Asked { files, illustration, .. } = asked;
+    let adapter = aloft.as_ref().map(|aloft| aloft.adapter.clone()).unwrap_or_default();
+    progress.on(&adapter);
+    let draw = |job: &Job| {
+        let Some(Aloft { renderer, flight, .. }) = aloft else {
+            return Err(Error::mistake("a frame went missing as it was looked at"));
+        };
+        // Light stands still while the eye turns.
+        let plan = illustration.plan.lit_for(flight.camera(0).azimuth);
+        renderer.find(&plan, &flight.camera(job.number), |_| ())
+    };
+    let blank = AtomicUsize::new(0);
+    let finish = |job: &Job, found: Found| {
+        let page = found.page();
+        blank.fetch_add(usize::from(page.marks.inked() == 0), Ordering::Relaxed);
+        files.write(job, &page, illustration, &adapter)
+    };
+    work.run(talk, progress, draw, finish)?;
+    match blank.into_inner() {
+        0 => {}
+        count => talk.warn(&format!("{count} of the frames drawn hold no line; see where they look with --preview")),
+    }
+    Ok(())
+}
+
 impl FlyArguments {
-    /// Whether standard output holds something else than lines on the work.
-    pub fn fills_stdout(&self) -> bool {
-        self.jobs.progress == Form::Json || self.jobs.list
+    /// Which jobs, and how they are told of.
+    pub fn jobs(&self) -> &JobArguments {
+        &self.jobs
     }
 
     /// Whether the flags go together, all that is known without the DEM, and the frames to draw.

@@ -1,4 +1,4 @@
-//! `hachure info`: what a DEM holds.
+//! `hachure info`: what a DEM holds, or which adapters there are.
 
 use super::talk::Talk;
 use super::terrain::{TerrainArguments, words};
@@ -7,16 +7,22 @@ use super::{channels, peaks, values};
 use crate::cache::Cache;
 use crate::error::Result;
 use crate::geo;
+use crate::gpu::Adapter;
 
 /// The end of `hachure info --help`.
 const EXAMPLES: &str = "\
 Examples:
   hachure info dem/golden-gate.tif
   hachure info dem/golden-gate.tif --peaks 5
-  hachure info dem/golden-gate.tif --channels";
+  hachure info dem/golden-gate.tif --channels
+
+  The adapters, for --adapter N:
+  hachure info --adapters";
 
 /// Peaks that are listed where nobody says how many.
 pub const PEAKS: &str = "20";
+/// Bytes of a GiB.
+const GIB: f64 = (1u64 << 30) as f64;
 
 /// Flags of `hachure info`.
 #[derive(Debug, clap::Args)]
@@ -32,13 +38,20 @@ pub struct InfoArguments {
     /// Also list from how much land on water was tried to run in channels, and which of them --channel-area auto takes and why
     #[arg(long)]
     channels: bool,
+    /// List the adapters of this machine instead, of which --adapter takes the numbers: where each is plugged in, and how much
+    /// memory it has
+    #[arg(long, exclusive = true)]
+    adapters: bool,
 }
 
-/// Prints size, CRS, extent, cell, range, voids, what was converted and assumed, peaks and areas of channels.
+/// Prints size, CRS, extent, cell, range, voids, what was converted and assumed, peaks and areas of channels; or the adapters.
 ///
 /// # Errors
-/// As [`geo::info()`]; for peaks and channels of a DEM that stays in its files [`Error::Limit`](crate::error::Error::Limit).
+/// As [`geo::info()`] and [`Adapter::all`]; for peaks and channels of a DEM that stays in its files [`Error::Limit`](crate::error::Error::Limit).
 pub fn run(arguments: &InfoArguments, talk: &Talk) -> Result<()> {
+    if arguments.adapters {
+        return talk.answer(&table(&Adapter::all()?));
+    }
     let terrain = &arguments.terrain;
     let options = terrain.options(1.0, Cache::none());
     let (info, dem) = geo::info_and_dem(&terrain.dems, &options, &|stage, share| talk.progress(words(stage), share))?;
@@ -46,4 +59,17 @@ pub fn run(arguments: &InfoArguments, talk: &Talk) -> Result<()> {
     let peaks = arguments.peaks.map(|count| peaks::told(&dem, count)).transpose()?;
     let channels = arguments.channels.then(|| channels::told(&dem)).transpose()?;
     talk.answer(&[Some(info.told(told)), peaks, channels].into_iter().flatten().collect::<Vec<_>>().join("\n"))
+}
+
+/// Adapters, a row each: names last, which hold spaces.
+fn table(adapters: &[Adapter]) -> String {
+    let row = |[number, bus, memory, name]: [&str; 4]| format!("{number:<6}  {bus:<12}  {memory:>10}  {name}");
+    let told = |adapter: &Adapter| {
+        let memory = adapter.memory.map_or("-".to_owned(), |bytes| format!("{:.1} GiB", bytes as f64 / GIB));
+        row([&adapter.number.to_string(), adapter.bus.as_deref().unwrap_or("-"), &memory, &adapter.name])
+    };
+    std::iter::once(row(["number", "bus", "memory", "name"]))
+        .chain(adapters.iter().map(told))
+        .collect::<Vec<_>>()
+        .join("\n")
 }

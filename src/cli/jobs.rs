@@ -22,10 +22,15 @@ pub struct JobArguments {
     /// (which does not say how many there are: set HACHURE_SHARDS)
     #[arg(long)]
     shard_from_env: bool,
-    /// List the jobs as lines of JSON, with the seconds, memory and device memory they may take; make nothing
+    /// List the jobs as lines of JSON, with the samples that they read at most, and the seconds, memory and device memory they
+    /// may take; make nothing
     #[arg(long)]
     pub list: bool,
-    /// How progress is shown: a bar on a terminal, lines of JSON on standard output, or none
+    /// Stay, take jobs from standard input, a line of JSON each: {"id": 7, "frames": "3,5-10"}, and answer each with a line on
+    /// standard output, which repeats the id; the end of standard input ends it
+    #[arg(long, conflicts_with_all = ["frames", "shard", "shard_from_env", "list", "progress"])]
+    pub serve: bool,
+    /// How progress is shown: a bar on a terminal, lines for programs on standard output, or none
     #[arg(long, value_parser = choices::progress(), default_value = choices::default_progress())]
     pub progress: Form,
 }
@@ -42,16 +47,18 @@ pub struct Share {
 }
 
 impl JobArguments {
+    /// Whether standard output holds something else than lines on the work.
+    pub fn fills_stdout(&self) -> bool {
+        self.list || self.serve || matches!(self.progress, Form::Json | Form::OpenJd)
+    }
+
     /// Which of `count` jobs are to be done; they are called `frames` or `drawings`.
     ///
     /// # Errors
     /// [`Error::Setting`] for jobs beyond the last, and where the environment names no shard.
     pub fn share(&self, count: u32, called: &str) -> Result<Share> {
         let all = self.frames.clone().unwrap_or_else(|| Frames::first(count));
-        if let Some(last) = all.last().filter(|last| *last >= count) {
-            let what = format!("there is no {last}; the {count} {called} count from 0 to {}", count.saturating_sub(1));
-            return Err(Error::setting(Setting::Frames, what, "name those that there are"));
-        }
+        check(&all, count, called)?;
         let from_env = || {
             Shard::from_env(|name| env::var(name).ok()).map_err(|what| {
                 Error::setting(Setting::ShardFromEnv, what, message!["give ", Setting::Shard.with_value()])
@@ -64,4 +71,15 @@ impl JobArguments {
         };
         Ok(Share { part: self.frames.clone(), shard, frames: shard.of(&all) })
     }
+}
+
+/// Whether all these are among the `count` frames or drawings that there are.
+///
+/// # Errors
+/// [`Error::Setting`].
+pub fn check(frames: &Frames, count: u32, called: &str) -> Result<()> {
+    frames.last().filter(|last| *last >= count).map_or(Ok(()), |last| {
+        let what = format!("there is no {last}; the {count} {called} count from 0 to {}", count.saturating_sub(1));
+        Err(Error::setting(Setting::Frames, what, "name those that there are"))
+    })
 }

@@ -19,6 +19,7 @@ struct Line {
     files: Vec<String>,
     job: String,
     done: bool,
+    samples: u64,
     facets: u64,
     seconds: f64,
     memory_bytes: u64,
@@ -42,12 +43,13 @@ pub fn estimate(plan: &Plan, surface: &Surface, camera: &Camera, kept: &mut Kept
 /// As [`Talk::answer`].
 pub fn tell(job: &Job, estimate: Result<Estimate>, talk: &Talk) -> Result<()> {
     let error = estimate.as_ref().err().map(words::line);
-    let Estimate { facets, seconds, memory, device } = estimate.unwrap_or(Estimate::NOTHING);
+    let Estimate { samples, facets, seconds, memory, device } = estimate.unwrap_or(Estimate::NOTHING);
     let line = Line {
         n: job.number,
         files: job.files.iter().map(|made| made.path.to_string_lossy().into_owned()).collect(),
         job: job.files.first().map(|made| name::text(made.name)).unwrap_or_default(),
         done: job.is_done(),
+        samples,
         facets,
         seconds: (seconds * 1e3).round() / 1e3,
         memory_bytes: memory,

@@ -34,6 +34,7 @@ mod peaks;
 pub mod plan;
 pub mod progress;
 pub mod scene;
+pub mod serve;
 pub mod style;
 pub mod styles;
 pub mod talk;
@@ -98,8 +99,8 @@ impl Arguments {
     pub fn talk(&self) -> Talk {
         let lines = match &self.command {
             Command::Draw(arguments) if arguments.fill_stdout() => Lines::Stderr,
-            Command::Batch(arguments) if arguments.fills_stdout() => Lines::Stderr,
-            Command::Fly(arguments) if arguments.fills_stdout() => Lines::Stderr,
+            Command::Batch(arguments) if arguments.jobs().fills_stdout() => Lines::Stderr,
+            Command::Fly(arguments) if arguments.jobs().fills_stdout() => Lines::Stderr,
             _ => Lines::Stdout,
         };
         Talk::new(&self.talk, lines)
@@ -112,13 +113,13 @@ impl Arguments {
     pub fn run(&self, talk: &Talk) -> Result<()> {
         match &self.command {
             Command::Draw(arguments) => draw::run(arguments, talk),
-            Command::Batch(arguments) => batch::run(arguments, talk),
+            Command::Batch(arguments) => arguments.jobs().progress.told(batch::run(arguments, talk)),
             Command::Merge(arguments) => merge::run(arguments, talk),
             Command::Compare(arguments) => compare::run(arguments, talk),
             Command::Cache(arguments) => cache::run(arguments, talk),
             Command::Styles(arguments) => styles::run(arguments, talk),
             Command::Info(arguments) => info::run(arguments, talk),
-            Command::Fly(arguments) => fly::run(arguments, talk),
+            Command::Fly(arguments) => arguments.jobs().progress.told(fly::run(arguments, talk)),
             Command::Generate(arguments) => generate::run(arguments, talk),
         }
     }

@@ -1,19 +1,23 @@
-//! How far a sequence has come: a bar on a terminal, or lines of JSON for programs.
+//! How far a sequence has come: a bar on a terminal, or lines for programs, in JSON or as Open Job Description has them.
 //!
-//! Lines go to standard output, one object each: `start`, `frame`, `skip` and `fail` for each job, `done` at the end, with what
-//! is left and the error that ended it; `wait` where nothing else was to be said for a while.
+//! Lines of JSON go to standard output, one object each: `start`, `frame`, `skip` and `fail` for each job, `done` at the end, with what
+//! is left and the error that ended it; `wait` where nothing else was to be said for a while. Sessions of Open Job Description
+//! (2023-09, How Jobs Are Run: messages on standard output) read `openjd_progress: 12.5`, percent; `openjd_status:`, a line in
+//! words; `openjd_fail:`, why the work ended, which is said once.
 
+use std::fmt::Display;
 use std::io::{Write, stdout};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::talk::Talk;
 use super::words;
-use crate::error::Error;
+use crate::error::{Error, Result, plain};
 use crate::job::Event;
 
 /// Longest silence.
@@ -27,8 +31,20 @@ pub enum Form {
     Bar,
     /// As lines of JSON.
     Json,
+    /// As lines for a session of Open Job Description.
+    OpenJd,
     /// Not at all.
     None,
+}
+
+impl Form {
+    /// Tells a farm why the work ended, were it before it began; what else reads lines hears of that on standard error.
+    pub fn told(self, done: Result<()>) -> Result<()> {
+        if let (Self::OpenJd, Err(error)) = (self, &done) {
+            say(&format!("openjd_fail: {}", plain(words::line(error))));
+        }
+        done
+    }
 }
 
 /// How far the jobs have come.
@@ -45,7 +61,7 @@ pub struct Progress<'a> {
 }
 
 /// What became of jobs.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub struct Counts {
     /// Made.
     pub made: usize,
@@ -77,6 +93,7 @@ impl<'a> Progress<'a> {
             _silence: silence.flatten(),
         };
         progress.line(|| json!({"event": "start", "jobs": jobs}));
+        progress.openjd("progress", 0.0);
         progress
     }
 
@@ -89,6 +106,10 @@ impl<'a> Progress<'a> {
         self.line(|| {
             json!({"event": "done", "made": made, "skipped": skipped, "failed": failed, "left": left, "s": s, "error": error})
         });
+        if error.is_none() {
+            self.openjd("progress", 100.0);
+            self.openjd("status", format_args!("{made} drawn, {skipped} were there"));
+        }
         self.talk.progress("", 1.0);
     }
 
@@ -125,10 +146,17 @@ impl<'a> Progress<'a> {
             Event::Skipped(job) => json!({"event": "skip", "n": job.number}),
             Event::Failed(job, error) => json!({"event": "fail", "n": job.number, "name": job.called, "error": words::line(error)}),
         });
-        if self.form == Form::Bar {
-            let stage = format!("{} of {}, {} left", counts.all(), self.jobs, duration(eta));
+        let stage = || format!("{} of {}, {} left", counts.all(), self.jobs, duration(eta));
+        let share = counts.all() as f64 / self.jobs.max(1) as f64;
+        match (self.form, event) {
             // The end is told with the last line.
-            self.talk.progress(&stage, (counts.all() as f64 / self.jobs.max(1) as f64).min(0.999));
+            (Form::Bar, _) => self.talk.progress(&stage(), share.min(0.999)),
+            // Thousands may be skipped in a second, each a message to a farm.
+            (Form::OpenJd, Event::Made(..) | Event::Failed(..)) => {
+                self.openjd("progress", rounded(share * 100.0));
+                self.openjd("status", stage());
+            }
+            _ => {}
         }
     }
 
@@ -141,6 +169,13 @@ impl<'a> Progress<'a> {
     pub fn film(&self, share: f64) {
         if self.form == Form::Bar {
             self.talk.progress("making the motion picture", share.min(0.999));
+        }
+    }
+
+    /// A message of one line.
+    fn openjd(&self, key: &str, value: impl Display) {
+        if self.form == Form::OpenJd {
+            say(&format!("openjd_{key}: {value}"));
         }
     }
 
@@ -170,7 +205,7 @@ fn break_silences(spoken: &Arc<Mutex<Instant>>) -> Option<Sender<()>> {
 }
 
 /// A reader that has gone away has had what it wanted.
-fn say(line: &Value) {
+fn say(line: &dyn Display) {
     let mut out = stdout().lock();
     let _ = writeln!(out, "{line}").and_then(|()| out.flush());
 }
@@ -180,7 +215,7 @@ fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
 }
 
 /// With three decimals.
-fn rounded(number: f64) -> f64 {
+pub fn rounded(number: f64) -> f64 {
     (number * 1e3).round() / 1e3
 }
 

@@ -417,13 +417,13 @@ pub fn method(text: &str) -> Result<Method, String> {
     Method::named(text).ok_or_else(|| format!("want some of {names}"))
 }
 
-/// `cpu`, `gpu` or words of an adapter's name.
+/// `cpu`, `gpu`, an adapter's number, or words of its name or its bus.
 pub fn adapter(text: &str) -> Result<AdapterChoice, String> {
     match text {
-        "" => Err("want cpu, gpu or words of an adapter's name".into()),
+        "" => Err("want cpu, gpu, an adapter's number, or words of its name or its bus".into()),
         "cpu" => Ok(AdapterChoice::Cpu),
         "gpu" => Ok(AdapterChoice::Gpu),
-        name => Ok(AdapterChoice::Named(name.to_owned())),
+        words => Ok(words.parse().map_or_else(|_| AdapterChoice::Named(words.to_owned()), AdapterChoice::Number)),
     }
 }
 

@@ -10,6 +10,9 @@ use crate::error::{Error, Form, Message, Setting, shown};
 /// Exit code for "failed".
 pub const FAILED: u8 = 1;
 
+/// Exit code for "wrong usage".
+pub const USAGE: u8 = 2;
+
 /// Exit code for "try again".
 pub const TRY_AGAIN: u8 = 75;
 
@@ -126,7 +129,7 @@ pub fn line(error: &Error) -> String {
 /// The process's exit code for an error: 1 failed, 2 wrong usage, 75 try again.
 pub fn exit_code(error: &Error) -> u8 {
     match error {
-        Error::Setting { .. } => 2,
+        Error::Setting { .. } => USAGE,
         Error::DeviceLost { .. } | Error::Ended { .. } => TRY_AGAIN,
         _ => FAILED,
     }

@@ -6,14 +6,14 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use super::jobs::Share;
+use super::jobs::{self, Share};
 use super::progress::{Counts, Progress, duration};
 use super::talk::Talk;
 use super::words;
 use crate::error::{Error, Result, shown};
 use crate::files::{Output, output, signals};
 use crate::job::manifest::Sequence;
-use crate::job::{self, Content, Event, Job, Made, Manifest};
+use crate::job::{self, Content, Event, Frames, Job, Made, Manifest, Shard};
 
 /// How often the manifest is written while the work goes on.
 const OFTEN: Duration = Duration::from_secs(10);
@@ -59,11 +59,23 @@ struct Noted<'a> {
 }
 
 impl Work<'_> {
-    /// Does the jobs: `draw` makes of each what `finish` writes to its files; both may tell `progress` of the adapter.
+    /// Some of it as work of its own: it holds all jobs there are.
     ///
     /// # Errors
-    /// As [`job::run`]; [`Error::Incomplete`] where some failed; [`Error::Input`] where the folder holds another sequence;
-    /// [`Error::Output`] where it takes no files.
+    /// As [`jobs::check`].
+    pub fn part(&self, frames: &Frames) -> Result<Work<'_>> {
+        jobs::check(frames, self.jobs.len() as u32, self.called)?;
+        let jobs = frames.numbers().iter().filter_map(|n| self.jobs.get(*n as usize).cloned()).collect();
+        let share = Share { part: Some(frames.clone()), shard: Shard::WHOLE, frames: frames.clone() };
+        let (sequence, folder, dems) = (self.sequence.clone(), self.folder.clone(), self.dems.clone());
+        Ok(Work { sequence, share, called: self.called, jobs, folder, dems })
+    }
+
+    /// Does the jobs in folders that are [prepared](Self::prepare): `draw` makes of each what `finish` writes to its files; both
+    /// may tell `progress` of the adapter.
+    ///
+    /// # Errors
+    /// As [`job::run`]; [`Error::Incomplete`] where some failed; [`Error::Output`] where the folder takes no files.
     pub fn run<'j, P: Send>(
         &'j self,
         talk: &Talk,
@@ -72,8 +84,6 @@ impl Work<'_> {
         finish: impl Fn(&'j Job, P) -> Result<()> + Sync,
     ) -> Result<()> {
         let began = Instant::now();
-        Manifest::refuse_others(&self.folder, &self.sequence)?;
-        self.prepare()?;
         let noted = self.noted()?;
         let finishing = signals::finish_first();
         let first = Mutex::new(None);
@@ -103,9 +113,11 @@ impl Work<'_> {
         }
     }
 
-    /// Makes the folders, and removes what a process that was killed has left there. Fails where no job can write all its
-    /// files: else those fail that cannot.
-    fn prepare(&self) -> Result<()> {
+    /// Makes the folders, and removes what a process that was killed has left there.
+    ///
+    /// # Errors
+    /// [`Error::Output`] where no job can write all its files: else those fail that cannot.
+    pub fn prepare(&self) -> Result<()> {
         fn folder_of(made: &Made) -> &Path {
             made.path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
         }

@@ -23,14 +23,17 @@ static ASKED: AtomicBool = AtomicBool::new(false);
 /// # Errors
 /// The system's, where it takes no handler: a signal may leave temporary files behind then.
 pub fn end_when_asked(code: i32) -> io::Result<()> {
-    ctrlc::set_handler(move || {
-        if FINISHES.load(Ordering::SeqCst) && !ASKED.swap(true, Ordering::SeqCst) {
-            return;
-        }
-        discard_all();
-        exit(code)
-    })
-    .map_err(io::Error::other)
+    ctrlc::set_handler(move || ask(code)).map_err(io::Error::other)
+}
+
+/// Asks the process to end, as a signal does. Where nothing is at hand that would come to an end by itself, it ends here, with
+/// this code.
+pub fn ask(code: i32) {
+    if FINISHES.load(Ordering::SeqCst) && !ASKED.swap(true, Ordering::SeqCst) {
+        return;
+    }
+    discard_all();
+    exit(code)
 }
 
 /// Work that comes to an end by itself, as long as this is there.

@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use bytemuck::Pod;
 
+use super::adapter::{self, AdapterChoice};
 use super::clock::Clock;
 use super::compiled::Compiled;
 use super::memory;
@@ -20,20 +21,6 @@ const STORAGE_BUFFERS: u32 = 16;
 
 /// What 64-bit atomics take.
 const INT64: wgpu::Features = wgpu::Features::SHADER_INT64.union(wgpu::Features::SHADER_INT64_ATOMIC_MIN_MAX);
-
-/// Which adapter to open.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub enum AdapterChoice {
-    /// A discrete GPU before an integrated one before a software driver.
-    #[default]
-    Best,
-    /// The software driver.
-    Cpu,
-    /// Any real GPU.
-    Gpu,
-    /// The first whose name contains these words, in any case.
-    Named(String),
-}
 
 /// Whether 64-bit atomics may be used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -77,7 +64,7 @@ impl Gpu {
     /// # Errors
     /// As [`Self::open`].
     pub fn open_with(choice: &AdapterChoice, int64: Int64, extra: wgpu::Features) -> Result<Self> {
-        let adapter = find(choice)?;
+        let adapter = adapter::find(choice)?;
         let mut features = extra;
         if int64 == Int64::IfPresent && adapter.features().contains(INT64) {
             features |= INT64;
@@ -263,40 +250,4 @@ fn check_limits(has: &wgpu::Limits) -> Result<()> {
 /// Words on one line.
 pub(super) fn one_line(e: &dyn std::fmt::Display) -> String {
     e.to_string().split_whitespace().collect::<Vec<_>>().join(" ")
-}
-
-fn find(choice: &AdapterChoice) -> Result<wgpu::Adapter> {
-    if let Some(error) = memory::too_little() {
-        return Err(error);
-    }
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
-    let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
-    adapters.sort_by_key(|a| match a.get_info().device_type {
-        wgpu::DeviceType::DiscreteGpu => 0,
-        wgpu::DeviceType::IntegratedGpu => 1,
-        wgpu::DeviceType::VirtualGpu => 2,
-        wgpu::DeviceType::Other => 3,
-        wgpu::DeviceType::Cpu => 4,
-    });
-    let is_cpu = |a: &wgpu::Adapter| a.get_info().device_type == wgpu::DeviceType::Cpu;
-    let names = adapters.iter().map(|a| a.get_info().name).collect::<Vec<_>>().join(", ");
-    let found = adapters.into_iter().find(|a| match choice {
-        AdapterChoice::Best => true,
-        AdapterChoice::Cpu => is_cpu(a),
-        AdapterChoice::Gpu => !is_cpu(a),
-        AdapterChoice::Named(name) => a.get_info().name.to_lowercase().contains(&name.to_lowercase()),
-    });
-    let what = match choice {
-        AdapterChoice::Best => "this machine has none".to_owned(),
-        AdapterChoice::Cpu => "no software driver among the adapters".to_owned(),
-        AdapterChoice::Gpu => "no real GPU among the adapters".to_owned(),
-        AdapterChoice::Named(name) => format!("none is named `{name}`"),
-    };
-    let remedy = if names.is_empty() {
-        "install a Vulkan driver: on Debian or Ubuntu `apt-get install mesa-vulkan-drivers`".to_owned()
-    } else {
-        format!("there is: {names}")
-    };
-    // Drivers that open none for lack of memory do not say why.
-    found.ok_or_else(|| memory::too_little().unwrap_or(Error::NoAdapter { what, remedy }))
 }

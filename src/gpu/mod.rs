@@ -1,5 +1,6 @@
 //! The device, its buffers, and one adapter a pass. The mathematics stands in `shaders/`.
 
+pub mod adapter;
 pub mod adjacency;
 pub mod border;
 pub mod buffers;
@@ -40,10 +41,11 @@ pub mod walk_rest;
 pub mod wanted;
 pub mod work;
 
+pub use adapter::{Adapter, AdapterChoice};
 pub use capacity::Capacity;
 pub use clock::Clock;
 pub use curves::CurveBuffers;
-pub use device::{AdapterChoice, Gpu, Int64};
+pub use device::{Gpu, Int64};
 pub use on_device::OnDevice;
 pub use page::PageBuffers;
 pub use pass::Pass;

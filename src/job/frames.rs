@@ -59,6 +59,9 @@ impl FromStr for Frames {
                     numbers.extend((first..=last).step_by(step as usize));
                 }
             }
+            if numbers.len() > MOST as usize {
+                return Err(format!("it names more than {MOST} frames, some of them twice"));
+            }
         }
         Ok(numbers.into_iter().collect())
     }

@@ -14,6 +14,7 @@ pub mod manifest;
 pub mod merge;
 pub mod name;
 pub mod pattern;
+pub mod serve;
 pub mod shard;
 
 use std::path::PathBuf;

@@ -31,6 +31,8 @@ const OF_DRAWING: u64 = 3 * 24;
 /// What a frame may take.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
+    /// Samples of the DEM, or of the part of it that is taken: at most so many are read.
+    pub samples: u64,
     /// Facets.
     pub facets: u64,
     /// Seconds, once the device is warm.
@@ -43,12 +45,13 @@ pub struct Estimate {
 
 impl Estimate {
     /// What is done already.
-    pub const NOTHING: Self = Self { facets: 0, seconds: 0.0, memory: 0, device: 0 };
+    pub const NOTHING: Self = Self { samples: 0, facets: 0, seconds: 0.0, memory: 0, device: 0 };
 
     /// Of the plan of a DEM, which no device sees.
     pub fn of_plan(dem: &Dem) -> Self {
-        let samples = (dem.columns() * dem.rows()) as u64;
+        let samples = samples(dem);
         Self {
+            samples,
             seconds: SECONDS + samples as f64 * OF_SAMPLE_SECONDS,
             memory: PROGRAM + samples * OF_SAMPLE,
             ..Self::NOTHING
@@ -72,13 +75,19 @@ impl Estimate {
         let batch = u64::from(capacity.chunks.min(BATCH_CHUNKS));
         let of_curves = if frame.plan.has_curves() { batch * u64::from(CHUNK_VERTICES) * sizes::WORD_BYTES } else { 0 };
         let device = of_scene.iter().chain(&of_page).map(|(_, bytes)| bytes).sum::<u64>() + of_curves;
-        let samples = surface.dem().held().map_or(0, |_| surface.dem().columns() as u64 * surface.dem().rows() as u64);
+        let samples = samples(surface.dem());
+        let held = if surface.dem().held().is_ok() { samples } else { 0 };
         let of_facet = OF_FACET[usize::from(frame.plan.has_curves())];
         Ok(Self {
+            samples,
             facets,
             seconds: SECONDS + facets as f64 * of_facet + pixels as f64 * OF_PIXEL,
-            memory: PROGRAM + samples * OF_SAMPLE + device + pixels * OF_DRAWING,
+            memory: PROGRAM + held * OF_SAMPLE + device + pixels * OF_DRAWING,
             device,
         })
     }
+}
+
+fn samples(dem: &Dem) -> u64 {
+    dem.columns() as u64 * dem.rows() as u64
 }
