@@ -204,6 +204,26 @@ fn hachures_are_a_layer_of_views_and_plans() {
 }
 
 #[test]
+fn hachures_of_a_style_that_a_method_does_not_draw_are_told() {
+    let told = |arguments: &[&str]| {
+        let place = Place::new();
+        // The style's own, not the tests'.
+        let mut command = place.command(&[]);
+        let view = ["draw", "hill.asc", "-o", "a.png", "--size", "64x48", "--method", "adjacency"];
+        let output = command.args([&view[..], arguments].concat()).output().expect("the program");
+        assert!(output.status.success(), "{}", stderr(&output));
+        stderr(&output).lines().filter(|line| line.contains("left out: ")).map(str::to_owned).collect::<Vec<_>>()
+    };
+    let words = "they go with contours only; leave out --method, or add";
+    assert_eq!(told(&[]), [format!("warning: the style's hachures are left out: {words} --hachures none")]);
+    let both = format!(
+        "warning: the style's drainage, ridges and hachures are left out: {words} --creases none --hachures none"
+    );
+    assert_eq!(told(&["--style", "woodcut"]), [both]);
+    assert_eq!(told(&["--hachures", "none"]), Vec::<String>::new());
+}
+
+#[test]
 fn hachures_want_contours() {
     let traced = ["draw", "hill.asc", "-o", "a.png", "--method", "adjacency", "--hachures", "both"];
     refuses(&Place::new(), &traced, 2, "--hachures: goes with contours only");

@@ -2,7 +2,7 @@
 //! page they stand, in which style.
 
 use super::choices;
-use super::land::{LandArguments, creases_word};
+use super::land::LandArguments;
 use super::page::{Layout, PageArguments};
 use super::style::StyleArguments;
 use super::values::{self, LevelChoice, Size};
@@ -112,18 +112,26 @@ impl DrawingArguments {
         Ok(Illustration { plan, style, land, economy, split, sheet: layout.sheet, frame, px_per_mm: layout.px_per_mm })
     }
 
-    /// What is to be told where the style has lines of the land and the method draws none.
+    /// What is to be told where the style has lines of the land or hachures and the method draws none.
     ///
     /// # Errors
     /// As [`Self::plan`] and [`StyleArguments::style`].
     pub fn left_out_of_style(&self) -> Result<Option<String>> {
-        if self.land.says_creases() || self.plan(Wanted::Drawing)?.has_curves() {
+        if self.plan(Wanted::Drawing)?.has_curves() {
             return Ok(None);
         }
-        let creases = self.style.style()?.creases;
-        let words = "they go with contours only; leave out --method, or add --creases none";
-        Ok((!creases.is_empty())
-            .then(|| format!("the style's {} are left out: {words}", creases_word(&creases, " and "))))
+        let Style { creases, hachures, .. } = self.style.style()?;
+        let creases = if self.land.says_creases() { Vec::new() } else { creases };
+        let of_creases = creases.iter().map(|crease| (crease.name(), " --creases none"));
+        let of_hachures = hachures.rules().map(|_| ("hachures", " --hachures none"));
+        let (lines, mut flags): (Vec<&str>, Vec<&str>) = of_creases.chain(of_hachures).unzip();
+        flags.dedup();
+        Ok(lines.split_last().map(|(last, others)| {
+            let lines =
+                if others.is_empty() { (*last).to_owned() } else { format!("{} and {last}", others.join(", ")) };
+            let words = "they go with contours only; leave out --method, or add";
+            format!("the style's {lines} are left out: {words}{}", flags.concat())
+        }))
     }
 
     /// Which lines of the land are to be drawn; none where no curves are.

@@ -22,7 +22,7 @@ pub struct LandArguments {
         long, value_name = "NAME,…|none", value_parser = creases,
         help = format!(
             "Lines of the land, each kind in a layer of its own: {}; or none [default: as the style has it, {}]",
-            Crease::ALL.map(Crease::name).join(", "), creases_word(&Style::default().creases, ",")
+            Crease::ALL.map(Crease::name).join(", "), creases_word(&Style::default().creases)
         )
     )]
     creases: Option<Creases>,
@@ -39,11 +39,11 @@ pub struct LandArguments {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Creases(pub Vec<Crease>);
 
-/// What users call them, with this between them.
-pub(super) fn creases_word(creases: &[Crease], between: &str) -> String {
+/// What users call them.
+fn creases_word(creases: &[Crease]) -> String {
     match creases {
         [] => "none".to_owned(),
-        creases => creases.iter().map(|crease| crease.name()).collect::<Vec<_>>().join(between),
+        creases => creases.iter().map(|crease| crease.name()).collect::<Vec<_>>().join(","),
     }
 }
 

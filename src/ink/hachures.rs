@@ -64,7 +64,7 @@ pub struct LightStyle {
 impl Default for HachureStyle {
     fn default() -> Self {
         Self {
-            tone: Tone::Both,
+            tone: Tone::Shadow,
             spacing: 1.0,
             length: 14.0,
             min_slope: 3.0,

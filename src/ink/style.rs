@@ -210,11 +210,12 @@ impl Default for Pens {
     fn default() -> Self {
         let pen = |width| Pen { width, ..Pen::default() };
         Self {
-            silhouette: pen(0.3),
-            border: pen(0.24),
-            shore: pen(0.18),
-            drainage: pen(0.18),
-            ridge: pen(0.15),
+            // Lines lead, hachures follow.
+            silhouette: pen(0.6),
+            border: pen(0.4),
+            shore: pen(0.25),
+            drainage: pen(0.25),
+            ridge: pen(0.2),
             own: pen(0.24),
             hachure: pen(0.38),
             hidden: pen(0.15),
