@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
 use bytemuck::{Pod, Zeroable};
-use xxhash_rust::xxh3::{Xxh3, xxh3_128};
+use xxhash_rust::xxh3::{Xxh3, xxh3_64, xxh3_128};
 
 use super::shelf::TEMPORARY;
 use super::{Key, Kind};
@@ -168,6 +168,23 @@ pub(super) fn made_of(path: &Path) -> Option<String> {
     tail(&mut file).ok().map(|(_, _, text)| text)
 }
 
+impl Kept {
+    /// The bytes that [`Sheet::publish_whole`] wrote.
+    ///
+    /// # Errors
+    /// The system's; [`ErrorKind::InvalidData`] for other bytes.
+    pub fn whole(mut self) -> io::Result<Vec<u8>> {
+        let mut bytes = Vec::new();
+        self.file.by_ref().take(self.bytes).read_to_end(&mut bytes)?;
+        let (before, hash) = bytes.split_last_chunk::<8>().ok_or(ErrorKind::InvalidData)?;
+        if xxh3_64(before) != u64::from_le_bytes(*hash) {
+            return Err(ErrorKind::InvalidData.into());
+        }
+        bytes.truncate(bytes.len() - size_of::<u64>());
+        Ok(bytes)
+    }
+}
+
 impl Sheet {
     /// Begins the file of a key.
     pub(super) fn create(path: &Path, key: &Key) -> Result<Self> {
@@ -184,6 +201,16 @@ impl Sheet {
         if self.failed.is_none() {
             self.failed = self.output.write(|file| file.write_all(bytes)).err();
         }
+    }
+
+    /// All bytes at once, and a hash of them, by which [`Kept::whole`] knows them again.
+    ///
+    /// # Errors
+    /// As [`Self::publish`].
+    pub fn publish_whole(mut self, bytes: &[u8]) -> Result<Kept> {
+        self.write(bytes);
+        self.write(&xxh3_64(bytes).to_le_bytes());
+        self.publish()
     }
 
     /// How many bytes were written.

@@ -8,11 +8,11 @@
 //!
 //! Cost: a hash of the heights; 16 bytes a line, 40 a point.
 
-use std::io::{self, ErrorKind, Read};
+use std::io::{self, ErrorKind};
 
 use bytemuck::{Pod, Zeroable};
 use glam::DVec2;
-use xxhash_rust::xxh3::{Xxh3, xxh3_64};
+use xxhash_rust::xxh3::Xxh3;
 
 use super::coarse::{lowest_and_highest, on_samples, spacing};
 use super::whole::{ChannelArea, Relief};
@@ -164,7 +164,7 @@ pub(super) fn digest(dem: &Dem, exaggeration: f64) -> Result<Option<u128>> {
 }
 
 /// Writes and publishes lines.
-fn write(mut sheet: Sheet, lines: &[SurfaceLine]) -> Result<Kept> {
+fn write(sheet: Sheet, lines: &[SurfaceLine]) -> Result<Kept> {
     let points: usize = lines.iter().map(|line| line.points.len()).sum();
     let header = Header { lines: lines.len() as u64, points: points as u64 };
     let line = |line: &SurfaceLine| Line {
@@ -180,21 +180,13 @@ fn write(mut sheet: Sheet, lines: &[SurfaceLine]) -> Result<Kept> {
     bytes.extend_from_slice(bytemuck::cast_slice(&lines.iter().map(line).collect::<Vec<_>>()));
     let points: Vec<Point> = lines.iter().flat_map(|line| &line.points).map(point).collect();
     bytes.extend_from_slice(bytemuck::cast_slice(&points));
-    let hash = xxh3_64(&bytes);
-    sheet.write(&bytes);
-    sheet.write(&hash.to_le_bytes());
-    sheet.publish()
+    sheet.publish_whole(&bytes)
 }
 
 /// Reads lines of a kind. Fails where the bytes are not those that were written.
-fn recall(mut kept: Kept, kind: LineKind) -> io::Result<Vec<SurfaceLine>> {
+fn recall(kept: Kept, kind: LineKind) -> io::Result<Vec<SurfaceLine>> {
     let damaged = || io::Error::from(ErrorKind::InvalidData);
-    let mut bytes = Vec::new();
-    kept.file.by_ref().take(kept.bytes).read_to_end(&mut bytes)?;
-    let (bytes, hash) = bytes.split_last_chunk::<8>().ok_or_else(damaged)?;
-    if xxh3_64(bytes) != u64::from_le_bytes(*hash) {
-        return Err(damaged());
-    }
+    let bytes = kept.whole()?;
     let (header, rest) = bytes.split_at_checked(size_of::<Header>()).ok_or_else(damaged)?;
     let header: Header = bytemuck::pod_read_unaligned(header);
     let size = (header.lines as usize).checked_mul(size_of::<Line>()).ok_or_else(damaged)?;

@@ -10,12 +10,12 @@
 //! Cost: a hash of the heights; 12 bytes a line, 32 a point. Trouble with the folder is told where creases of the same DEM are
 //! kept, and not again.
 
-use std::io::{self, ErrorKind, Read};
+use std::io::{self, ErrorKind};
 use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, Vec2};
-use xxhash_rust::xxh3::{Xxh3, xxh3_64};
+use xxhash_rust::xxh3::Xxh3;
 
 use super::block::bounds;
 use super::level::BlockAt;
@@ -124,7 +124,7 @@ impl Store {
 }
 
 /// Writes and publishes blocks.
-fn write(mut sheet: Sheet, blocks: &[Arc<SlopeBlock>]) -> Result<Kept> {
+fn write(sheet: Sheet, blocks: &[Arc<SlopeBlock>]) -> Result<Kept> {
     let lines = || blocks.iter().flat_map(|block| &block.lines);
     let header = Header { blocks: blocks.len() as u64, lines: lines().count() as u64 };
     let block = |block: &Arc<SlopeBlock>| Block { level: block.level, at: block.at, lines: block.lines.len() as u32 };
@@ -138,21 +138,13 @@ fn write(mut sheet: Sheet, blocks: &[Arc<SlopeBlock>]) -> Result<Kept> {
     bytes.extend_from_slice(bytemuck::cast_slice(&blocks.iter().map(block).collect::<Vec<_>>()));
     bytes.extend_from_slice(bytemuck::cast_slice(&lines().map(line).collect::<Vec<_>>()));
     lines().for_each(|line| line.points.iter().for_each(|at| bytes.extend_from_slice(bytemuck::bytes_of(&point(at)))));
-    let hash = xxh3_64(&bytes);
-    sheet.write(&bytes);
-    sheet.write(&hash.to_le_bytes());
-    sheet.publish()
+    sheet.publish_whole(&bytes)
 }
 
 /// Reads blocks. Fails where the bytes are not those that were written.
-fn recall(mut kept: Kept) -> io::Result<Vec<Arc<SlopeBlock>>> {
+fn recall(kept: Kept) -> io::Result<Vec<Arc<SlopeBlock>>> {
     let damaged = || io::Error::from(ErrorKind::InvalidData);
-    let mut bytes = Vec::new();
-    kept.file.by_ref().take(kept.bytes).read_to_end(&mut bytes)?;
-    let (bytes, hash) = bytes.split_last_chunk::<8>().ok_or_else(damaged)?;
-    if xxh3_64(bytes) != u64::from_le_bytes(*hash) {
-        return Err(damaged());
-    }
+    let bytes = kept.whole()?;
     let (header, rest) = bytes.split_at_checked(size_of::<Header>()).ok_or_else(damaged)?;
     let header: Header = bytemuck::pod_read_unaligned(header);
     let parted = |bytes, count: u64, size: usize| -> Option<(&[u8], &[u8])> {
