@@ -113,6 +113,8 @@ pub const HACHURES_APART_SHARE_LAND: f64 = 0.85;
 ///
 /// Example: of 20 000 px of strokes 100 px are gone: .5 %.
 pub const HACHURE_POPS: [(f64, f64); 2] = [(1.0, 0.005), (10.0, 0.02)];
+/// The same of a turn, degrees.
+pub const HACHURE_POPS_TURN: (f64, f64) = (0.5, 0.01);
 /// Of all that is seen, the most that may be gone and was of full width.
 ///
 /// Example: of 1 000 000 px of strokes 100 px, where a line begins that was not looked for.
@@ -685,8 +687,8 @@ pub const SPACED_TOLERANCE: f64 = 0.05;
 /// Least share of places that keep the spacing: what lies ahead of an end and what beside it is a matter of the last piece, which
 /// may bend.
 ///
-/// Example: of 10 000 places, 9 900.
-pub const KEPT_SHARE: f64 = 0.99;
+/// Example: of 10 000 places, 9 870.
+pub const KEPT_SHARE: f64 = 0.985;
 
 /// Least share of the middles of lines that have another at most two spacings away.
 ///

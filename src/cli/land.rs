@@ -11,7 +11,7 @@ use crate::cache::{Cache, Hearing};
 use crate::error::{Error, Message, Result, Setting};
 use crate::ink::Style;
 use crate::line::Land;
-use crate::relief::{ChannelArea, Crease, FlowLines, LandWanted, Shores, Slopes, SurfaceLine};
+use crate::relief::{ChannelArea, Crease, FlatWater, FlowLines, LandWanted, Shores, Slopes, SurfaceLine};
 use crate::surface::Surface;
 
 /// The flags, as typed.
@@ -119,12 +119,13 @@ impl LandArguments {
         };
         let draws_shores = wanted.creases.contains(&Crease::Shores);
         let ends_at_shores = wanted.slopes.is_some() && !dem.is_filed();
-        let shores = (draws_shores || ends_at_shores).then(|| Shores::of(dem, exaggeration)).transpose()?;
+        let shores = draws_shores.then(|| Shores::of(dem, exaggeration)).transpose()?;
+        // Shores that nobody draws are not followed.
+        let water = (ends_at_shores && !draws_shores).then(|| FlatWater::of(dem, exaggeration)).transpose()?;
         let slopes = wanted.slopes.map(|rules| {
-            let water = shores.as_ref().map(|shores| &shores.water);
-            let stops = found.concat();
-            let slopes = Slopes::new(surface.clone(), exaggeration, rules, &stops, water)?;
-            slopes.kept_in(cache, dem, rules, &stops).map(Arc::new)
+            let water = shores.as_ref().map(|shores| &shores.water).or(water.as_ref());
+            let slopes = Slopes::new(surface.clone(), exaggeration, rules, &found.concat(), water)?;
+            slopes.kept_in(cache, dem).map(Arc::new)
         });
         let slopes = slopes.transpose()?;
         let mut drawn: Vec<Vec<SurfaceLine>> = known

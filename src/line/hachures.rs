@@ -241,10 +241,14 @@ impl Need for Page<'_> {
         ROOM[0] * self.look.least_apart() / self.seen.most_px_per_metre(corners)
     }
 
-    fn at(&self, place: DVec3, gradient: DVec2) -> Option<f64> {
-        let is_seen = self.seen.place(place).is_some() && !self.seen.hides(place);
+    fn at(&self, place: DVec3, gradient: DVec2) -> f64 {
+        let is_before = self.seen.place(place).is_some();
         let need = || ROOM[0] * self.metres_apart(place, gradient, self.shade.black(gradient));
-        is_seen.then(need).filter(|need| need.is_finite())
+        if is_before { need() } else { f64::INFINITY }
+    }
+
+    fn sees(&self, place: DVec3) -> bool {
+        self.seen.place(place).is_some() && !self.seen.hides(place)
     }
 }
 

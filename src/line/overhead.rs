@@ -75,12 +75,8 @@ impl Overhead {
     /// # Errors
     /// [`Error::Limit`](crate::error::Error::Limit) where they are longer than those of a view may be; as [`hachures::ways`].
     pub fn land(&self, land: &Land, min_gap: f64, hachures: Option<&Hachures>) -> Result<Vec<Chain>> {
-        let mut lines = land.ways(From::Above(self.px_per_metre));
-        lines.retain(|way| {
-            let places = || way.points.iter().map(|point| point.world.truncate());
-            let none = [DVec2::INFINITY, DVec2::NEG_INFINITY];
-            !self.is_beside(places().fold(none, |[low, high], at| [low.min(at), high.max(at)]))
-        });
+        let lines: Vec<Way> =
+            land.ways(From::Above(self.px_per_metre)).into_iter().flat_map(|way| self.about(way)).collect();
         let strokes = match land.slopes().zip(hachures) {
             Some((slopes, look)) => hachures::ways(slopes, look, Seen::Above(self))?,
             None => Vec::new(),
@@ -93,6 +89,28 @@ impl Overhead {
         let lines = economised(&self.chains(&lines), &Economy { min_jump: 0.0, min_gap });
         let strokes = hachures.map_or(Vec::new(), |look| toned(self.chains(&strokes), &lines, look));
         Ok([lines, strokes].concat())
+    }
+
+    /// The parts of a way on the page and a little beside it.
+    fn about(&self, way: Way) -> Vec<Way> {
+        let Way { line, mut points, closed } = way;
+        points.extend(closed.then(|| points[0]));
+        let is_beside = |pair: &[WayPoint]| {
+            let [a, b] = [pair[0], pair[1]].map(|end| end.world.truncate());
+            self.is_beside([a.min(b), a.max(b)])
+        };
+        let beside: Vec<bool> = points.windows(2).map(is_beside).collect();
+        if closed && beside.iter().all(|is_beside| !is_beside) {
+            points.pop();
+            return vec![Way { line, points, closed }];
+        }
+        let mut first = 0;
+        let part = |steps: &[bool]| {
+            let from = first;
+            first += steps.len();
+            (!steps[0]).then(|| Way { line, points: points[from..=first].to_vec(), closed: false })
+        };
+        beside.chunk_by(|a, b| a == b).filter_map(part).collect()
     }
 
     /// Whether nothing in a box of the map, by its low and high corner, plays a part on the page.

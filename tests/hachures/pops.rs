@@ -15,7 +15,7 @@ use rstar::RTree;
 use rstar::primitives::GeomWithData;
 
 use crate::scenes::gpu;
-use crate::tolerances::{HACHURE_POPS, HACHURE_POPS_BROAD};
+use crate::tolerances::{HACHURE_POPS, HACHURE_POPS_BROAD, HACHURE_POPS_TURN};
 
 const FRAMES: u32 = 20;
 const SIZE: [u32; 2] = [640, 360];
@@ -73,12 +73,10 @@ impl Flight {
         Frame { perspective: page.perspective, raster, strokes, lines, widths }
     }
 
-    /// Length of strokes that are seen in a frame of a flight straight on in steps of so many metres and are not there in the next
-    /// or the one before, and of those that are seen; then of full width that are gone. All in px.
-    pub fn comes_and_goes(&mut self, first: &Camera, step: f64) -> [f64; 3] {
-        let [.., forward] = first.axes();
-        let at = |k: u32| Camera { eye: first.eye + forward * f64::from(k) * step, ..*first };
-        let frames: Vec<Frame> = (0..FRAMES).map(|k| self.frame(&at(k))).collect();
+    /// Length of strokes that are seen in a frame by one of these cameras and are not there in the next or the one before, and of
+    /// those that are seen; then of full width that are gone. All in px.
+    pub fn comes_and_goes(&mut self, camera: impl Fn(f64) -> Camera) -> [f64; 3] {
+        let frames: Vec<Frame> = (0..FRAMES).map(|k| self.frame(&camera(f64::from(k)))).collect();
         let pen = self.style.pens.hachure.width;
         let pairs = frames.windows(2).flat_map(|pair| [lost(&pair[0], &pair[1], pen), lost(&pair[1], &pair[0], pen)]);
         pairs.fold([0.0; 3], |a, b| [a[0] + b[0], a[1] + b[1], a[2] + b[2]])
@@ -126,9 +124,11 @@ fn lost(from: &Frame, to: &Frame, pen: f64) -> [f64; 3] {
 fn hachures_do_not_pop() {
     let surface = Arc::new(Surface::new(read("dem/golden-gate.tif", &ReadOptions::default()).expect("the sample")));
     let camera = choose(surface.dem(), Fixed::default(), 60.0, SIZE[0], SIZE[1]).expect("a view");
+    let [.., forward] = camera.axes();
+    let ahead = |metres: f64| Camera { eye: camera.eye + forward * metres, ..camera };
     let mut flight = Flight::new(&surface);
     for (step, most) in HACHURE_POPS {
-        let [gone, seen, broad] = flight.comes_and_goes(&camera, step);
+        let [gone, seen, broad] = flight.comes_and_goes(|k| ahead(k * step));
         println!(
             "hachures: {:.3} % of what is seen comes or goes a step of {step} m, {broad} px of full width",
             100.0 * gone / seen
@@ -139,7 +139,15 @@ fn hachures_do_not_pop() {
             "{gone} of {seen} half pixels, {broad} of full width"
         );
     }
+    let [gone, seen, _] =
+        flight.comes_and_goes(|k| Camera { azimuth: camera.azimuth + k * HACHURE_POPS_TURN.0, ..camera });
+    println!(
+        "hachures: {:.3} % of what is seen comes or goes a turn of {} degrees",
+        100.0 * gone / seen,
+        HACHURE_POPS_TURN.0
+    );
+    assert!(seen > 0.0 && gone / seen <= HACHURE_POPS_TURN.1, "{gone} of {seen} half pixels");
     // Negative control: frames far apart.
-    let [gone, seen, _] = flight.comes_and_goes(&camera, 400.0);
+    let [gone, seen, _] = flight.comes_and_goes(|k| ahead(k * 400.0));
     assert!(gone / seen > HACHURE_POPS[0].1, "strokes that are others are not noticed: {gone} of {seen}");
 }

@@ -10,7 +10,7 @@ use super::Scene;
 use crate::tolerances::SLOPE_SECONDS;
 
 /// Room of lines that are asked for, cells: all levels down to a spacing of one cell.
-const ROOM: f64 = 1.4;
+const ROOM: f64 = 1.3;
 
 #[test]
 fn lines_of_a_million_samples_take_little() {

@@ -15,7 +15,7 @@ const ROOM: f64 = 1.5;
 /// A scene's lines by a cache.
 fn slopes(scene: &Scene, cache: &Cache, rules: SlopeRules) -> Slopes {
     let slopes = Slopes::new(scene.surface.clone(), 1.0, rules, &scene.stops, Some(&scene.water)).expect("slopes");
-    slopes.kept_in(cache, scene.surface.dem(), rules, &scene.stops).expect("a cache")
+    slopes.kept_in(cache, scene.surface.dem()).expect("a cache")
 }
 
 #[test]

@@ -8,6 +8,9 @@ use hachure::surface::Surface;
 use super::{CELL, RULES, Scene, land, lines, plane, position, real, share};
 use crate::tolerances::{DOWNHILL_DEGREES, DOWNHILL_SHARE, DOWNHILL_WAVES, ON_SURFACE};
 
+/// Room of lines that are asked for, cells.
+const ROOM: f64 = 1.9;
+
 /// The gradient of the surface by differences of positions.
 fn gradient(surface: &Surface, at: DVec2) -> Option<DVec2> {
     const STEP: f64 = 1.0 / 64.0;
@@ -42,7 +45,7 @@ fn lines_run_down_the_slope() {
         Scene::bare("saddle", land([81, 81], |at| 1e-3 * ((at.x - 400.0).powi(2) - (at.y - 400.0).powi(2)))),
     ];
     for scene in made.into_iter().chain(real()) {
-        let blocks = scene.blocks(2.0);
+        let blocks = scene.blocks(ROOM);
         let good = downhill(&scene.surface, lines(&blocks), DOWNHILL_DEGREES);
         println!("{}: {:.4} of {} lines within {DOWNHILL_DEGREES} degrees", scene.name, good, lines(&blocks).count());
         assert!(good >= DOWNHILL_SHARE, "{}: {good}", scene.name);
@@ -67,7 +70,7 @@ fn lines_run_down_the_slope() {
 fn lines_follow_a_surface_that_bends_sideways() {
     let scene = Scene::bare("waves", land([81, 81], |at| 25.0 * (at.x / 15.0).sin() * (at.y / 18.0).cos()));
     let (degrees, least) = DOWNHILL_WAVES;
-    let good = downhill(&scene.surface, lines(&scene.blocks(2.0)), degrees);
+    let good = downhill(&scene.surface, lines(&scene.blocks(ROOM)), degrees);
     println!("waves: {good:.4} within {degrees} degrees");
     assert!(good >= least, "{good}");
 }
@@ -76,7 +79,7 @@ fn lines_follow_a_surface_that_bends_sideways() {
 fn lines_of_a_cone_point_to_its_tip() {
     let tip = DVec2::splat(40.0);
     let scene = Scene::bare("cone", land([81, 81], |at| 0.5 * (400.0 - at.distance(tip * CELL))));
-    let blocks = scene.blocks(2.0);
+    let blocks = scene.blocks(ROOM);
     let ends = lines(&blocks).map(|line| (line.points[0].at, line.points[line.points.len() - 1].at));
     // Samples hold a cone well a few cells from its tip.
     let far: Vec<_> = ends.filter(|(top, _)| top.distance(tip) > 6.0).collect();
@@ -92,7 +95,7 @@ fn a_plain_has_no_lines() {
     let slopes = [0.0, 0.9, 1.1].map(|share| share * RULES.min_slope.to_radians().tan());
     let counts = slopes.map(|slope| {
         let scene = Scene::bare("plain", land([60, 60], |at| slope * at.x));
-        lines(&scene.blocks(2.0)).count()
+        lines(&scene.blocks(ROOM)).count()
     });
     assert_eq!(counts[..2], [0, 0]);
     assert!(counts[2] > 10, "{counts:?}");
@@ -105,7 +108,7 @@ fn lines_are_those_of_the_land_as_it_is() {
         |times: f64| Scene::bare("plain", land([60, 60], |at| times * 0.9 * RULES.min_slope.to_radians().tan() * at.x));
     let count = |scene: &Scene, exaggeration: f64| {
         let slopes = hachure::relief::slope::Slopes::new(scene.surface.clone(), exaggeration, RULES, &[], None);
-        let blocks = super::blocks(&slopes.expect("slopes"), &|_| 2.0 * CELL);
+        let blocks = super::blocks(&slopes.expect("slopes"), &|_| ROOM * CELL);
         lines(&blocks).count()
     };
     assert_eq!(count(&scene(2.0), 2.0), 0);
@@ -147,12 +150,12 @@ fn no_line_crosses_a_crest_or_a_channel() {
     let wall = stop(&[[10.0, 30.3], [30.2, 29.0], [50.7, 33.3]]);
     scenes.push(Scene { stops: vec![wall], ..Scene::bare("plane", plane([64, 64])) });
     for scene in scenes {
-        let blocks = scene.blocks(2.0);
+        let blocks = scene.blocks(ROOM);
         assert_eq!(crossings(lines(&blocks), &scene.stops), 0, "{}", scene.name);
         // Negative control: without them lines do.
         let free =
             Scene { stops: Vec::new(), surface: scene.surface.clone(), water: scene.water.clone(), name: scene.name };
-        let free = crossings(lines(&free.blocks(2.0)), &scene.stops);
+        let free = crossings(lines(&free.blocks(ROOM)), &scene.stops);
         println!("{}: {free} crossings without stops", scene.name);
         assert!(free >= 8, "{}: {free}", scene.name);
     }
@@ -172,7 +175,7 @@ fn no_line_enters_water_or_a_void() {
         ),
     ];
     for scene in scenes {
-        let (dem, blocks) = (scene.surface.dem(), scene.blocks(2.0));
+        let (dem, blocks) = (scene.surface.dem(), scene.blocks(ROOM));
         assert!(lines(&blocks).count() > 20, "{}", scene.name);
         for at in lines(&blocks).flat_map(|line| &line.points).map(|point| point.at) {
             let [c, r] = at.round().to_array().map(|at| at as usize);

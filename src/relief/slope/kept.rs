@@ -1,7 +1,7 @@
-//! Slope lines that a view needed, kept in the cache: who draws it again, in another style perhaps, need not wait for them.
+//! Slope lines that a view needed, kept in the cache: who draws it again need not wait for them.
 //!
-//! What a first request makes is one file, named by the heights, the rules, what lines end at, and the blocks that were made; what
-//! flights add from frame to frame is not kept.
+//! What a first request makes is one file, named by the heights, the rules, what lines end at, and the blocks that were made, which
+//! are others for another tone or spacing; what flights add from frame to frame is not kept.
 //!
 //! ```text
 //! header | blocks | lines | points | hash of all before
@@ -18,12 +18,12 @@ use glam::{DVec2, Vec2};
 use xxhash_rust::xxh3::Xxh3;
 
 use super::block::bounds;
+use super::land::Land;
 use super::level::BlockAt;
-use super::{SlopeBlock, SlopeLine, SlopePoint, SlopeRules};
+use super::{SlopeBlock, SlopeLine, SlopePoint};
 use crate::cache::{Cache, Hearing, Kept, Key, Kind, Sheet};
 use crate::dem::Dem;
 use crate::error::Result;
-use crate::relief::SurfaceLine;
 use crate::relief::kept::digest;
 
 /// Raise it when the lines of the same heights come out otherwise, or when the bytes below mean something else.
@@ -75,25 +75,19 @@ struct Point {
 }
 
 impl Store {
-    /// In a cache, of a DEM whose heights are exaggerated by a factor; none for files that may be others next time.
+    /// In a cache, of a DEM whose heights are exaggerated by a factor, and its land; none for files that may be others next time.
     ///
     /// # Errors
     /// Those of reading the samples.
-    pub fn new(
-        cache: &Cache,
-        dem: &Dem,
-        exaggeration: f64,
-        rules: SlopeRules,
-        stops: &[SurfaceLine],
-    ) -> Result<Option<Self>> {
+    pub fn new(cache: &Cache, dem: &Dem, exaggeration: f64, land: &Land) -> Result<Option<Self>> {
+        if cache.folder().is_none() {
+            return Ok(None);
+        }
         let Some(heights) = digest(dem, exaggeration)? else { return Ok(None) };
         let mut hash = Xxh3::new();
         hash.update(&heights.to_le_bytes());
-        hash.update(bytemuck::bytes_of(&[rules.min_slope, rules.max_turn]));
-        for line in stops {
-            hash.update(&[line.closed.into()]);
-            line.points.iter().for_each(|point| hash.update(bytemuck::bytes_of(&point.at.to_array())));
-        }
+        hash.update(bytemuck::bytes_of(&dem.position(0, 0).truncate().to_array()));
+        land.identify(&mut hash);
         Ok(Some(Self { cache: cache.clone(), hash: hash.digest128(), of: dem.label() }))
     }
 
@@ -114,12 +108,26 @@ impl Store {
         wanted.iter().for_each(|at| hash.update(bytemuck::bytes_of(&[at.level, at.row, at.column])));
         let key = Key { kind: KIND, hash: hash.digest128(), of: self.of.clone() };
         let hearing = Hearing { warn: &|_| (), progress: &|_| () };
-        self.cache.get(&key, hearing, recall, |sheet, _| {
-            let blocks = make();
-            // What cannot be kept is made again.
-            let _ = sheet.map(|sheet| write(sheet, &blocks));
-            Ok(blocks)
-        })
+        let are_wanted = |blocks: &Vec<Arc<SlopeBlock>>| {
+            let at = |block: &Arc<SlopeBlock>| BlockAt { level: block.level, row: block.at[1], column: block.at[0] };
+            blocks.iter().map(at).eq(wanted.iter().copied())
+        };
+        if let Some(blocks) = self.cache.hold(&key).and_then(|kept| recall(kept).ok()).filter(are_wanted) {
+            return Ok(blocks);
+        }
+        // No lock is held meanwhile: threads at work may be given work that waits for it.
+        let blocks = make();
+        self.cache.get(
+            &key,
+            hearing,
+            |kept| recall(kept).map(drop),
+            |sheet, _| {
+                // What cannot be kept is made again.
+                let _ = sheet.map(|sheet| write(sheet, &blocks));
+                Ok(())
+            },
+        )?;
+        Ok(blocks)
     }
 }
 

@@ -7,6 +7,7 @@
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
+use xxhash_rust::xxh3::Xxh3;
 
 use super::SlopeRules;
 use super::stops::Stops;
@@ -87,6 +88,13 @@ impl Land {
         })
     }
 
+    /// Adds to a hash what lines depend on beside the heights.
+    pub fn identify(&self, hash: &mut Xxh3) {
+        hash.update(bytemuck::bytes_of(&[self.least, self.turned]));
+        hash.update(&[self.water.is_some().into()]);
+        self.stops.identify(hash);
+    }
+
     /// Metres on the map of a column and row of the DEM.
     pub fn metres(&self, at: DVec2) -> DVec2 {
         at * self.metres
@@ -105,6 +113,11 @@ impl Land {
         is_inside && self.surface.gradient(c, r).length_squared() >= (NEARLY * self.least).powi(2)
     }
 
+    /// Whether lines may be on land of a gradient, exaggerated metres a metre.
+    pub fn is_steep(&self, gradient: DVec2) -> bool {
+        gradient.length_squared() >= self.least * self.least
+    }
+
     /// The share of the way between two places at which a line ends.
     pub fn met(&self, [from, to]: [DVec2; 2]) -> Option<f64> {
         self.stops.met([from / self.cell, to / self.cell])
@@ -116,7 +129,7 @@ impl Land {
             let at = self.samples(place.at).round().as_usizevec2();
             water.is_water(at.x, at.y)
         };
-        place.gradient.length_squared() >= self.least * self.least
+        self.is_steep(place.gradient)
             && place.is_towards(seed, self.turned)
             && !self.water.as_ref().is_some_and(is_water)
     }

@@ -8,6 +8,9 @@
 //! 2 3 2 3     of both cross 10 at most. The 2 that are left are more than their most room,
 //! 0 1 0 1     1.42: blocks of a phase do not know each other, and can be made at once.
 //! ```
+//!
+//! Room of level 0 alone is told up to four spacings, for land so far that strokes stand farther apart than its lines: there those
+//! of two blocks of a phase may come nearer to each other than they tell.
 
 use std::f64::consts::FRAC_1_SQRT_2;
 

@@ -26,9 +26,9 @@ const LOOKS: f64 = 7.0;
 /// How far beyond its sides, spacings: where its lines mostly are.
 const BEYOND: f64 = 1.5;
 /// Most room of a block, in parts of what a place needs, up to which the place asks for none of it, and from which for all.
-const ASKED: [f64; 2] = [0.9, 1.3];
+const ASKED: [f64; 2] = [1.0, 1.4];
 /// Shares of the places that ask for a block up to which it is left out, and from which it is whole.
-const SHARES: [f64; 2] = [0.1, 0.3];
+const SHARES: [f64; 2] = [0.04, 0.16];
 
 /// Which lines somebody needs: with how much room they are drawn, metres on the map.
 pub trait Need: Sync {
@@ -36,9 +36,12 @@ pub trait Need: Sync {
     /// less in a box inside another.
     fn in_box(&self, corners: [DVec3; 2]) -> f64;
 
-    /// At a place of the exaggerated world, on land of this gradient, metres for a metre east and north; nothing where none is
-    /// drawn or nobody looks.
-    fn at(&self, place: DVec3, gradient: DVec2) -> Option<f64>;
+    /// At a place of the exaggerated world, on land of this gradient, metres for a metre east and north, whatever hides it;
+    /// infinite where none is drawn.
+    fn at(&self, place: DVec3, gradient: DVec2) -> f64;
+
+    /// Whether somebody may see a place of the exaggerated world.
+    fn sees(&self, place: DVec3) -> bool;
 }
 
 /// The same on all land.
@@ -47,10 +50,22 @@ impl<F: Fn([DVec3; 2]) -> f64 + Sync> Need for F {
         self(corners)
     }
 
-    fn at(&self, place: DVec3, _: DVec2) -> Option<f64> {
-        let need = self([place; 2]);
-        need.is_finite().then_some(need)
+    fn at(&self, place: DVec3, _: DVec2) -> f64 {
+        self([place; 2])
     }
+
+    fn sees(&self, place: DVec3) -> bool {
+        self([place; 2]).is_finite()
+    }
+}
+
+/// What is asked of a block.
+#[derive(Debug, Clone, Copy, Default)]
+struct Asked {
+    /// How many of its places ask for its lines: 1 for enough.
+    share: f64,
+    /// Whether somebody sees one of them.
+    seen: bool,
 }
 
 /// What part of the way from one value to another a third has come, 0 to 1.
@@ -102,17 +117,18 @@ impl Slopes {
         Ok(Self { land, exaggeration, blocks, made: Mutex::default(), store: None })
     }
 
-    /// The same, whose lines are kept in a cache from one process to the next: those of a DEM, these rules and stops.
+    /// The same, whose lines are kept in a cache from one process to the next; `dem` is that of the surface.
     ///
     /// # Errors
     /// Those of reading the samples.
-    pub fn kept_in(self, cache: &Cache, dem: &Dem, rules: SlopeRules, stops: &[SurfaceLine]) -> Result<Self> {
-        let store = Store::new(cache, dem, self.exaggeration, rules, stops)?;
+    pub fn kept_in(self, cache: &Cache, dem: &Dem) -> Result<Self> {
+        let store = Store::new(cache, dem, self.exaggeration, &self.land)?;
         Ok(Self { store, ..self })
     }
 
     /// Blocks whose lines may be drawn, by level, row and column: those whose lines may have as much room as is needed in the box
-    /// that they are in, and in more than a few places on the land of it. Those that are not known yet are made, on every core.
+    /// that they are in and in more than a few places on the land of it, some of which are seen. Those that are not known yet are
+    /// made, on every core.
     ///
     /// # Errors
     /// As [`Surface::pyramid`].
@@ -203,27 +219,29 @@ impl Slopes {
             let known: Vec<_> = here.par_iter().filter_map(in_box).collect();
             let split = known.iter().copied().filter(has(level + 2));
             *here = split.flat_map(|(at, _)| at.quarters()).filter(|at| self.is_on_land(*at)).collect();
-            let here = known.into_par_iter().filter(has(level)).map(|(at, _)| (at, self.share(at, need)));
-            here.filter(|(_, share)| *share > 0.0).collect::<Vec<_>>()
+            let here = known.into_par_iter().filter(has(level)).map(|(at, _)| (at, self.asked(at, need)));
+            here.filter(|(_, asked)| asked.share > 0.0).collect::<Vec<_>>()
         };
-        let mut levels: Vec<Vec<(BlockAt, f64)>> = (0..LEVELS).map(of_level).collect();
+        let mut levels: Vec<Vec<(BlockAt, Asked)>> = (0..LEVELS).map(of_level).collect();
         for level in (1..LEVELS).rev() {
-            let mut wider: FxHashMap<BlockAt, f64> = levels[level as usize - 1].drain(..).collect();
-            for (at, share) in &levels[level as usize] {
+            let mut wider: FxHashMap<BlockAt, Asked> = levels[level as usize - 1].drain(..).collect();
+            for (at, asked) in &levels[level as usize] {
                 for around in self.blocks.within(level - 1, self.blocks.square(*at)) {
                     let known = wider.entry(around).or_default();
-                    *known = known.max(*share);
+                    *known = Asked { share: known.share.max(asked.share), seen: known.seen || asked.seen };
                 }
             }
             levels[level as usize - 1] = wider.into_iter().collect();
         }
-        let mut wanted = levels.concat();
+        let is_wanted = |(at, asked): (BlockAt, Asked)| (asked.seen && asked.share > 0.0).then_some((at, asked.share));
+        let mut wanted: Vec<(BlockAt, f64)> = levels.into_iter().flatten().filter_map(is_wanted).collect();
         wanted.sort_unstable_by_key(|(at, _)| *at);
         wanted
     }
 
-    /// How many of the places of a block and a little beyond where lines are drawn ask for those of its level: 1 for enough.
-    fn share(&self, at: BlockAt, need: &dyn Need) -> f64 {
+    /// How many of the places of a block and a little beyond on which lines may be ask for those of its level. What is hidden
+    /// counts as well, so that nothing changes when it comes into sight.
+    fn asked(&self, at: BlockAt, need: &dyn Need) -> Asked {
         let surface = &self.land.surface;
         let last = DVec2::new(surface.dem().columns() as f64, surface.dem().rows() as f64) - 1.0;
         let [low, high] = self.blocks.square(at).map(|corner| corner / self.land.cell);
@@ -233,14 +251,19 @@ impl Slopes {
         let step = ((high - low).max_element() / LOOKS).ceil().max(1.0);
         let counts = ((high - low) / step).ceil().as_uvec2();
         let places = (0..=counts.y).flat_map(|y| (0..=counts.x).map(move |x| DVec2::new(x.into(), y.into())));
-        let needs = places.filter_map(|place| {
+        let (mut asks, mut all, mut seen) = (0.0, 0.0, false);
+        for place in places {
             let [c, r] = (low + place * step).min(high).to_array().map(|at| at as usize);
-            surface.dem().height(c, r)?;
-            need.at(surface.dem().position(c, r), surface.gradient(c, r))
-        });
-        let asks = needs.map(|need| part(ASKED, self.blocks.most_room(at.level) / need));
-        let (sum, count) = asks.fold((0.0, 0), |(sum, count), ask| (sum + ask, count + 1));
-        part(SHARES, sum / f64::from(count.max(1)))
+            let gradient = surface.gradient(c, r);
+            if surface.dem().height(c, r).is_none() || !self.land.is_steep(gradient) {
+                continue;
+            }
+            let place = surface.dem().position(c, r);
+            asks += part(ASKED, self.blocks.most_room(at.level) / need.at(place, gradient));
+            all += 1.0;
+            seen |= need.sees(place);
+        }
+        Asked { share: part(SHARES, asks / f64::max(all, 1.0)), seen }
     }
 
     /// Whether a block begins on the DEM.

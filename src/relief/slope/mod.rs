@@ -53,7 +53,7 @@ pub struct SlopePoint {
     /// Gradient of the PN surface there, exaggerated metres for a metre east and for one north: dz/dx, dz/dy.
     pub gradient: Vec2,
     /// How far it is, across, to the nearest line that is there when lines so far apart are drawn, metres on the map; at most
-    /// the spacing of the level before.
+    /// the spacing of the level before, of level 0 four of its own.
     pub room: f32,
 }
 

@@ -3,6 +3,7 @@
 //! Cost: the pieces of lines in the cells of a step, mostly none. Memory: 4 bytes a cell, some 40 a piece.
 
 use glam::DVec2;
+use xxhash_rust::xxh3::Xxh3;
 
 use crate::relief::SurfaceLine;
 
@@ -36,6 +37,11 @@ impl Stops {
             *count
         });
         Self { cells, first, pieces: all.into_iter().map(|(_, piece)| piece).collect() }
+    }
+
+    /// Adds to a hash where they are.
+    pub fn identify(&self, hash: &mut Xxh3) {
+        self.pieces.iter().for_each(|[from, to]| hash.update(bytemuck::bytes_of(&[from.to_array(), to.to_array()])));
     }
 
     /// The share of the way from one place to another at which the first piece is met.
