@@ -9,8 +9,8 @@ use crate::gpu::{AdapterChoice, Gpu, Int64};
 #[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "Device")]
 pub struct DeviceArguments {
-    /// Adapter: cpu, gpu, its number in `hachure info --adapters`, or words of its name or its bus [default: the best one,
-    /// number 0]
+    /// Adapter: cpu, gpu, its number in `hachure info --adapters`, where 0 is the best, or words of its name or its bus [default:
+    /// the best one]
     #[arg(long, value_name = "N|NAME|cpu|gpu", value_parser = values::adapter)]
     adapter: Option<AdapterChoice>,
     /// Draw as on a device without 64-bit atomics

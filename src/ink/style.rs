@@ -196,7 +196,7 @@ impl Default for Style {
 
 impl Default for Weight {
     fn default() -> Self {
-        Self { far: 0.35, flat: 0.6, crowd: 0.22, taper: 2.5 }
+        Self { far: 0.18, flat: 0.6, crowd: 0.22, taper: 2.5 }
     }
 }
 
@@ -211,7 +211,7 @@ impl Default for Pens {
         let pen = |width| Pen { width, ..Pen::default() };
         Self {
             // Lines lead, hachures follow.
-            silhouette: pen(0.6),
+            silhouette: pen(0.45),
             border: pen(0.4),
             shore: pen(0.25),
             drainage: pen(0.25),
