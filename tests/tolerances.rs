@@ -114,11 +114,11 @@ pub const HACHURES_APART_SHARE_LAND: f64 = 0.85;
 /// Example: of 20 000 px of strokes 100 px are gone: .5 %.
 pub const HACHURE_POPS: [(f64, f64); 2] = [(1.0, 0.005), (10.0, 0.02)];
 /// The same of a turn, degrees.
-pub const HACHURE_POPS_TURN: (f64, f64) = (0.5, 0.01);
+pub const HACHURE_POPS_TURN: (f64, f64) = (0.5, 0.002);
 /// Of all that is seen, the most that may be gone and was of full width.
 ///
-/// Example: of 1 000 000 px of strokes 100 px, where a line begins that was not looked for.
-pub const HACHURE_POPS_BROAD: f64 = 1e-4;
+/// Example: of 1 000 000 px of strokes 10 px, where a line begins that was not looked for.
+pub const HACHURE_POPS_BROAD: f64 = 1e-5;
 
 /// Of places of a view where land is dark and no other line is near, the least share with a hachure within a spacing and a quarter.
 ///

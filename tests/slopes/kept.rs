@@ -6,16 +6,32 @@ use std::path::PathBuf;
 
 use hachure::cache::Cache;
 use hachure::relief::slope::{SlopeBlock, SlopeRules, Slopes};
+use xxhash_rust::xxh3::xxh3_64;
 
 use super::{RULES, Scene, blocks, sample};
 
 /// Least room that is asked for, cells.
 const ROOM: f64 = 1.5;
 
+/// Bytes of a kept file's tail: name, length of the text, hash, mark.
+const TAIL: usize = 40;
+
 /// A scene's lines by a cache.
 fn slopes(scene: &Scene, cache: &Cache, rules: SlopeRules) -> Slopes {
     let slopes = Slopes::new(scene.surface.clone(), 1.0, rules, &scene.stops, Some(&scene.water)).expect("slopes");
     slopes.kept_in(cache, scene.surface.dem()).expect("a cache")
+}
+
+/// A kept file whose last point has other room: what is kept, a hash of that, a text, and a tail that tells the text's length.
+fn with_other_room(file: &[u8]) -> Vec<u8> {
+    let (before, tail) = file.split_at(file.len() - TAIL);
+    let text = u64::from_le_bytes(tail[16..24].try_into().expect("8 bytes")) as usize;
+    let end = before.len() - text - size_of::<u64>();
+    let mut other = file.to_vec();
+    other[end - 1] ^= 1;
+    let hash = xxh3_64(&other[..end]).to_le_bytes();
+    other[end..end + hash.len()].copy_from_slice(&hash);
+    other
 }
 
 #[test]
@@ -41,11 +57,14 @@ fn lines_are_found_again_as_they_were_made() {
             .collect::<Vec<_>>()
     );
     let [(path, file)] = &files()[..] else { panic!("not one file") };
-    // Found, not made: the file stays as it is.
     assert!(draw(RULES) == made);
-    assert_eq!(files(), [(path.clone(), *file)]);
-    // Negative control: a byte is another one; the lines are made anew, and the file.
+    assert_eq!(files(), [(path.clone(), *file)], "the file stays as it is");
     let whole = fs::read(path).expect("a file");
+    // Found, not made: a file that says otherwise is believed, if it is whole.
+    fs::write(path, with_other_room(&whole)).expect("a file");
+    let found = draw(RULES);
+    assert!(found != made && found.len() == made.len(), "lines were made that were there");
+    // Negative control: a byte is another one; the lines are made anew, and the file.
     let mut damaged = whole.clone();
     damaged[whole.len() / 2] ^= 1;
     fs::write(path, &damaged).expect("a file");
