@@ -358,6 +358,7 @@ fn a_list_tells_what_each_frame_may_take() {
     assert_eq!(done, [(2, true), (3, true), (4, false), (5, false)].map(|(n, done)| (Some(n), Some(done))));
     for line in &lines[2..] {
         assert!(line["seconds"].as_f64() > Some(0.0), "{line}");
+        assert!(line["start_seconds"].as_f64() > Some(0.0), "{line}");
         assert_eq!(line["samples"], 40 * 40, "{line}");
         assert!(line["memory_bytes"].as_u64() > line["device_bytes"].as_u64(), "{line}");
         assert!(line["files"][0].as_str().is_some_and(|file| file.ends_with(".png")), "{line}");

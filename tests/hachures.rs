@@ -1,5 +1,6 @@
 //! Hachures on maps: tone, and how strokes lie on the land.
 
+mod bare;
 mod map;
 mod pops;
 mod views;
@@ -10,7 +11,7 @@ use glam::DVec2;
 use hachure::dem::Dem;
 use hachure::geo::{ReadOptions, read};
 use hachure::ink::HachureStyle;
-use hachure::line::hachures::{Seen, ways};
+use hachure::line::hachures::{Seen, hatched};
 use hachure::line::{Chain, Way};
 use hachure::plan::{Hachures, Tone};
 use rstar::RTree;
@@ -105,7 +106,7 @@ fn shadow_begins_where_light_is_less_than_on_level_land() {
 /// The places of a map's lines and how strongly each is shown, lines never cut.
 fn shown(map: &Map, black_at: f64) -> FxHashMap<[u64; 2], f32> {
     let look = Hachures { black_at, length: 1e9, ..map.look };
-    let ways = ways(map.slopes(), &look, Seen::Above(&map.overhead)).expect("lines");
+    let ways = hatched(map.slopes(), &look, Seen::Above(&map.overhead)).expect("lines").ways;
     let places = |way: &Way| {
         way.points.iter().map(|point| (point.at.to_array().map(f64::to_bits), point.weight)).collect::<Vec<_>>()
     };

@@ -200,7 +200,8 @@ impl Studio<'_> {
     /// What a drawing may take.
     fn estimate(&mut self, draw: &DrawArguments, kept: &mut Kept) -> Result<Estimate> {
         if draw.scale().is_some() {
-            return Ok(Estimate::of_plan(self.scene(draw)?.surface.dem()));
+            let (_, land) = plan::check(draw)?;
+            return Ok(Estimate::of_plan(self.scene(draw)?.surface.dem(), &land));
         }
         let (illustration, surface) = (draw.check()?, self.scene(draw)?.surface.clone());
         let view = draw.look(&surface, &illustration, &self.talk)?;
@@ -215,7 +216,7 @@ impl Studio<'_> {
             let inputs = inputs(scene, &entry.draw);
             let surface = scene.surface.clone();
             let land = self.land(&entry.draw, &plan::check(&entry.draw)?.1)?;
-            let planned = plan::draw(&entry.draw, scale, surface.dem(), land.as_deref())?;
+            let planned = plan::draw(&entry.draw, scale, surface.dem(), land.as_deref(), &self.talk)?;
             return Ok(Drawn { entry, inputs, what: What::Plan(planned) });
         }
         let illustration = entry.draw.check()?;
@@ -234,7 +235,7 @@ impl Studio<'_> {
         };
         renderer.set_land(land);
         let page = renderer.page(&illustration.plan, &view.camera, |_| ())?;
-        entry.draw.warn_of_blank(renderer, &view, &page, talk);
+        entry.draw.warn_of_page(renderer, &view, &page, talk);
         let inputs = inputs(scene, &entry.draw);
         Ok(Drawn { entry, inputs, what: What::View(Box::new(page), illustration, adapter) })
     }

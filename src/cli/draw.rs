@@ -16,7 +16,7 @@ use super::values::{self, Size};
 use super::view_report::ViewReport;
 use super::viewpoint::{View, ViewArguments};
 use super::words::told;
-use super::{blank, cells, journey, plan, scene};
+use super::{bare, blank, cells, journey, plan, scene};
 use crate::cache::Cache;
 use crate::error::{Error, Result, Setting};
 use crate::files::Taken;
@@ -148,7 +148,7 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     if drawing.layers.is_empty() && page.marks.inked() > 0 {
         talk.warn("nothing is drawn: the style leaves no stroke of the lines; give it finer pens, or --min-gap 0 --min-jump 0");
     }
-    arguments.warn_of_blank(&mut renderer, &view, &page, talk);
+    arguments.warn_of_page(&mut renderer, &view, &page, talk);
     Ok(())
 }
 
@@ -211,8 +211,9 @@ impl DrawArguments {
         Ok([seen.with("drawing", format!("{illustration:?}")).name(), of_mask.name()])
     }
 
-    /// Warns where a page of it is blank.
-    pub fn warn_of_blank(&self, renderer: &mut Renderer, view: &View, page: &Page, talk: &Talk) {
+    /// Warns where a page of it, or land that is to be hatched, is blank.
+    pub fn warn_of_page(&self, renderer: &mut Renderer, view: &View, page: &Page, talk: &Talk) {
+        page.bare.into_iter().for_each(|bare| talk.warn(&bare::of_view(bare)));
         blank::warn(renderer, view, self.drawing.level, page, talk);
     }
 

@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use super::blank;
 use super::cache::CacheArguments;
 use super::cells;
 use super::device::DeviceArguments;
@@ -24,6 +23,7 @@ use super::terrain::{TerrainArguments, warn_of_survey};
 use super::values::Size;
 use super::words::told;
 use super::work::{CODES, Work};
+use super::{bare, blank};
 use crate::cache::Cache;
 use crate::error::{Error, Result, Setting, shown};
 use crate::files::{Output, Taken};
@@ -162,16 +162,21 @@ fn fly(aloft: &mut Option<Aloft>, asked: &Asked, work: &Work, progress: &Progres
         let plan = illustration.plan.lit_for(flight.camera(0).azimuth);
         renderer.find(&plan, &flight.camera(job.number), |_| ())
     };
-    let blank = AtomicUsize::new(0);
+    let [blank, bare] = [0, 0].map(AtomicUsize::new);
     let finish = |job: &Job, found: Found| {
         let page = found.page();
         blank.fetch_add(usize::from(page.marks.inked() == 0), Ordering::Relaxed);
+        bare.fetch_add(usize::from(page.bare.is_some()), Ordering::Relaxed);
         files.write(job, &page, illustration, &adapter)
     };
     work.run(talk, progress, draw, finish)?;
     match blank.into_inner() {
         0 => {}
         count => talk.warn(&format!("{count} of the frames drawn hold no line; see where they look with --preview")),
+    }
+    match bare.into_inner() {
+        0 => {}
+        count => talk.warn(&bare::of_frames(count)),
     }
     Ok(())
 }

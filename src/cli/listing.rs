@@ -21,6 +21,7 @@ struct Line {
     done: bool,
     samples: u64,
     facets: u64,
+    start_seconds: f64,
     seconds: f64,
     memory_bytes: u64,
     device_bytes: u64,
@@ -43,7 +44,7 @@ pub fn estimate(plan: &Plan, surface: &Surface, camera: &Camera, kept: &mut Kept
 /// As [`Talk::answer`].
 pub fn tell(job: &Job, estimate: Result<Estimate>, talk: &Talk) -> Result<()> {
     let error = estimate.as_ref().err().map(words::line);
-    let Estimate { samples, facets, seconds, memory, device } = estimate.unwrap_or(Estimate::NOTHING);
+    let Estimate { samples, facets, start, seconds, memory, device } = estimate.unwrap_or(Estimate::NOTHING);
     let line = Line {
         n: job.number,
         files: job.files.iter().map(|made| made.path.to_string_lossy().into_owned()).collect(),
@@ -51,10 +52,16 @@ pub fn tell(job: &Job, estimate: Result<Estimate>, talk: &Talk) -> Result<()> {
         done: job.is_done(),
         samples,
         facets,
-        seconds: (seconds * 1e3).round() / 1e3,
+        start_seconds: milliseconds(start),
+        seconds: milliseconds(seconds),
         memory_bytes: memory,
         device_bytes: device,
         error,
     };
     talk.answer(&serde_json::to_string(&line).map_err(|error| Error::mistake(error.to_string()))?)
+}
+
+/// Seconds to the millisecond.
+fn milliseconds(seconds: f64) -> f64 {
+    (seconds * 1e3).round() / 1e3
 }

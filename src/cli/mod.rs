@@ -1,5 +1,6 @@
 //! The command line, one file a subcommand: flags as typed become options checked.
 
+pub mod bare;
 pub mod batch;
 pub mod blank;
 pub mod cache;

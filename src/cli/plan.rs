@@ -7,6 +7,7 @@ use std::time::Instant;
 use glam::DVec2;
 use serde::Serialize;
 
+use super::bare;
 use super::draw::DrawArguments;
 use super::draw_report::{DemReport, LayerReport, PageReport};
 use super::journey;
@@ -20,10 +21,11 @@ use crate::error::{Error, Result, Setting};
 use crate::files::Taken;
 use crate::ink::strokes::inset;
 use crate::ink::{self, Drawing, Sheet, Style};
+use crate::line::hachures::NEAR;
 use crate::line::{Land, Lines, Overhead};
 use crate::message;
 use crate::plan::Hachures;
-use crate::relief::LandWanted;
+use crate::relief::{LandWanted, Slopes};
 
 /// Millimetres of a metre.
 const MM: f64 = 1000.0;
@@ -73,7 +75,7 @@ pub fn check(arguments: &DrawArguments) -> Result<(Style, LandWanted)> {
 ///
 /// # Errors
 /// As [`check`] and [`Overhead::land`]; [`Error::Setting`] for a scale that fits no page.
-pub fn draw(arguments: &DrawArguments, scale: f64, dem: &Dem, land: Option<&Land>) -> Result<Planned> {
+pub fn draw(arguments: &DrawArguments, scale: f64, dem: &Dem, land: Option<&Land>, talk: &Talk) -> Result<Planned> {
     let (style, wanted) = check(arguments)?;
     let area = arguments.area.unwrap_or(dem.extent());
     let layout = layout(area, scale, inset(style.broadest()) + style.wobble.reach, arguments)?;
@@ -85,6 +87,10 @@ pub fn draw(arguments: &DrawArguments, scale: f64, dem: &Dem, land: Option<&Land
     // Light is of a map's north-west, and black is black.
     let hachures = style.hachures(px_per_mm).map(|look| Hachures { most_black: 1.0, ..look });
     if let Some(land) = land {
+        let least = land.slopes().map(Slopes::least_spacing).zip(hachures.as_ref());
+        if least.is_some_and(|(least, look)| look.least_apart() / overhead.px_per_metre < NEAR[1] * least) {
+            talk.warn(bare::PLAN);
+        }
         lines.chains.extend(overhead.land(land, economy.min_gap, hachures.as_ref())?);
     }
     let drawing = ink::draw(&lines, &layout.sheet, &style, &[])?;
@@ -107,7 +113,7 @@ pub fn run(arguments: &DrawArguments, scale: f64, talk: &Talk) -> Result<()> {
     warn_of_survey(dem, talk)?;
     dem.check_patches()?;
     let land = scene::land(&arguments.drawing, &wanted, &arguments.terrain, &surface, &cache, talk)?;
-    let Planned { drawing, px_per_mm, style, layout, lines } = draw(arguments, scale, dem, land.as_deref())?;
+    let Planned { drawing, px_per_mm, style, layout, lines } = draw(arguments, scale, dem, land.as_deref(), talk)?;
     let report = PlanReport {
         version: env!("CARGO_PKG_VERSION"),
         dem: DemReport::of(&arguments.terrain.dems, dem),

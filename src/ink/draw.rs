@@ -98,6 +98,7 @@ pub fn draw(lines: &Lines, sheet: &Sheet, style: &Style, split: &[f64]) -> Resul
         placement: sheet.placement([lines.width, lines.height]),
         area: sheet.area(),
         weight: &style.weight,
+        far_hachures: style.hachures.far,
         recession: &lines.recession,
         hand: Hand(style.wobble),
         eye: lines.eye,

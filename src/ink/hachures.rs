@@ -44,6 +44,10 @@ pub struct HachureStyle {
     #[serde(deserialize_with = "part")]
     #[schemars(range(min = PART[0], max = PART[1]))]
     pub most_black: f64,
+    /// Width of the farthest strokes as a share of the nearest: tone fades less with distance than outlines do.
+    #[serde(deserialize_with = "part")]
+    #[schemars(range(min = PART[0], max = PART[1]))]
+    pub far: f64,
 }
 
 /// Where light comes from.
@@ -71,6 +75,7 @@ impl Default for HachureStyle {
             max_turn: 60.0,
             black_at: 45.0,
             most_black: 0.5,
+            far: 0.36,
         }
     }
 }

@@ -10,7 +10,7 @@ use super::plot;
 use super::sheet::Placement;
 use super::style::{Dashes, Weight};
 use super::wobble::Hand;
-use crate::line::{Chain, ChainPoint, Recession};
+use crate::line::{Chain, ChainPoint, Line, Recession};
 use crate::view::cut::share_within;
 
 /// Most points between two of a line where it tapers.
@@ -49,6 +49,8 @@ pub struct Inking<'a> {
     pub area: [DVec2; 2],
     /// How wide they are.
     pub weight: &'a Weight,
+    /// How wide the farthest hachures are, as a share of the nearest.
+    pub far_hachures: f64,
     /// How they recede.
     pub recession: &'a Recession,
     /// Who draws them.
@@ -103,6 +105,7 @@ impl Inking<'_> {
     /// Width of a line at a point, as a share of the pen's.
     fn width(&self, point: &ChainPoint) -> f64 {
         let Weight { far, flat, crowd, .. } = *self.weight;
+        let far = if point.line == Line::Hachure { self.far_hachures } else { far };
         let receding = 1.0 - (1.0 - far) * self.recession.share(point);
         let roomy = (receding * (crowd * SQUARE / f64::from(point.crowd.max(1))).sqrt().min(1.0)).max(far);
         // What lies on the land has nothing behind it: its width is a matter of its own.

@@ -6,9 +6,10 @@
 //! left out. Long lines are cut where the page makes them longer than a hand would draw, always at the same places of the land.
 //!
 //! Cost: a look at each point of the lines that may fill the spacing. What a page surely hides is left out; whether the eye sees
-//! the rest is looked at later. Does not handle: land so near that strokes stand closer than an eighth of a cell, which gets none.
+//! the rest is looked at later. Does not handle: land so near that strokes would stand closer than lines do, which stays bare; how
+//! far it goes is told.
 
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, UVec2};
 use rayon::prelude::*;
 
 use super::along::fade;
@@ -22,6 +23,8 @@ use crate::view::Perspective;
 
 /// Shares of the wanted spacing up to which a line is left out, and from which it is whole.
 const ROOM: [f64; 2] = [0.75, 0.95];
+/// Spacings that are wanted, in parts of the least that lines have, up to which there are none, and from which they are whole.
+pub const NEAR: [f64; 2] = [0.4, 0.7];
 /// How far along a line, in spacings, is looked for how much of it is there.
 const AROUND: f64 = 0.7;
 /// The share of that up to which it is left out, and from which it is whole.
@@ -48,16 +51,36 @@ pub enum Seen<'a> {
     Above(&'a Overhead),
 }
 
-/// The hachures that are shown, each point as strongly as it is.
+/// The hachures of a page.
+#[derive(Debug, Clone, Default)]
+pub struct Hatched {
+    /// Each point as strongly as it is shown.
+    pub ways: Vec<Way>,
+    /// How far from the eye, metres, land goes that is so near that it stays bare; none where there is none.
+    pub bare: Option<f64>,
+}
+
+/// The hachures that are shown.
 ///
 /// # Errors
 /// As [`Slopes::blocks`].
-pub fn ways(slopes: &Slopes, look: &Hachures, seen: Seen) -> Result<Vec<Way>> {
+pub fn hatched(slopes: &Slopes, look: &Hachures, seen: Seen) -> Result<Hatched> {
     let azimuth = if let Seen::By(_, azimuth, _) = seen { azimuth } else { 0.0 };
     let page = Page { seen, look, shade: look.shade(azimuth, slopes.exaggeration()), slopes };
     let blocks = slopes.blocks(&page)?;
-    let of_block = |needed: &Needed| needed.block.lines.iter().flat_map(|line| page.ways(line, needed.share)).collect();
-    Ok(blocks.par_iter().flat_map_iter::<_, Vec<Way>>(of_block).collect())
+    let of_block = |needed: &Needed| {
+        let of_line = |line| page.hatched(line, needed.share);
+        needed.block.lines.iter().map(of_line).fold(Hatched::default(), Hatched::and)
+    };
+    let of_blocks: Vec<Hatched> = blocks.par_iter().map(of_block).collect();
+    Ok(of_blocks.into_iter().fold(Hatched::default(), Hatched::and))
+}
+
+impl Hatched {
+    fn and(mut self, other: Self) -> Self {
+        self.ways.extend(other.ways);
+        Self { ways: self.ways, bare: self.bare.into_iter().chain(other.bare).reduce(f64::max) }
+    }
 }
 
 impl Seen<'_> {
@@ -73,6 +96,11 @@ impl Seen<'_> {
                 }
             }
         }
+    }
+
+    /// How far a place of the world is from the eye, metres; of a map that is no matter.
+    fn distance(self, world: DVec3) -> f64 {
+        if let Self::By(perspective, ..) = self { perspective.distance(world) } else { 0.0 }
     }
 
     /// Where a place of the world stands, px; `None` behind the eye.
@@ -91,6 +119,15 @@ impl Seen<'_> {
         let (place, depth) = perspective.project(world);
         let is_beside = place.cmplt(DVec2::splat(-BESIDE)).any() || place.cmpgt(perspective.size() + BESIDE).any();
         is_beside || cover.hides(place, depth)
+    }
+
+    /// Whether a place of the world, px on the page, may be seen there.
+    fn may_show(self, place: DVec2, world: DVec3) -> bool {
+        let size = match self {
+            Self::By(perspective, ..) => perspective.size(),
+            Self::Above(overhead) => UVec2::from(overhead.size).as_dvec2(),
+        };
+        place.cmpge(DVec2::ZERO).all() && place.cmple(size).all() && !self.hides(world)
     }
 
     /// How a place before the eye moves on the page where it moves so in the world, px.
@@ -130,6 +167,8 @@ struct Point {
     metres: f64,
     /// How far apart strokes should stand here, px.
     apart: f64,
+    /// How much of it is there for the land not being too near.
+    far_enough: f64,
 }
 
 /// A place where a line is cut.
@@ -145,7 +184,7 @@ struct Cut {
 
 impl Page<'_> {
     /// The pieces of a line that are shown, at most as strongly as `most`.
-    fn ways(&self, line: &SlopeLine, most: f64) -> Vec<Way> {
+    fn hatched(&self, line: &SlopeLine, most: f64) -> Hatched {
         let worlds: Vec<DVec3> = line.points.iter().map(|point| self.slopes.world(point)).collect();
         let mut metres = 0.0;
         let steps = worlds.windows(2).map(|pair| {
@@ -160,11 +199,14 @@ impl Page<'_> {
             Some(Point { of_way: WayPoint { weight, ..point.of_way }, ..point })
         };
         let points: Vec<Option<Point>> = line.points.iter().zip(&worlds).zip(&metres).map(on_page).collect();
+        let is_bare = |point: &&Point| point.far_enough < 0.5 && self.seen.may_show(point.place, point.of_way.world);
+        let bare = points.iter().flatten().filter(is_bare).map(|point| self.seen.distance(point.of_way.world));
+        let bare = bare.reduce(f64::max);
         // Behind the eye there is no page.
         let parts = points.chunk_by(|a, b| a.is_some() == b.is_some());
         let shown =
             parts.flat_map(|part| self.shown(line.id, metres[metres.len() - 1], part.iter().flatten().copied()));
-        shown.collect()
+        Hatched { ways: shown.collect(), bare }
     }
 
     /// The pieces of a part of a line so many metres long that are shown.
@@ -198,9 +240,10 @@ impl Page<'_> {
         let black = self.shade.black(gradient);
         let apart = self.look.apart(black);
         let wanted = self.metres_apart(world, gradient, black);
-        let weight = if wanted.is_finite() { fade(ROOM, f64::from(point.room) / wanted) } else { 0.0 };
+        let far_enough = fade(NEAR, wanted / self.slopes.least_spacing());
+        let weight = if wanted.is_finite() { fade(ROOM, f64::from(point.room) / wanted) * far_enough } else { 0.0 };
         let of_way = WayPoint { at: point.at, world, weight: weight as f32, black: black as f32 };
-        Point { of_way, place, arc: 0.0, metres, apart }
+        Point { of_way, place, arc: 0.0, metres, apart, far_enough }
     }
 
     /// How far apart on the map strokes are to stand on land of a gradient and a tone, metres; infinite where none are.
@@ -329,6 +372,7 @@ impl Point {
             arc: of(self.arc, other.arc),
             metres: of(self.metres, other.metres),
             apart: of(self.apart, other.apart),
+            far_enough: of(self.far_enough, other.far_enough),
         }
     }
 }

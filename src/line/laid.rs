@@ -32,6 +32,8 @@ const MOST: usize = 1 << 24;
 pub struct Laid {
     /// Where the points lie on the lattice.
     pub places: Vec<Place>,
+    /// As [`Hatched::bare`](super::hachures::Hatched::bare).
+    pub bare: Option<f64>,
     runs: Vec<Run>,
 }
 
@@ -54,7 +56,7 @@ impl Laid {
         let runs: Vec<Run> = ways.par_iter().flat_map_iter(|way| runs(way, perspective)).collect();
         let places: Vec<Place> = runs.iter().flat_map(|run| run.places.iter().copied()).collect();
         check_length(places.len(), message!["use a smaller ", Setting::Size])?;
-        Ok(Self { places, runs })
+        Ok(Self { places, bare: None, runs })
     }
 
     /// The curves of these lines, by the points that the device found on the page; the others of `segments` play no part.

@@ -73,12 +73,12 @@ impl Overhead {
     /// Lines on the land, `min_gap` px apart, and hachures.
     ///
     /// # Errors
-    /// [`Error::Limit`](crate::error::Error::Limit) where they are longer than those of a view may be; as [`hachures::ways`].
+    /// [`Error::Limit`](crate::error::Error::Limit) where they are longer than those of a view may be; as [`hachures::hatched`].
     pub fn land(&self, land: &Land, min_gap: f64, hachures: Option<&Hachures>) -> Result<Vec<Chain>> {
         let lines: Vec<Way> =
             land.ways(From::Above(self.px_per_metre)).into_iter().flat_map(|way| self.about(way)).collect();
         let strokes = match land.slopes().zip(hachures) {
-            Some((slopes, look)) => hachures::ways(slopes, look, Seen::Above(self))?,
+            Some((slopes, look)) => hachures::hatched(slopes, look, Seen::Above(self))?.ways,
             None => Vec::new(),
         };
         let length = |way: &Way| {

@@ -38,7 +38,7 @@ const SHORT_OF: [f64; 2] = [0.3, 0.7];
 /// A line this much farther than a stroke, in ln depth, does not stop it.
 const IN_FRONT: f32 = 0.02;
 /// Lengths of a stroke, spacings, up to which it is left out, and from which it is whole.
-const SHORT: [f64; 2] = [0.5, 1.5];
+const SHORT: [f64; 2] = [1.0, 3.0];
 /// Lengths over which strokes broaden at their tops and run out at their feet, spacings; at most these parts of the stroke.
 const TAPER: [f64; 2] = [0.4, 1.4];
 const MOST_TAPER: [f64; 2] = [0.15, 0.35];

@@ -42,11 +42,16 @@ impl Renderer {
         };
         let perspective = self.perspective(frame);
         let mut ways = land.ways(From::Eye(perspective.eye(), perspective.focal()));
+        let mut bare = None;
         if let (Some(slopes), Some(look)) = (land.slopes(), &frame.plan.hachures) {
             let cover = pixels.map(Cover::new);
-            ways.extend(hachures::ways(slopes, look, Seen::By(&perspective, frame.camera.azimuth, cover.as_ref()))?);
+            let seen = Seen::By(&perspective, frame.camera.azimuth, cover.as_ref());
+            let hatched = hachures::hatched(slopes, look, seen)?;
+            ways.extend(hatched.ways);
+            bare = hatched.bare;
         }
-        let laid = Laid::new(&ways, &perspective)?;
+        let mut laid = Laid::new(&ways, &perspective)?;
+        laid.bare = bare;
         self.curves.lay(&self.gpu, &laid.places)?;
         self.stages.fit(&self.gpu, frame, &self.scene, &self.page, &self.curves)?;
         Ok(laid)

@@ -9,7 +9,8 @@ use crate::dem::Dem;
 use crate::error::Result;
 use crate::gpu::{Capacity, sizes};
 use crate::plan::batches::BATCH_CHUNKS;
-use crate::plan::{Detail, Frame};
+use crate::plan::{Detail, Frame, LandLines};
+use crate::relief::LandWanted;
 use crate::surface::Surface;
 use crate::surface::lattice::CHUNK_VERTICES;
 
@@ -17,14 +18,23 @@ use crate::surface::lattice::CHUNK_VERTICES;
 const SECONDS: f64 = 0.008;
 /// Seconds a facet: to the mask, and for curves, their chains and strokes.
 const OF_FACET: [f64; 2] = [41e-9, 101e-9];
-/// Seconds a pixel.
+/// Seconds a pixel, and of hachures.
 const OF_PIXEL: f64 = 30e-9;
-/// Seconds a sample, of a plan.
+const OF_HATCHED: f64 = 1e-6;
+/// Seconds a sample, once for a DEM: what is read and made of it, and channels and ridges where lines lie on the land.
+const OF_SAMPLE_ONCE: f64 = 0.2e-6;
+const OF_RELIEF_ONCE: f64 = 1e-6;
+/// Seconds until a process draws, whatever it draws.
+const ONCE: f64 = 0.4;
+/// Seconds a sample, of a plan, and of its hachures.
 const OF_SAMPLE_SECONDS: f64 = 50e-9;
+const OF_SAMPLE_HATCHED: f64 = 2e-6;
 /// Bytes of the program and its driver.
 const PROGRAM: u64 = 209 << 20;
 /// Bytes a sample that is held: height, normal, and what is made of them.
 const OF_SAMPLE: u64 = 16;
+/// Bytes of the lines that hachures are drawn of.
+const OF_SLOPES: u64 = 192 << 20;
 /// Bytes a pixel of drawings on their way to their files, of which there are up to three.
 const OF_DRAWING: u64 = 3 * 24;
 
@@ -35,6 +45,8 @@ pub struct Estimate {
     pub samples: u64,
     /// Facets.
     pub facets: u64,
+    /// Seconds before the first frame of a process, where no cache holds what is made of the DEM.
+    pub start: f64,
     /// Seconds, once the device is warm.
     pub seconds: f64,
     /// Bytes of the process, those of the device included.
@@ -45,15 +57,17 @@ pub struct Estimate {
 
 impl Estimate {
     /// What is done already.
-    pub const NOTHING: Self = Self { samples: 0, facets: 0, seconds: 0.0, memory: 0, device: 0 };
+    pub const NOTHING: Self = Self { samples: 0, facets: 0, start: 0.0, seconds: 0.0, memory: 0, device: 0 };
 
     /// Of the plan of a DEM, which no device sees.
-    pub fn of_plan(dem: &Dem) -> Self {
+    pub fn of_plan(dem: &Dem, land: &LandWanted) -> Self {
         let samples = samples(dem);
+        let [hatched, of_slopes] = if land.slopes.is_some() { [samples, OF_SLOPES] } else { [0; 2] };
         Self {
             samples,
-            seconds: SECONDS + samples as f64 * OF_SAMPLE_SECONDS,
-            memory: PROGRAM + samples * OF_SAMPLE,
+            start: start(samples, !land.is_nothing()),
+            seconds: SECONDS + samples as f64 * OF_SAMPLE_SECONDS + hatched as f64 * OF_SAMPLE_HATCHED,
+            memory: PROGRAM + samples * OF_SAMPLE + of_slopes,
             ..Self::NOTHING
         }
     }
@@ -78,14 +92,22 @@ impl Estimate {
         let samples = samples(surface.dem());
         let held = if surface.dem().held().is_ok() { samples } else { 0 };
         let of_facet = OF_FACET[usize::from(frame.plan.has_curves())];
+        let [hatched, of_slopes] = if frame.plan.hachures.is_some() { [pixels, OF_SLOPES] } else { [0; 2] };
         Ok(Self {
             samples,
             facets,
-            seconds: SECONDS + facets as f64 * of_facet + pixels as f64 * OF_PIXEL,
-            memory: PROGRAM + held * OF_SAMPLE + device + pixels * OF_DRAWING,
+            start: start(samples, frame.plan.land == LandLines::On),
+            seconds: SECONDS + facets as f64 * of_facet + pixels as f64 * OF_PIXEL + hatched as f64 * OF_HATCHED,
+            memory: PROGRAM + held * OF_SAMPLE + of_slopes + device + pixels * OF_DRAWING,
             device,
         })
     }
+}
+
+/// Seconds once for a process and a DEM of so many samples.
+fn start(samples: u64, has_land: bool) -> f64 {
+    let of_relief = if has_land { OF_RELIEF_ONCE } else { 0.0 };
+    ONCE + samples as f64 * (OF_SAMPLE_ONCE + of_relief)
 }
 
 fn samples(dem: &Dem) -> u64 {

@@ -18,6 +18,8 @@ pub struct Page {
     pub hidden: Vec<Chain>,
     /// What the eye sees of lines on the land.
     pub land: Vec<Chain>,
+    /// How far from the eye, metres, land goes that is too near for hachures, which stays bare; none where there is none.
+    pub bare: Option<f64>,
     /// How many pixels show land, inked or not.
     pub covered: u64,
     /// Nodes the longest walk visited, or facets of the longest cut; 0 for other methods.
@@ -77,7 +79,7 @@ impl Found {
 impl Listed {
     fn page(self) -> Page {
         let Self { marks, segments, laid, covered, longest_walk, frame, perspective } = self;
-        let size = frame.pieces.page();
+        let (size, bare) = (frame.pieces.page(), laid.bare);
         let land = laid.curves(&segments, &perspective);
         let curves = [link(segments, &frame.lattice, &perspective), land].concat();
         let (chains, hidden) = match frame.plan.curves {
@@ -89,7 +91,7 @@ impl Listed {
             Yields::Ink => Marks::new(size, marks),
             Yields::Curves => one_pixel_wide(&chains, size),
         };
-        Page { marks, chains, hidden, land, covered, longest_walk, frame, perspective }
+        Page { marks, chains, hidden, land, bare, covered, longest_walk, frame, perspective }
     }
 }
 

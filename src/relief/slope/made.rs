@@ -8,7 +8,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::block::made;
 use super::kept::Store;
-use super::land::Land;
+use super::land::{Land, Walker};
 use super::level::{BlockAt, Blocks, LEVELS};
 use super::{SlopeBlock, SlopePoint, SlopeRules};
 use crate::cache::Cache;
@@ -167,6 +167,11 @@ impl Slopes {
         missing.iter().filter_map(|at| new.get(at).cloned()).collect()
     }
 
+    /// How far apart the closest lines are, metres on the map.
+    pub fn least_spacing(&self) -> f64 {
+        self.blocks.spacing(LEVELS - 1)
+    }
+
     /// Exaggerated metres for one of the land.
     pub fn exaggeration(&self) -> f64 {
         self.exaggeration
@@ -174,9 +179,12 @@ impl Slopes {
 
     /// Where a point of a line lies, metres of the exaggerated world.
     pub fn world(&self, point: &SlopePoint) -> DVec3 {
-        let north_west = self.land.surface.dem().position(0, 0).truncate();
-        let on_map = north_west + self.land.metres(point.at) * DVec2::new(1.0, -1.0);
-        on_map.extend(point.height.into())
+        self.on_map(self.land.metres(point.at)).extend(point.height.into())
+    }
+
+    /// A place of the map by its metres from the north-west sample.
+    fn on_map(&self, metres: DVec2) -> DVec2 {
+        self.land.surface.dem().position(0, 0).truncate() + metres * DVec2::new(1.0, -1.0)
     }
 
     /// How many points of lines are held.
@@ -242,28 +250,42 @@ impl Slopes {
     /// How many of the places of a block and a little beyond on which lines may be ask for those of its level. What is hidden
     /// counts as well, so that nothing changes when it comes into sight.
     fn asked(&self, at: BlockAt, need: &dyn Need) -> Asked {
-        let surface = &self.land.surface;
-        let last = DVec2::new(surface.dem().columns() as f64, surface.dem().rows() as f64) - 1.0;
+        let dem = self.land.surface.dem();
+        let last = DVec2::new(dem.columns() as f64, dem.rows() as f64) - 1.0;
         let [low, high] = self.blocks.square(at).map(|corner| corner / self.land.cell);
         let beyond = (BEYOND * self.blocks.spacing(at.level) / self.land.cell).max(DVec2::ONE);
         let [low, high] =
             [(low - beyond).floor(), (high + beyond).ceil()].map(|corner| corner.clamp(DVec2::ZERO, last));
-        let step = ((high - low).max_element() / LOOKS).ceil().max(1.0);
+        let step = (high - low).max_element() / LOOKS;
+        // Of wide blocks samples are good enough.
+        let step = if step > 1.0 { step.ceil() } else { step.max(f64::MIN_POSITIVE) };
         let counts = ((high - low) / step).ceil().as_uvec2();
         let places = (0..=counts.y).flat_map(|y| (0..=counts.x).map(move |x| DVec2::new(x.into(), y.into())));
+        let mut walker = Walker::new(&self.land);
         let (mut asks, mut all, mut seen) = (0.0, 0.0, false);
         for place in places {
-            let [c, r] = (low + place * step).min(high).to_array().map(|at| at as usize);
-            let gradient = surface.gradient(c, r);
-            if surface.dem().height(c, r).is_none() || !self.land.is_steep(gradient) {
+            let place = (low + place * step).min(high);
+            let Some((world, gradient)) = self.looked(&mut walker, place, step >= 1.0) else { continue };
+            if !self.land.is_steep(gradient) {
                 continue;
             }
-            let place = surface.dem().position(c, r);
-            asks += part(ASKED, self.blocks.most_room(at.level) / need.at(place, gradient));
+            asks += part(ASKED, self.blocks.most_room(at.level) / need.at(world, gradient));
             all += 1.0;
-            seen |= need.sees(place);
+            seen |= need.sees(world);
         }
         Asked { share: part(SHARES, asks / f64::max(all, 1.0)), seen }
+    }
+
+    /// A column and row in the world, and the gradient there; none where there is no land. A sample needs no surface.
+    fn looked(&self, walker: &mut Walker, place: DVec2, is_sample: bool) -> Option<(DVec3, DVec2)> {
+        let (surface, dem) = (&self.land.surface, self.land.surface.dem());
+        if is_sample {
+            let [c, r] = place.to_array().map(|at| at as usize);
+            dem.height(c, r)?;
+            return Some((dem.position(c, r), surface.gradient(c, r)));
+        }
+        let found = walker.place(place * self.land.cell)?;
+        Some((self.on_map(found.at).extend(found.height), found.gradient))
     }
 
     /// Whether a block begins on the DEM.
