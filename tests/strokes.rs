@@ -120,6 +120,24 @@ fn layers_part_at_distances_the_farthest_first() {
     assert_eq!(names(&drawn(vec![plain(1, [10, 50], 20.0)], &even(), &[])), ["1 silhouette"]);
 }
 
+#[test]
+fn hachures_recede_by_a_share_of_their_own() {
+    let two = |line: Line| {
+        let mut chains = [1000.0, 10_000.0].map(|distance| level(1, [40, 160], distance / 200.0, |_| (distance, 1.0)));
+        chains.iter_mut().flat_map(|chain| &mut chain.points).for_each(|point| point.line = line);
+        chains.to_vec()
+    };
+    let mut style = Style { weight: Weight { far: 0.2, ..even().weight }, ..even() };
+    style.hachures.far = 0.5;
+    for (line, far) in [(Line::Skyline, 0.2), (Line::Hachure, 0.5)] {
+        let drawing = drawn(two(line), &style, &[]);
+        let pen = &drawing.layers[0];
+        let mut widths: Vec<f64> = pen.strokes.iter().map(|stroke| stroke.points[60].width).collect();
+        widths.sort_by(f64::total_cmp);
+        assert!((widths[0] / widths[1] - far).abs() < 1e-3, "{line:?}: {widths:?}");
+    }
+}
+
 /// A style of pens of one width each.
 fn pens(widths: &[f64]) -> Style {
     let mut style = even();
