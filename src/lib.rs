@@ -48,6 +48,49 @@
 //! | judge | ink and truth | [`Scores`](truth::metrics::Scores): how far apart they are | [`Judge`](truth::metrics::Judge) |
 //! | compare | methods and levels | [`Results`](report::Results): errors and times | [`Comparison`](measure::Comparison) |
 //!
+//! # How a frame is drawn
+//!
+//! ```text
+//! DEM ── normals ── lattice ──▶ tessellate ─ facing ─ project ─ rasterize ┬ silhouette ─ border ─ compose ──▶ mask
+//!      on the CPU, once          on the GPU, for every frame              └ contours ─ sight ──▶ curves ─ chains ─ strokes ─ PNG, SVG, PDF   on the CPU
+//! ```
+//!
+//! 1. Each cell between four samples is split along NW-SE into two *patches*; each is a cubic PN triangle and is drawn as flat
+//!    *facets*; far away one facet spans many cells. A facet *is* its place on the integer [`lattice`](surface::lattice): two are neighbours
+//!    if they have two lattice vertices in common. No positions are ever compared.
+//! 2. Each chunk of facets may have a [level of its own](plan::detail), from 64 down to 1/64. Neighbours differ by one level at most; along the side they
+//!    share, the finer chunk takes the coarser one's vertices (pass `seam`), so that no crack opens. Samples come to the device in
+//!    tiles of 17 x 17, as frames ask for them.
+//! 3. `tessellate`: vertices on the surface, of those chunks that the last frames did not have; they stay on the device as long as a
+//!    frame has no more than 16 384 chunks (8.4 million facets). `facing`: one bit a facet, toward the eye or away. `project`: where
+//!    vertices lie on the page, snapped to 1/256 pixel. `rasterize`: both sides of every facet into one 64-bit word a pixel, depth
+//!    above ID, by atomic maximum; facets with large boxes or across the near plane are queued and shared out by tiles
+//!    (`rasterize_large`). Adjacent facets leave no pinholes.
+//! 4. Silhouettes, by one of the [methods](plan::registry); the walk is four passes: `candidates` and `pairs` dismiss pixels between which nothing faces
+//!    away, `walk` goes from one to the next, `walk_rest` does what is rare. `border`: the visible rim of the DEM and of its voids.
+//!    `compose`: ink, kind, depth and sub-pixel place for reading back.
+//! 5. Contours: g = n . (eye - p) at vertices, n the area-weighted sum of the normals of all facets around or, inside chunks where
+//!    these do not all face one way, the surface's own (`turning`, `wanted`, `turn`, `meet`); where g changes its sign along
+//!    lattice edges runs the contour (Hertzmann, Zorin 2000), one line a facet at most (`crossed`, `segments`; `rim_segments` for
+//!    the rim). Lines are linked by lattice edges: curves that cannot branch.
+//! 6. `sight`: a line is seen from a pixel centre beside it if the pixel shows what is farther, or if the straight way on the lattice
+//!    from the pixel's point to the line meets no facet that faces away and no void. Where that leaves doubt, the sheets of land before
+//!    it are counted (Appel 1967). What is seen are *chains*.
+//! 7. Chains are stroked by the pens of a [`Style`](ink::Style). Strokes of `toward-away` and `adjacency`, and of ink that no contour accounts for, are
+//!    traced from the mask.
+//!
+//! Chunks beside the page or behind nearer land, and walks that cannot meet anything, are left out; a test draws with and without and
+//! compares bits. Large pages are drawn in [`pieces`](plan::pieces), of which only the inked pixels are kept; strokes are filled in bands of 128
+//! rows, which go to the file one after the other: memory grows with the ink, not with the page.
+//!
+//! One pass has one name: `shaders/rasterize.wgsl` and `src/gpu/rasterize.rs` hold the pass `rasterize`. What runs for a frame is
+//! planned in [`plan::passes`], in the order of [`render`].
+//!
+//! # Coordinates
+//!
+//! Sample (c, r) lies at the centre of its pixel. Depth is near / distance along the view axis. The Earth is flat. On one device and
+//! driver the same input gives the same bytes; between devices divisions may round differently.
+//!
 //! World coordinates are metres, x east, y north, z up and exaggerated; angles are degrees, azimuth clockwise from the
 //! world's y axis; pages are pixels from the top left corner. [`Georeference`](dem::Georeference) leads from there to the
 //! coordinates of the file, to longitude and latitude, and to grid north and true north. Whatever can go wrong is an [`Error`](error::Error): what,
