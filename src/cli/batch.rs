@@ -15,11 +15,12 @@ use super::jobs::JobArguments;
 use super::listing;
 use super::plan::{self, Planned};
 use super::progress::Progress;
+use super::reference;
 use super::scene;
 use super::serve;
 use super::talk::Talk;
 use super::words::told;
-use super::work::{CODES, Work};
+use super::work::Work;
 use crate::cache::Cache;
 use crate::error::{Error, Result, shown};
 use crate::files::{Taken, relative};
@@ -38,22 +39,6 @@ use sheets::SheetArguments;
 
 /// The end of `hachure batch --help`.
 const EXAMPLES: &str = "\
-The file is TOML. Its keys are the flags of `hachure draw` without their dashes, its paths count from the folder in which the
-command runs:
-
-  [defaults]
-  dem = \"dem/golden-gate.tif\"
-  style = \"atlas\"
-  size = \"1600x700\"
-
-  [[drawing]]
-  name = \"from the north\"
-  output = [\"north.png\", \"north.svg\"]
-  eye = \"547500,4190300,+300\"
-  azimuth = 190
-
-A drawing that says false to a key leaves the default out. The manifest stands in the folder of the first drawing.
-
 Examples:
   hachure batch drawings.toml
 
@@ -68,7 +53,7 @@ Examples:
 
 /// Flags of `hachure batch`, as typed.
 #[derive(Debug, clap::Args)]
-#[command(after_help = format!("{CODES}\n\n{EXAMPLES}"))]
+#[command(after_help = EXAMPLES, after_long_help = reference::of(&[reference::LIST, reference::JOBS, EXAMPLES]))]
 pub struct BatchArguments {
     /// The list of drawings
     #[arg(value_name = "FILE.toml")]

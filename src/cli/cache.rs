@@ -4,6 +4,7 @@ use std::fmt::{self, Display, Formatter};
 use std::path::PathBuf;
 use std::time::SystemTime;
 
+use super::reference;
 use super::talk::Talk;
 use super::terrain::{TerrainArguments, warn_of_survey};
 use super::values;
@@ -14,8 +15,6 @@ use crate::surface::Surface;
 
 /// The end of `hachure cache --help`.
 const EXAMPLES: &str = "\
-Kept are truths, and of a DEM that stays in its files what takes a look at every sample. A file may be removed at any time.
-
 Examples:
   What is there, the one used last first:
   hachure cache
@@ -40,7 +39,7 @@ pub struct CacheArguments {
 
 /// Flags of `hachure cache`, as typed.
 #[derive(Debug, clap::Args)]
-#[command(after_help = EXAMPLES, mut_arg("dems", |dems| dems.required(false).requires("make")))]
+#[command(after_help = EXAMPLES, after_long_help = reference::of(&[reference::KEPT, EXAMPLES]), mut_arg("dems", |dems| dems.required(false).requires("make")))]
 pub struct CacheCommand {
     /// Remove all that is not in use
     #[arg(long, conflicts_with = "make")]

@@ -16,7 +16,7 @@ use super::values::{self, Height, LevelChoice, Size};
 use super::viewpoint::{View, ViewArguments};
 use super::views::{self, NamedView};
 use super::words::{flag, told};
-use super::{blank, cells, choices};
+use super::{blank, cells, choices, reference};
 use crate::cache::Cache;
 use crate::error::{Error, Result, Setting, shown};
 use crate::files::Taken;
@@ -40,14 +40,6 @@ use crate::view::{Camera, Flight};
 
 /// The end of `hachure compare --help`, below the names of the methods.
 const EXAMPLES: &str = "\
-Times are medians of warm frames; each moves the eye 1 m along the view, the first frame stands apart. Truth is found on
-the CPU and kept in the user's folder for caches.
-
-A file of views is JSON: {\"views\": [{\"name\": \"crater\", \"dem\": \"st-helens.tif\", \"eye\": [560374, 5124979, 1223],
-\"azimuth\": 170, \"altitude\": -3, \"fov\": 60}, ...]}; \"lonlat\": [LON, LAT, HEIGHT] may stand for \"eye\", \"+200\" for a
-height of 200 m above the ground; \"north\": \"true\" has azimuths count from true north, not grid north. Its views of the DEMs
-given are drawn.
-
 Examples:
   hachure compare dem/golden-gate.tif -o report --size 1280x720
 
@@ -62,7 +54,7 @@ Examples:
 
 /// Flags of `hachure compare`, as typed.
 #[derive(Debug, clap::Args)]
-#[command(after_help = format!("Methods: {}.\n\n{EXAMPLES}", choices::methods()))]
+#[command(after_help = reference::of(&[&methods(), EXAMPLES]), after_long_help = reference::of(&[&methods(), reference::COMPARED, EXAMPLES]))]
 pub struct CompareArguments {
     #[command(flatten)]
     terrain: TerrainArguments,
@@ -81,7 +73,7 @@ pub struct CompareArguments {
     views: Option<PathBuf>,
 
     /// Follow a path instead, as hachure fly does: what of masks and strokes pops from frame to frame, over 20 frames from its
-    /// middle, 1 m and 10 m apart
+    /// middle, 1 m and 10 m apart, 640x360 unless --size says otherwise
     #[arg(long, value_name = "FILE", conflicts_with_all = ["views", "sizes", "standpoint", "azimuth", "altitude", "look_at", "crs", "north", "floor"], help_heading = "View")]
     path: Option<PathBuf>,
     /// With --path: +H, metres above the ground, instead of the path's own heights
@@ -94,7 +86,8 @@ pub struct CompareArguments {
     /// Subdivisions of a cell's edge: 1, 2, 4, 8, 16, 32 or 64
     #[arg(long, value_name = "N|auto,...", value_parser = values::level_choice, value_delimiter = ',', default_value = "1,2,4,8,auto", help_heading = "Surface")]
     levels: Vec<LevelChoice>,
-    /// Of level auto: how far facets may deviate from the surface on the page, in pixels
+    /// Of level auto: how far facets may deviate from the surface on the page where a line may run, in pixels; elsewhere four
+    /// times as far
     #[arg(long, value_name = "PX", value_parser = values::error_px, default_value_t = ERROR_PX, help_heading = "Surface")]
     error_px: f64,
 
@@ -122,6 +115,11 @@ pub struct CompareArguments {
     device: DeviceArguments,
     #[command(flatten)]
     cache: CacheArguments,
+}
+
+/// The names of the methods, for help.
+fn methods() -> String {
+    format!("Methods: {}.", choices::methods())
 }
 
 /// Metres between frames that follow a path.

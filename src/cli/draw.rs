@@ -16,7 +16,7 @@ use super::values::{self, Size};
 use super::view_report::ViewReport;
 use super::viewpoint::{View, ViewArguments};
 use super::words::told;
-use super::{bare, blank, cells, journey, plan, scene};
+use super::{bare, blank, cells, journey, plan, reference, scene};
 use crate::cache::Cache;
 use crate::error::{Error, Result, Setting};
 use crate::files::Taken;
@@ -45,14 +45,15 @@ Examples:
       --eye 547500,4183300,+300 --azimuth 318 --altitude -6 --fov 50 --size 1600x700
 
   Several tiles in degrees, from 400 m above a place on the globe, looking at another:
-  hachure draw N37W123.hgt N38W123.hgt -o bay.png --lonlat -122.47,37.786,+400 --crs EPSG:4326 --look-at -122.6,37.924
+  hachure draw N37W123.hgt N38W123.hgt -o bay.png --lonlat -122.47,37.786,+400 \\
+      --crs EPSG:4326 --look-at -122.6,37.924
 
   The mask alone, to another program, and what was done, to a file:
   hachure draw dem/golden-gate.tif -o golden-gate.png --json golden-gate.json --mask - | wc -c";
 
 /// Flags of `hachure draw`, as typed.
 #[derive(Debug, Clone, clap::Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = EXAMPLES, after_long_help = reference::of(&[reference::DRAWN, EXAMPLES]))]
 pub struct DrawArguments {
     #[command(flatten)]
     pub(super) terrain: TerrainArguments,
@@ -61,7 +62,8 @@ pub struct DrawArguments {
 
     #[command(flatten)]
     view: ViewArguments,
-    /// Draw the land from straight above instead, true to scale: the page is the DEM, or its part, at that scale
+    /// Draw the land from straight above instead, true to scale: its rims and lines on it; the page is the DEM, or its part, at that
+    /// scale
     #[arg(
         long, requires = "scale", help_heading = "View",
         conflicts_with_all = [

@@ -25,7 +25,7 @@ pub struct DrawingArguments {
     pub level: LevelChoice,
     #[arg(
         long, value_name = "PX", value_parser = values::error_px, help_heading = "Surface",
-        help = format!("--level auto only: how far facets may deviate from the surface on the page, in pixels [default: {ERROR_PX}]")
+        help = format!("--level auto only: how far facets may deviate from the surface on the page where a line may run, in pixels; elsewhere four times as far [default: {ERROR_PX}]")
     )]
     error_px: Option<f64>,
 

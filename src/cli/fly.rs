@@ -16,13 +16,14 @@ use super::jobs::{JobArguments, Share};
 use super::listing;
 use super::outputs::Format;
 use super::progress::Progress;
+use super::reference;
 use super::scene;
 use super::serve;
 use super::talk::Talk;
 use super::terrain::{TerrainArguments, warn_of_survey};
 use super::values::Size;
 use super::words::told;
-use super::work::{CODES, Work};
+use super::work::Work;
 use super::{bare, blank};
 use crate::cache::Cache;
 use crate::error::{Error, Result, Setting, shown};
@@ -44,8 +45,8 @@ Examples:
   hachure fly dem/golden-gate.tif --path route.gpkg --height +400 --count 250 -o frames/%05d.png
 
   Ten seconds around a place, as a motion picture:
-  hachure fly dem/golden-gate.tif --orbit 545000,4186000 --radius 4000 --height +800 --duration 10 -o frames/%05d.png \\
-      --video around.mp4
+  hachure fly dem/golden-gate.tif --orbit 545000,4186000 --radius 4000 --height +800 --duration 10 \\
+      -o frames/%05d.png --video around.mp4
 
   The way from above, before anything is drawn:
   hachure fly dem/golden-gate.tif --path route.gpkg --height +400 --preview route.svg
@@ -55,12 +56,12 @@ Examples:
   hachure merge /shared/frames
 
   Frames as they are asked for, on the second of a machine's GPUs:
-  echo '{\"id\": 7, \"frames\": \"3, 5-10\"}' | hachure fly dem/golden-gate.tif --path route.toml --count 1000 \\
-      -o frames/%05d.png --serve --adapter 1";
+  echo '{\"id\": 7, \"frames\": \"3, 5-10\"}' | \\
+      hachure fly dem/golden-gate.tif --path route.toml --count 1000 -o frames/%05d.png --serve --adapter 1";
 
 /// Flags of `hachure fly`, as typed.
 #[derive(Debug, clap::Args)]
-#[command(after_help = format!("{CODES}\n\n{EXAMPLES}"))]
+#[command(after_help = EXAMPLES, after_long_help = reference::of(&[reference::FLOWN, reference::JOBS, EXAMPLES]))]
 pub struct FlyArguments {
     #[command(flatten)]
     terrain: TerrainArguments,

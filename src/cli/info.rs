@@ -3,7 +3,7 @@
 use super::talk::Talk;
 use super::terrain::{TerrainArguments, words};
 use super::words::told;
-use super::{channels, peaks, values};
+use super::{channels, peaks, reference, values};
 use crate::cache::Cache;
 use crate::error::Result;
 use crate::geo;
@@ -21,27 +21,39 @@ Examples:
 
 /// Peaks that are listed where nobody says how many.
 pub const PEAKS: &str = "20";
+/// What is said of peaks beside that.
+const PROMINENCE: &str = "\
+Prominence is metres above the saddle that parts a peak from higher ground; of the highest above the lowest sample, or the sea where \
+that lies below 0. A peak at the edge of the DEM or of a void is marked: the land may rise beyond. DEMs that stay in their files \
+need a --crop.";
 /// Bytes of a GiB.
 const GIB: f64 = (1u64 << 30) as f64;
 
 /// Flags of `hachure info`.
 #[derive(Debug, clap::Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = EXAMPLES, after_long_help = reference::of(&[reference::READ, EXAMPLES]))]
 pub struct InfoArguments {
     #[command(flatten)]
     terrain: TerrainArguments,
     #[arg(
         long, value_name = "N", value_parser = values::peaks, num_args = 0..=1, default_missing_value = PEAKS,
-        help = format!("Also list the N most prominent peaks, with the saddles that part them from higher ground [default: {PEAKS}]")
+        help = peaks_help(), long_help = format!("{}\n\n{PROMINENCE}", peaks_help())
     )]
     peaks: Option<usize>,
-    /// Also list from how much land on water was tried to run in channels, and which of them --channel-area auto takes and why
+    /// Also list from how much land on water was tried to run in channels, how streams fall with each, and which --channel-area
+    /// auto takes; DEMs that stay in their files need a --crop
     #[arg(long)]
     channels: bool,
     /// List the adapters of this machine instead, of which --adapter takes the numbers: where each is plugged in, and how much
     /// memory it has
     #[arg(long, exclusive = true)]
     adapters: bool,
+}
+
+fn peaks_help() -> String {
+    format!(
+        "Also list the N most prominent peaks, with the saddles that part them from higher ground [default: {PEAKS}]"
+    )
 }
 
 /// Prints size, CRS, extent, cell, range, voids, what was converted and assumed, peaks and areas of channels; or the adapters.

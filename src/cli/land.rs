@@ -21,7 +21,7 @@ pub struct LandArguments {
     #[arg(
         long, value_name = "NAME,…|none", value_parser = creases,
         help = format!(
-            "Lines of the land, each kind in a layer of its own: {}; or none [default: as the style has it, {}]",
+            "Lines of the land, each kind in a layer of its own: {}; or none. Contours and plans only [default: as the style has it, {}]",
             Crease::ALL.map(Crease::name).join(", "), creases_word(&Style::default().creases)
         )
     )]

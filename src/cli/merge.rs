@@ -12,8 +12,8 @@ use crate::job::{Frames, Merged};
 
 /// The end of `hachure merge --help`.
 const EXAMPLES: &str = "\
-Looks at the manifests that each process leaves in the folder (hachure-0-of-4.json and so on) and at every file that they
-name: whether it is there, whole, and made of what it was to be made of. Ends with 0 where all is there, else with 1.
+Looks at the manifests that each process leaves in the folder and at every file that they name: \
+whether it is there, whole, and made of what it was to be made of. Ends with 0 where all is there, else with 1.
 
 Example:
   hachure merge frames/

@@ -34,6 +34,7 @@ pub mod page;
 mod peaks;
 pub mod plan;
 pub mod progress;
+pub mod reference;
 pub mod scene;
 pub mod serve;
 pub mod style;
@@ -64,7 +65,7 @@ Examples:
 
 /// Pen-and-ink landscapes from digital elevation models.
 #[derive(Debug, Parser)]
-#[command(name = "hachure", version, about, max_term_width = 100, after_help = EXAMPLES)]
+#[command(name = "hachure", version, about, max_term_width = 100, after_help = EXAMPLES, after_long_help = reference::of(&[reference::ALL, EXAMPLES]))]
 pub struct Arguments {
     #[command(flatten)]
     talk: TalkArguments,

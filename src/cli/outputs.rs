@@ -20,6 +20,10 @@ pub struct OutputArguments {
     #[arg(long, value_name = "OUT.png|-")]
     mask: Option<PathBuf>,
     /// Also what was done, with times of ten further frames (two of a page in pieces)
+    ///
+    /// Facets, inked pixels, layers, parts of the mask that no stroke draws and why, times of passes, pieces, adapter, what was
+    /// converted, assumed and left out; and the view with its projection and its system of coordinates, to lay labels and layers of a
+    /// GIS over the picture.
     #[arg(long, value_name = "OUT.json|-")]
     json: Option<PathBuf>,
 }

@@ -23,8 +23,9 @@ pub struct PageArguments {
     #[arg(
         long, value_name = "NAME|WxH", value_parser = values::page,
         help = format!(
-            "Sheet of paper: {}, or millimetres across and down [default: {} mm across, as --size is shaped]",
-            values::paper_names(), Sheet::WIDTH
+            "Sheet of paper: {}, or millimetres across and down; the frame fills it less its margins, at {} pixels a millimetre \
+             unless --size says [default: {} mm across, as --size is shaped]",
+            values::paper_names(), Sheet::FRAME_PX_PER_MM, Sheet::WIDTH
         )
     )]
     page: Option<DVec2>,
@@ -38,7 +39,7 @@ pub struct PageArguments {
     margin: Option<f64>,
     #[arg(
         long, value_name = "N", value_parser = values::dpi,
-        help = format!("Pixels of a .png for each inch of the page [default: {DPI} with --page, else as --size has it]")
+        help = format!("Pixels of a .png for each inch of the page; vectors are the same bytes at any [default: {DPI} with --page, else as --size has it]")
     )]
     dpi: Option<f64>,
 }

@@ -14,7 +14,7 @@ use crate::plan::Tone;
 pub struct StyleArguments {
     #[arg(
         long, value_name = "NAME|FILE.toml",
-        help = format!("The look: {}, or a file; see `hachure styles` [default: {}]",
+        help = format!("The look: {}, or a file; see `hachure styles --help` [default: {}]",
             BuiltIn::ALL.map(|style| style.to_string()).join(", "), BuiltIn::default())
     )]
     style: Option<String>,
@@ -22,7 +22,7 @@ pub struct StyleArguments {
         long, value_name = "X", value_parser = values::min_jump, allow_hyphen_values = true,
         help = format!(
             "Leave lines out where what lies behind is less than this share farther than they are; from twice that on they are \
-             whole. 0 draws all [default: as the style has it, {}]",
+             whole. 0 draws all. Contours only [default: as the style has it, {}]",
             Style::default().min_jump
         )
     )]
@@ -31,20 +31,20 @@ pub struct StyleArguments {
         long, value_name = ".4mm|3px", value_parser = values::min_gap, allow_hyphen_values = true,
         help = format!(
             "Of two lines nearer to each other than this the weaker fades, by kind, jump and length; the skyline never does. In \
-             millimetres of the page or pixels of the mask, 0 leaves all lines [default: as the style has it, {}mm]",
+             millimetres of the page or pixels of the mask, 0 leaves all lines. Contours only [default: as the style has it, {}mm]",
             Style::default().min_gap
         )
     )]
     min_gap: Option<Gap>,
     #[arg(
         long, value_parser = choices::tone(),
-        help = format!("What the darkness of strokes down the slope says [default: as the style has it, {}]", Style::default().hachures.tone.name())
+        help = format!("What the darkness of strokes down the slope says. Contours and plans only [default: as the style has it, {}]", Style::default().hachures.tone.name())
     )]
     hachures: Option<Tone>,
-    /// Lines that nearer land hides
+    /// Lines that nearer land hides. Contours only
     #[arg(long, value_parser = choices::hidden(), default_value = choices::default_hidden())]
     hidden: Hidden,
-    /// Distances from the eye that part layers, as distance:5km,10km
+    /// Distances from the eye that part layers, the farthest first, as distance:5km,10km
     #[arg(long, value_name = "distance:D,…", value_parser = values::split)]
     split: Option<Split>,
 }

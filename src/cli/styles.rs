@@ -1,5 +1,6 @@
 //! `hachure styles`: the looks of a drawing.
 
+use super::reference;
 use super::talk::Talk;
 use crate::error::{Error, Result};
 use crate::ink::Style;
@@ -14,7 +15,7 @@ Examples:
 
 /// Flags of `hachure styles`.
 #[derive(Debug, clap::Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = EXAMPLES, after_long_help = reference::of(&[reference::STYLES, EXAMPLES]))]
 pub struct StylesArguments {
     /// Print this style, whole: a name, or a file that ends in .toml
     #[arg(value_name = "NAME|FILE.toml", conflicts_with = "schema")]

@@ -16,6 +16,8 @@ use crate::job::name::Naming;
 #[derive(Debug, Clone, clap::Args)]
 pub struct TerrainArguments {
     /// The DEM: any raster; several are laid together, the finest on top, of those on one grid the last
+    ///
+    /// `hachure info --help` says which formats are read, and what is done with a file.
     #[arg(required = true, value_name = "DEM")]
     pub dems: Vec<PathBuf>,
 
@@ -36,14 +38,14 @@ pub struct TerrainArguments {
     /// The file, one of the DEM, whose cells are drawn [default: the finest whose samples fit --memory]
     #[arg(long, value_name = "FILE", help_heading = "Surface")]
     cell_of: Option<PathBuf>,
-    /// Resample to square cells of so many metres, cubic [default: only what is not north-up in a map that is true]
+    /// Resample to square cells of so many metres, cubic; larger ones are means [default: only what is not north-up in a map that is true]
     #[arg(long, value_name = "M", value_parser = values::metres, allow_hyphen_values = true, help_heading = "Surface")]
     resample: Option<f64>,
     /// Leave a map in metres as it is where they are off those on the ground by over 1 % (shear, unequal scale) [default:
     /// warp it to UTM]
     #[arg(long, help_heading = "Surface")]
     no_warp: bool,
-    /// Fill voids up to 100 samples from data
+    /// Fill voids up to 100 samples from data, by GDAL's inverse distance weighting
     #[arg(long, help_heading = "Surface")]
     fill_voids: bool,
     /// The unit of elevations: m, dm, cm, mm, km, ft or us-ft [default: as the DEM says, else metres]
@@ -60,7 +62,11 @@ pub struct TerrainArguments {
     /// smoothest surface within half a step of them]
     #[arg(long, help_heading = "Surface")]
     keep_steps: bool,
-    /// Smooth heights at a scale of so many metres, crests kept: for surface models of trees and roofs
+    /// Smooth heights at a scale of so many metres (2.5 to 256 cells), after any warp, crests kept: for surface models of trees and
+    /// roofs
+    ///
+    /// What is narrower is smoothed away (walls, hair of 1 m lidar). A roof keeps 99 % of its height; the top of a cone loses its slope
+    /// times a fifth of M.
     #[arg(long, value_name = "M", value_parser = values::metres, allow_hyphen_values = true, help_heading = "Surface")]
     generalise: Option<f64>,
     /// Open files on a network, and VRTs that refer to files outside their folder

@@ -35,7 +35,7 @@ pub const SIZE: Size = Size { width: 1920, height: 1080 };
 #[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "View")]
 pub struct ViewArguments {
-    /// Eye: easting, northing in the CRS of the DEM; exaggerated height in metres, or +H above the ground
+    /// Eye: easting, northing (x first, degrees too) in the CRS of the first DEM; exaggerated height in metres, or +H above the ground
     #[arg(long, value_name = "E,N,Z|E,N,+H", value_parser = values::eye, allow_hyphen_values = true, group = "standpoint")]
     eye: Option<Standpoint>,
     /// Eye: longitude, latitude in degrees (WGS 84; elsewhere than on Earth those of the DEM); exaggerated height in metres, or +H above the ground
@@ -51,6 +51,8 @@ pub struct ViewArguments {
     #[arg(long, value_name = "EPSG:N", value_parser = values::epsg)]
     crs: Option<u32>,
     /// What azimuths are counted from [default: true with --lonlat and for DEMs in degrees, else grid]
+    ///
+    /// Where the two are over 1 degree apart, `draw` and `info` say so. Within 100 m of a pole there is no true north.
     #[arg(long, value_parser = choices::north())]
     north: Option<North>,
     /// Direction of view, degrees clockwise from north [default: towards the middle of the DEM]

@@ -36,11 +36,6 @@ pub struct Work<'a> {
 
 /// Temporary files that nobody has written to for so long are of a process that was killed.
 const LEFT: Duration = Duration::from_secs(600);
-/// The end of help texts, on codes.
-pub const CODES: &str = "\
-What is there, and made of the same, is not made again: a run that was cut off goes on where it ended. SIGTERM and Ctrl-C
-finish what is at hand; the code is 75 then, as where the device was lost: try again. It never is where trying again would not
-help: what failed by itself, a full disk and too little memory give 1, wrong flags 2.";
 
 /// Opens an output, whose folder is made where it is not there.
 ///

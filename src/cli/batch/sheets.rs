@@ -27,7 +27,8 @@ const MARK: &str = "{sheet}";
 #[command(next_help_heading = "Sheets")]
 pub struct SheetArguments {
     /// Make each drawing once for each sheet of a map, squares of this system of coordinates in which there is land of the DEM;
-    /// names of outputs hold {sheet}, which becomes the sheet's south-western corner. In a system that is turned against that
+    /// names of outputs hold {sheet}, which becomes the sheet's south-western corner; sheets without any of --lines are drawn
+    /// without. In a system that is turned against that
     /// of the DEM plans show the least upright rectangle around the sheet
     #[arg(long, value_name = "EPSG:N", value_parser = values::epsg, requires = "sheet")]
     grid: Option<u32>,
@@ -35,7 +36,7 @@ pub struct SheetArguments {
     #[arg(long, value_name = "10km", value_parser = values::distance, requires = "grid")]
     sheet: Option<f64>,
     /// Land around each sheet that is drawn from too; of a plan it stays off the page. A plan of a DEM that fits --memory is drawn
-    /// from all of it
+    /// from all of it, so that lines run on from sheet to sheet
     #[arg(long, value_name = "2km", value_parser = values::distance, requires = "grid", default_value = "0m")]
     halo: f64,
 }
