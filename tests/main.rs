@@ -72,6 +72,7 @@ mod pool;
 mod prepared;
 mod pyramids;
 mod quadtrees;
+mod readme;
 mod reflection;
 mod relief;
 mod report;

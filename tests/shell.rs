@@ -186,6 +186,18 @@ fn terrain_is_made_of_any_size_and_the_same_again() {
     assert!(stderr(&failed).starts_with("error: nowhere/c.tif: cannot be written"), "{}", stderr(&failed));
 }
 
+/// Lines of a text that begin with our name, and what does so behind a pipe; those that go on are put together.
+pub fn commands(text: &str) -> Vec<String> {
+    let text = text.replace("\\\n", " ");
+    let piped = text.lines().flat_map(|line| line.split("| ")).map(str::trim);
+    piped.filter(|line| line.starts_with("hachure ")).map(str::to_owned).collect()
+}
+
+/// The words of a command, up to a file to write to or a remark.
+pub fn words(command: &str) -> impl Iterator<Item = &str> {
+    command.split_whitespace().take_while(|word| ![">", "#"].contains(word))
+}
+
 #[test]
 fn examples_in_help_are_commands() {
     let mut command = Arguments::command();
@@ -193,12 +205,10 @@ fn examples_in_help_are_commands() {
     let shown = command.get_subcommands().filter(|c| !c.is_hide_set() && c.get_name() != "help");
     for command in std::iter::once(&command).chain(shown) {
         let help = command.get_after_help().unwrap_or_else(|| panic!("{} has no example", command.get_name()));
-        let help = help.to_string().replace("\\\n", " ");
-        let examples = help.lines().map(str::trim).filter(|l| l.starts_with("hachure ")).collect::<Vec<_>>();
+        let examples = commands(&help.to_string());
         assert!(!examples.is_empty(), "{} has no example", command.get_name());
         for example in examples {
-            let words = example.split_whitespace().take_while(|word| !["|", ">"].contains(word));
-            Arguments::try_parse_from(words).unwrap_or_else(|e| panic!("{example}: {e}"));
+            Arguments::try_parse_from(words(&example)).unwrap_or_else(|e| panic!("{example}: {e}"));
         }
     }
 }
