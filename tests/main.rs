@@ -66,6 +66,7 @@ mod overwritten;
 mod own_lines;
 mod page_curves;
 mod peaks;
+mod picks;
 mod pieces;
 mod plots;
 mod pool;

@@ -11,12 +11,12 @@ use super::drawing::{DrawingArguments, Wanted};
 use super::flat_earth::FlatEarth;
 use super::outputs::OutputArguments;
 use super::talk::Talk;
-use super::terrain::{TerrainArguments, warn_of_survey};
-use super::values::{self, Size};
+use super::terrain::TerrainArguments;
+use super::values;
 use super::view_report::ViewReport;
 use super::viewpoint::{View, ViewArguments};
 use super::words::told;
-use super::{blank, cells, journey, plan, scene};
+use super::{blank, journey, plan, scene};
 use crate::cache::Cache;
 use crate::error::{Error, Result, Setting};
 use crate::files::Taken;
@@ -236,16 +236,7 @@ impl DrawArguments {
     /// # Errors
     /// As [`ViewArguments::view`].
     pub fn look(&self, surface: &Surface, illustration: &Illustration, talk: &Talk) -> Result<View> {
-        cells::warn(surface.dem(), self.drawing.exaggeration, talk);
-        warn_of_survey(surface.dem(), talk)?;
-        let ([width, height], near) = (illustration.frame, self.drawing.level.near());
-        let view = self.view.sized(Size { width, height }).view(surface, near)?;
-        view.warn_below_ground(surface, near, talk);
-        let page = self.drawing.page.flags();
-        talk.say(&format!("view: {}{page}", view.flags()))?;
-        view.lonlat_flags().map_or(Ok(()), |flags| talk.say(&format!("or with: {flags}{page}")))?;
-        view.norths.words().map_or(Ok(()), |words| talk.say(&words))?;
-        Ok(view)
+        scene::look(&self.view, &self.drawing, surface, illustration.frame, talk)
     }
 
     /// Times more frames and says what was done.

@@ -21,6 +21,7 @@ pub fn flag(setting: Setting) -> &'static str {
     match setting {
         Setting::AllowRemote => "--allow-remote",
         Setting::Altitude => "--altitude",
+        Setting::At => "--at",
         Setting::Azimuth => "--azimuth",
         Setting::Band => "--band",
         Setting::Border => "--border",
@@ -66,6 +67,7 @@ pub fn flag(setting: Setting) -> &'static str {
         Setting::North => "--north",
         Setting::Fps => "--fps",
         Setting::Frames => "--frames",
+        Setting::Of => "--of",
         Setting::Orbit => "--orbit",
         Setting::Order => "--order",
         Setting::Output => "--output",

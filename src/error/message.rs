@@ -40,6 +40,8 @@ settings! {
     Altitude = "altitude",
     /// Degrees clockwise from north.
     Azimuth = "azimuth",
+    /// A pixel that is asked about.
+    At = "pixel",
     /// The band with the elevations.
     Band = "band",
     /// Whether the rim is drawn.
@@ -128,6 +130,8 @@ settings! {
     Frames = "frames",
     /// Pictures a second.
     Fps = "fps",
+    /// A place that is asked about.
+    Of = "place",
     /// What a flight circles.
     Orbit = "orbit",
     /// Which files lie on top.
