@@ -32,6 +32,7 @@ mod fly;
 mod forms;
 mod frames;
 mod generalise;
+mod georeferenced;
 mod gpu_errors;
 mod growth;
 mod hachures;

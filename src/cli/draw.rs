@@ -16,7 +16,7 @@ use super::values;
 use super::view_report::ViewReport;
 use super::viewpoint::{View, ViewArguments};
 use super::words::told;
-use super::{blank, journey, plan, scene};
+use super::{blank, georeferenced, journey, plan, scene};
 use crate::cache::Cache;
 use crate::error::{Error, Result, Setting};
 use crate::files::Taken;
@@ -120,6 +120,7 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     let mut outputs =
         arguments.outputs.open(Taken::inputs(reading.files().chain(beside.iter().map(PathBuf::as_path))))?;
     let surface = Arc::new(scene::surface(&arguments.terrain, reading, talk)?);
+    let map = outputs.map_format().map(|format| georeferenced::crs(format, surface.dem())).transpose()?;
     let gpu = scene::prepare_and_open(&surface, &cache, &arguments.device, talk)?;
     let view = arguments.look(&surface, &illustration, talk)?;
     let land = scene::land(&arguments.drawing, &illustration.land, &arguments.terrain, &surface, &cache, talk)?;
@@ -127,7 +128,7 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     DeviceArguments::tell(&gpu, talk)?;
     talk.progress("drawing", 0.3);
     let mut renderer = Renderer::new(gpu, surface.clone())?;
-    renderer.set_land(land);
+    renderer.set_land(land.clone());
     let page = renderer.page(&illustration.plan, &view.camera, |share| talk.progress("drawing", 0.3 + 0.3 * share))?;
     cache.discard_damaged(surface.dem(), &|message| talk.warn(&told(message)));
     let mut drawn = Drawn { renderer: &mut renderer, view: &view, page };
@@ -139,6 +140,11 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     }
     talk.progress("writing", 0.8);
     outputs.write(&drawing, illustration.px_per_mm, Some(&drawn.page), report.as_ref())?;
+    if let Some(crs) = map {
+        let exaggeration = arguments.drawing.exaggeration;
+        let lines = georeferenced::lines(&lines, land.as_deref(), &surface, exaggeration, &crs)?;
+        outputs.write_map(&crs, &lines)?;
+    }
     surface.dem().check()?;
     talk.progress("writing", 1.0);
     outputs.publish()?;

@@ -19,6 +19,7 @@ mod flight_plan;
 pub mod fly;
 pub mod frames;
 pub mod generate;
+mod georeferenced;
 pub mod info;
 pub mod jobs;
 pub mod journey;

@@ -42,6 +42,7 @@ pub fn flag(setting: Setting) -> &'static str {
         Setting::ErrorPx => "--error-px",
         Setting::Exaggeration => "--exaggeration",
         Setting::FillVoids => "--fill-voids",
+        Setting::Georeferenced => "--georeferenced",
         Setting::Grid => "--grid",
         Setting::Fov => "--fov",
         Setting::Generalise => "--generalise",

@@ -86,6 +86,8 @@ settings! {
     Hachures = "hachures",
     /// Whether voids are filled.
     FillVoids = "fill voids",
+    /// The file of the lines on the map.
+    Georeferenced = "file of lines on the map",
     /// The grid of a map's sheets.
     Grid = "grid",
     /// Degrees across the page.
