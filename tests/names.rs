@@ -152,7 +152,8 @@ fn help_says_the_defaults_that_the_code_has() {
     let draw = [&[size()], &drawing[..]].concat();
     let seconds = ("duration", format!("those times, else {}", flight::DURATION));
     let fly = [&[seconds, ("fov", FOV.to_string()), size()], &drawing[..]].concat();
-    let expected = [draw, fly, vec![size(), ("peaks", info::PEAKS.to_owned())]]
+    let pick = [&[size()], &drawing[..]].concat();
+    let expected = [draw, fly, vec![size()], pick, vec![("peaks", info::PEAKS.to_owned())]]
         .concat()
         .into_iter()
         .map(|(flag, value)| (flag.to_owned(), value));

@@ -133,7 +133,7 @@ fn completions_and_man_pages_hold_every_flag() {
     let generate = |arguments: &[&str]| stdout(&succeeds(place.run(&[&["generate"], arguments].concat())));
     let completions = ["bash", "zsh", "fish", "elvish", "powershell"].map(|shell| generate(&["completions", shell]));
     let pages = generate(&["man"]).replace("\\-", "-");
-    assert_eq!(pages.matches("\n.TH hachure").count(), 9, "one page a subcommand: {pages}");
+    assert_eq!(pages.matches("\n.TH hachure").count(), 10, "one page a subcommand: {pages}");
     let command = Arguments::command();
     let of = |name| command.find_subcommand(name).expect("a subcommand").get_arguments();
     let shown = of("draw")
@@ -141,6 +141,7 @@ fn completions_and_man_pages_hold_every_flag() {
         .chain(of("batch"))
         .chain(of("merge"))
         .chain(of("compare"))
+        .chain(of("pick"))
         .chain(of("styles"))
         .filter(|a| !a.is_hide_set());
     let shown = shown.filter_map(|a| a.get_long()).collect::<Vec<_>>();
@@ -153,13 +154,14 @@ fn completions_and_man_pages_hold_every_flag() {
     generate(&["man", "-o", "."]);
     assert_eq!(
         place.written(),
-        ["batch", "cache", "compare", "draw", "fly", "info", "merge", "styles"]
+        ["batch", "cache", "compare", "draw", "fly", "info", "merge", "pick", "styles"]
             .map(|name| format!("hachure-{name}.1"))
             .into_iter()
             .chain(["hachure.1".to_owned()])
             .collect::<Vec<_>>()
     );
-    let names = ["draw", "fly", "batch", "merge", "compare", "cache", "styles", "info"].map(|name| format!("-{name}"));
+    let names =
+        ["draw", "fly", "batch", "merge", "compare", "pick", "cache", "styles", "info"].map(|name| format!("-{name}"));
     let files = [""].into_iter().chain(names.iter().map(String::as_str)).map(|name| format!("hachure{name}.1"));
     let files = files.map(|name| fs::read_to_string(place.path(&name)).expect("a page")).collect::<String>();
     assert_eq!(files.replace("\\-", "-"), pages);

@@ -11,12 +11,12 @@ use super::drawing::{DrawingArguments, Wanted};
 use super::flat_earth::FlatEarth;
 use super::outputs::OutputArguments;
 use super::talk::Talk;
-use super::terrain::{TerrainArguments, warn_of_survey};
-use super::values::{self, Size};
+use super::terrain::TerrainArguments;
+use super::values;
 use super::view_report::ViewReport;
 use super::viewpoint::{View, ViewArguments};
 use super::words::told;
-use super::{bare, blank, cells, journey, plan, reference, scene};
+use super::{bare, blank, georeferenced, journey, plan, reference, scene};
 use crate::cache::Cache;
 use crate::error::{Error, Result, Setting};
 use crate::files::Taken;
@@ -122,6 +122,7 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     let mut outputs =
         arguments.outputs.open(Taken::inputs(reading.files().chain(beside.iter().map(PathBuf::as_path))))?;
     let surface = Arc::new(scene::surface(&arguments.terrain, reading, talk)?);
+    let map = outputs.map_format().map(|format| georeferenced::crs(format, surface.dem())).transpose()?;
     let gpu = scene::prepare_and_open(&surface, &cache, &arguments.device, talk)?;
     let view = arguments.look(&surface, &illustration, talk)?;
     let land = scene::land(&arguments.drawing, &illustration.land, &arguments.terrain, &surface, &cache, talk)?;
@@ -129,7 +130,7 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     DeviceArguments::tell(&gpu, talk)?;
     talk.progress("drawing", 0.3);
     let mut renderer = Renderer::new(gpu, surface.clone())?;
-    renderer.set_land(land);
+    renderer.set_land(land.clone());
     let page = renderer.page(&illustration.plan, &view.camera, |share| talk.progress("drawing", 0.3 + 0.3 * share))?;
     cache.discard_damaged(surface.dem(), &|message| talk.warn(&told(message)));
     let mut drawn = Drawn { renderer: &mut renderer, view: &view, page };
@@ -141,6 +142,11 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     }
     talk.progress("writing", 0.8);
     outputs.write(&drawing, illustration.px_per_mm, Some(&drawn.page), report.as_ref())?;
+    if let Some(crs) = map {
+        let exaggeration = arguments.drawing.exaggeration;
+        let lines = georeferenced::lines(&lines, land.as_deref(), &surface, exaggeration, &crs)?;
+        outputs.write_map(&crs, &lines)?;
+    }
     surface.dem().check()?;
     talk.progress("writing", 1.0);
     outputs.publish()?;
@@ -239,16 +245,7 @@ impl DrawArguments {
     /// # Errors
     /// As [`ViewArguments::view`].
     pub fn look(&self, surface: &Surface, illustration: &Illustration, talk: &Talk) -> Result<View> {
-        cells::warn(surface.dem(), self.drawing.exaggeration, talk);
-        warn_of_survey(surface.dem(), talk)?;
-        let ([width, height], near) = (illustration.frame, self.drawing.level.near());
-        let view = self.view.sized(Size { width, height }).view(surface, near)?;
-        view.warn_below_ground(surface, near, talk);
-        let page = self.drawing.page.flags();
-        talk.say(&format!("view: {}{page}", view.flags()))?;
-        view.lonlat_flags().map_or(Ok(()), |flags| talk.say(&format!("or with: {flags}{page}")))?;
-        view.norths.words().map_or(Ok(()), |words| talk.say(&words))?;
-        Ok(view)
+        scene::look(&self.view, &self.drawing, surface, illustration.frame, talk)
     }
 
     /// Times more frames and says what was done.

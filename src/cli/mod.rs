@@ -20,6 +20,7 @@ mod flight_plan;
 pub mod fly;
 pub mod frames;
 pub mod generate;
+mod georeferenced;
 pub mod info;
 pub mod jobs;
 pub mod journey;
@@ -32,6 +33,7 @@ pub mod norths;
 pub mod outputs;
 pub mod page;
 mod peaks;
+pub mod pick;
 pub mod plan;
 pub mod progress;
 pub mod reference;
@@ -85,6 +87,8 @@ enum Command {
     Merge(merge::MergeArguments),
     /// Compare silhouette methods: their errors and their times, as a report
     Compare(Box<compare::CompareArguments>),
+    /// Say what a pixel shows and which rule drew or left out a line there, or where a place stands on the page
+    Pick(Box<pick::PickArguments>),
     /// List, clear or make what is kept for later runs
     Cache(Box<cache::CacheCommand>),
     /// List the looks of a drawing, print one, or the schema of their files
@@ -103,6 +107,8 @@ impl Arguments {
             Command::Draw(arguments) if arguments.fill_stdout() => Lines::Stderr,
             Command::Batch(arguments) if arguments.jobs().fills_stdout() => Lines::Stderr,
             Command::Fly(arguments) if arguments.jobs().fills_stdout() => Lines::Stderr,
+            // Standard output holds the answer alone.
+            Command::Pick(_) => Lines::Stderr,
             _ => Lines::Stdout,
         };
         Talk::new(&self.talk, lines)
@@ -118,6 +124,7 @@ impl Arguments {
             Command::Batch(arguments) => arguments.jobs().progress.told(batch::run(arguments, talk)),
             Command::Merge(arguments) => merge::run(arguments, talk),
             Command::Compare(arguments) => compare::run(arguments, talk),
+            Command::Pick(arguments) => pick::run(arguments, talk),
             Command::Cache(arguments) => cache::run(arguments, talk),
             Command::Styles(arguments) => styles::run(arguments, talk),
             Command::Info(arguments) => info::run(arguments, talk),

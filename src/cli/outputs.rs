@@ -5,8 +5,10 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
+use crate::dem::Crs;
 use crate::error::{Error, Result, Setting, shown};
 use crate::files::{Output, Taken};
+use crate::geo::{self, MapFormat, MapLine};
 use crate::ink::{self, Seal};
 use crate::render::Page;
 
@@ -19,6 +21,10 @@ pub struct OutputArguments {
     /// Also the mask: 1 bit a pixel, 0 ink, 255 paper, as large as the frame (--size)
     #[arg(long, value_name = "OUT.png|-")]
     mask: Option<PathBuf>,
+    /// Also the lines on the map, each visible run with kind, id, order, depth, length and heights of the land in metres: in the CRS of
+    /// the DEM's file (.gpkg), or in degrees of WGS 84 (.geojson, .kml)
+    #[arg(long, value_name = "OUT.gpkg|.geojson|.kml")]
+    georeferenced: Option<PathBuf>,
     /// Also what was done, with times of ten further frames (two of a page in pieces)
     ///
     /// Facets, inked pixels, layers, parts of the mask that no stroke draws and why, times of passes, pieces, adapter, what was
@@ -45,6 +51,7 @@ pub struct Outputs {
     mask: Option<Output>,
     /// What made the mask, where it is to tell.
     of_mask: Option<Seal>,
+    map: Option<(MapFormat, Output)>,
     json: Option<Output>,
 }
 
@@ -72,6 +79,7 @@ impl OutputArguments {
         Ok(Self {
             output: self.output.iter().map(|path| renamed(path)).collect::<Result<_>>()?,
             mask: self.mask.as_deref().map(&renamed).transpose()?,
+            georeferenced: self.georeferenced.clone(),
             json: self.json.clone(),
         })
     }
@@ -100,6 +108,10 @@ impl OutputArguments {
         if let Some(mask) = self.mask.as_ref().filter(|mask| Format::of(mask) != Some(Format::Png)) {
             return Err(Error::setting(Setting::Mask, format!("{} does not end in .png", shown(mask)), "name it .png"));
         }
+        if let Some(map) = self.georeferenced.as_ref().filter(|map| MapFormat::of(map).is_none()) {
+            let what = format!("{} does not end in .gpkg, .geojson or .kml", shown(map));
+            return Err(Error::setting(Setting::Georeferenced, what, "name it so"));
+        }
         let given = [(Setting::Output, &self.output[..]), (Setting::Mask, self.mask.as_slice())];
         let on_stdout = given.into_iter().find(|(_, paths)| paths.iter().any(|path| is_stdout(path)));
         match on_stdout.filter(|_| stdout().is_terminal()) {
@@ -117,7 +129,11 @@ impl OutputArguments {
     /// [`Error::Setting`] for a name that is taken, [`Error::Output`] where a file cannot be written.
     pub fn open(&self, mut taken: Taken) -> Result<Outputs> {
         let drawings = self.output.iter().map(|path| (Setting::Output, path));
-        let beside = [(Setting::Mask, self.mask.as_ref()), (Setting::Json, self.json.as_ref())];
+        let beside = [
+            (Setting::Mask, self.mask.as_ref()),
+            (Setting::Georeferenced, self.georeferenced.as_ref()),
+            (Setting::Json, self.json.as_ref()),
+        ];
         let named = drawings.chain(beside.into_iter().filter_map(|(setting, path)| Some((setting, path?))));
         let mut has_stdout = false;
         // All names are compared before any file is opened.
@@ -143,6 +159,12 @@ impl OutputArguments {
                 .collect::<Result<_>>()?,
             mask: self.mask.as_deref().map(open).transpose()?,
             of_mask: None,
+            map: self
+                .georeferenced
+                .as_deref()
+                .and_then(|path| Some((MapFormat::of(path)?, path)))
+                .map(|(format, path)| Ok((format, open(path)?)))
+                .transpose()?,
             json: self.json.as_deref().map(open).transpose()?,
         })
     }
@@ -157,6 +179,21 @@ impl Outputs {
     /// Whether the report is asked for.
     pub fn want_report(&self) -> bool {
         self.json.is_some()
+    }
+
+    /// In which format the lines on the map are asked for, if they are.
+    pub fn map_format(&self) -> Option<MapFormat> {
+        self.map.as_ref().map(|(format, _)| *format)
+    }
+
+    /// Writes the lines on the map, given in a system of coordinates. They have no name yet.
+    ///
+    /// # Errors
+    /// [`Error::Output`] where they cannot be written.
+    pub fn write_map(&mut self, crs: &Crs, lines: &[MapLine]) -> Result<()> {
+        self.map
+            .as_mut()
+            .map_or(Ok(()), |(format, file)| file.write(|out| out.write_all(&geo::write_lines(*format, crs, lines)?)))
     }
 
     /// Writes the drawing, pictures with so many pixels for each millimetre, and, where asked, the mask of a page and the
@@ -193,8 +230,9 @@ impl Outputs {
     /// # Errors
     /// [`Error::Output`] where one cannot be named.
     pub fn publish(self) -> Result<()> {
-        let mut outputs: Vec<_> =
-            self.drawings.into_iter().map(|(_, file)| file).chain(self.mask).chain(self.json).collect();
+        let drawings = self.drawings.into_iter().map(|(_, file)| file);
+        let map = self.map.into_iter().map(|(_, file)| file);
+        let mut outputs: Vec<_> = drawings.chain(self.mask).chain(map).chain(self.json).collect();
         outputs.sort_by_key(|output| output.target().is_some());
         outputs.into_iter().try_for_each(Output::publish)
     }

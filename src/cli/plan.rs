@@ -10,6 +10,7 @@ use serde::Serialize;
 use super::bare;
 use super::draw::DrawArguments;
 use super::draw_report::{DemReport, LayerReport, PageReport};
+use super::georeferenced;
 use super::journey;
 use super::page::{Layout, MARGIN};
 use super::scene;
@@ -51,7 +52,7 @@ pub struct Planned {
     pub px_per_mm: f64,
     style: Style,
     layout: Layout,
-    lines: usize,
+    lines: Lines,
 }
 
 /// Whether what is asked of a plan goes together.
@@ -94,7 +95,7 @@ pub fn draw(arguments: &DrawArguments, scale: f64, dem: &Dem, land: Option<&Land
         lines.chains.extend(overhead.land(land, economy.min_gap, hachures.as_ref())?);
     }
     let drawing = ink::draw(&lines, &layout.sheet, &style, &[])?;
-    Ok(Planned { drawing, px_per_mm: layout.px_per_mm, style, layout, lines: lines.chains.len() })
+    Ok(Planned { drawing, px_per_mm: layout.px_per_mm, style, layout, lines })
 }
 
 /// Reads a DEM, draws its plan and writes it.
@@ -110,6 +111,7 @@ pub fn run(arguments: &DrawArguments, scale: f64, talk: &Talk) -> Result<()> {
     let mut outputs = arguments.outputs.open(Taken::inputs(inputs))?;
     let surface = Arc::new(scene::surface(&arguments.terrain, reading, talk)?);
     let dem = surface.dem();
+    let map = outputs.map_format().map(|format| georeferenced::crs(format, dem)).transpose()?;
     warn_of_survey(dem, talk)?;
     dem.check_patches()?;
     let land = scene::land(&arguments.drawing, &wanted, &arguments.terrain, &surface, &cache, talk)?;
@@ -121,15 +123,21 @@ pub fn run(arguments: &DrawArguments, scale: f64, talk: &Talk) -> Result<()> {
         page: PageReport::of(&layout.sheet, [layout.frame.width, layout.frame.height]),
         layers: LayerReport::all(&drawing, &style.plot),
         area_m: dem.extent(),
-        lines,
+        lines: lines.chains.len(),
     };
     outputs.write(&drawing, px_per_mm, None, Some(&report))?;
+    if let Some(crs) = map {
+        let exaggeration = arguments.drawing.exaggeration;
+        let lines = georeferenced::lines(&lines, land.as_deref(), &surface, exaggeration, &crs)?;
+        outputs.write_map(&crs, &lines)?;
+    }
     dem.check()?;
     outputs.publish()?;
     journey::tell(&drawing, &style.plot, talk)?;
     talk.say(&format!(
-        "{}: {lines} lines at 1:{scale}, {:.0} x {:.0} mm, {:.2} s",
+        "{}: {} lines at 1:{scale}, {:.0} x {:.0} mm, {:.2} s",
         arguments.outputs.drawing(),
+        lines.chains.len(),
         layout.sheet.size.x,
         layout.sheet.size.y,
         started.elapsed().as_secs_f64()

@@ -4,10 +4,13 @@ use std::panic::resume_unwind;
 use std::sync::Arc;
 use std::thread;
 
+use super::cells;
 use super::device::DeviceArguments;
 use super::drawing::DrawingArguments;
 use super::talk::Talk;
-use super::terrain::TerrainArguments;
+use super::terrain::{TerrainArguments, warn_of_survey};
+use super::values::Size;
+use super::viewpoint::{View, ViewArguments};
 use super::words::told;
 use crate::cache::Cache;
 use crate::error::Result;
@@ -40,6 +43,29 @@ pub fn prepare(surface: &Surface, cache: &Cache, talk: &Talk) -> Result<()> {
         talk.progress("looking at every sample, once for this file", 0.1 + 0.1 * done);
     })?;
     surface.dem().check_patches()
+}
+
+/// The view of a frame of so many pixels, told as flags that repeat it, and what is to be said of it and of the DEM.
+///
+/// # Errors
+/// As [`ViewArguments::view`].
+pub fn look(
+    view: &ViewArguments,
+    drawing: &DrawingArguments,
+    surface: &Surface,
+    [width, height]: [u32; 2],
+    talk: &Talk,
+) -> Result<View> {
+    cells::warn(surface.dem(), drawing.exaggeration, talk);
+    warn_of_survey(surface.dem(), talk)?;
+    let near = drawing.level.near();
+    let view = view.sized(Size { width, height }).view(surface, near)?;
+    view.warn_below_ground(surface, near, talk);
+    let page = drawing.page.flags();
+    talk.say(&format!("view: {}{page}", view.flags()))?;
+    view.lonlat_flags().map_or(Ok(()), |flags| talk.say(&format!("or with: {flags}{page}")))?;
+    view.norths.words().map_or(Ok(()), |words| talk.say(&words))?;
+    Ok(view)
 }
 
 /// The lines of the land that are wanted; `None` where none are.

@@ -142,6 +142,14 @@ pub fn place(text: &str) -> Result<DVec2, String> {
     numbers(text, "E,N: east and north in the CRS of the DEM").map(DVec2::from_array)
 }
 
+/// `X,Y` of a pixel.
+pub fn pixel(text: &str) -> Result<[u32; 2], String> {
+    let whole =
+        |text: &str| text.trim().parse::<u32>().map_err(|_| format!("`{}` is no number of a pixel", text.trim()));
+    let values = text.split(',').map(whole).collect::<Result<Vec<_>, _>>()?;
+    values.try_into().map_err(|_| "want X,Y: the pixel's column and row, whole numbers from 0,0 at the top left".into())
+}
+
 /// `Z` or `+H`.
 pub fn height(text: &str) -> Result<Height, String> {
     let metres = number(text)?;
@@ -273,6 +281,14 @@ impl LevelChoice {
         match self {
             Self::Of(level) => level,
             Self::Auto => Level::EIGHT,
+        }
+    }
+
+    /// The facets on which places are told: those that are drawn, or the finest, which are the surface itself.
+    pub fn told(self) -> Level {
+        match self {
+            Self::Of(level) => level,
+            Self::Auto => Level::FINEST,
         }
     }
 }

@@ -131,6 +131,14 @@ impl ViewArguments {
         self.fov
     }
 
+    /// The CRS in which places are given, where it is not the DEM's.
+    ///
+    /// # Errors
+    /// As [`Crs::from_epsg`].
+    pub fn crs(&self) -> Result<Option<Crs>> {
+        self.crs.map(Crs::from_epsg).transpose()
+    }
+
     /// Checks what can be checked before the DEM is read.
     ///
     /// # Errors
@@ -216,7 +224,7 @@ impl ViewArguments {
     fn standpoint(&self, dem: &Dem) -> Result<Option<(DVec2, DVec2)>> {
         let georeference = dem.georeference();
         if let Some(eye) = self.eye {
-            let crs = self.crs.map(Crs::from_epsg).transpose()?;
+            let crs = self.crs()?;
             let world = world(dem, crs.as_ref(), eye.place, Setting::Eye)?;
             return match crs {
                 None => Ok(Some((world, eye.place))),
@@ -230,7 +238,7 @@ impl ViewArguments {
     }
 
     fn towards(&self, surface: &Surface, level: Level, look_at: LookAt) -> Result<DVec3> {
-        let crs = self.crs.map(Crs::from_epsg).transpose()?;
+        let crs = self.crs()?;
         let place = world(surface.dem(), crs.as_ref(), look_at.place, Setting::LookAt)?;
         let height = look_at.height.map_or(Height::AboveGround(0.0), Height::Absolute);
         above(surface, level, place, height, Setting::LookAt)
@@ -376,7 +384,7 @@ fn to_millimetre(ground: f64, h: f64) -> f64 {
     if h >= 0.0 && rounded < ground { millimetres.ceil() / 1e3 } else { rounded }
 }
 
-fn no_ground(surface: &Surface, place: DVec2, setting: Setting) -> Error {
+pub(super) fn no_ground(surface: &Surface, place: DVec2, setting: Setting) -> Error {
     let georeference = surface.dem().georeference();
     let [west, south, east, north] = surface.dem().extent();
     let corner = |x, y| georeference.place_in(georeference.file(), DVec2::new(x, y)).unwrap_or(DVec2::new(x, y));
@@ -385,6 +393,7 @@ fn no_ground(surface: &Surface, place: DVec2, setting: Setting) -> Error {
     let height = match setting {
         Setting::LookAt => "add a height Z",
         Setting::Orbit => "add --look-at E,N,Z",
+        Setting::Of => "give another place",
         _ => "give a height without +",
     };
     Error::setting(

@@ -21,6 +21,7 @@ pub fn flag(setting: Setting) -> &'static str {
     match setting {
         Setting::AllowRemote => "--allow-remote",
         Setting::Altitude => "--altitude",
+        Setting::At => "--at",
         Setting::Azimuth => "--azimuth",
         Setting::Band => "--band",
         Setting::Border => "--border",
@@ -41,6 +42,7 @@ pub fn flag(setting: Setting) -> &'static str {
         Setting::ErrorPx => "--error-px",
         Setting::Exaggeration => "--exaggeration",
         Setting::FillVoids => "--fill-voids",
+        Setting::Georeferenced => "--georeferenced",
         Setting::Grid => "--grid",
         Setting::Fov => "--fov",
         Setting::Generalise => "--generalise",
@@ -66,6 +68,7 @@ pub fn flag(setting: Setting) -> &'static str {
         Setting::North => "--north",
         Setting::Fps => "--fps",
         Setting::Frames => "--frames",
+        Setting::Of => "--of",
         Setting::Orbit => "--orbit",
         Setting::Order => "--order",
         Setting::Output => "--output",

@@ -263,6 +263,20 @@ impl Dem {
         }
     }
 
+    /// The same DEM of land whose heights were exaggerated by this factor, without it: of a held one to the last bit but one.
+    pub fn lowered(&self, exaggeration: f64) -> Self {
+        match &self.store {
+            Store::Filed(_) => self.plain().map_or_else(|| self.clone(), |(plain, _)| plain),
+            Store::Held(samples) => {
+                let lower =
+                    |height: Option<f32>| height.map_or(f32::NAN, |height| (f64::from(height) / exaggeration) as f32);
+                let rows = (0..self.rows).flat_map(|r| samples.row_from(0, r).map(lower)).collect();
+                let whole = Window { first: [0, 0], size: [self.columns, self.rows] };
+                self.with_samples(Samples::new(whole, rows))
+            }
+        }
+    }
+
     /// The same samples of a filed DEM without exaggeration, and the factor that they lack; `None` for a held DEM, and where
     /// that is 1.
     pub fn plain(&self) -> Option<(Self, f64)> {

@@ -40,6 +40,8 @@ settings! {
     Altitude = "altitude",
     /// Degrees clockwise from north.
     Azimuth = "azimuth",
+    /// A pixel that is asked about.
+    At = "pixel",
     /// The band with the elevations.
     Band = "band",
     /// Whether the rim is drawn.
@@ -84,6 +86,8 @@ settings! {
     Hachures = "hachures",
     /// Whether voids are filled.
     FillVoids = "fill voids",
+    /// The file of the lines on the map.
+    Georeferenced = "file of lines on the map",
     /// The grid of a map's sheets.
     Grid = "grid",
     /// Degrees across the page.
@@ -128,6 +132,8 @@ settings! {
     Frames = "frames",
     /// Pictures a second.
     Fps = "fps",
+    /// A place that is asked about.
+    Of = "place",
     /// What a flight circles.
     Orbit = "orbit",
     /// Which files lie on top.

@@ -3,13 +3,14 @@
 //! GDAL and PROJ are known in `gdal/` alone, behind the traits of [`dem`](crate::dem): [`Tiles`](crate::dem::Tiles) and
 //! [`Transform`](crate::dem::Transform). A build without the feature `gdal` has the same names and reads nothing: each
 //! says so. Of vectors the way of a flight is read, see [`track`], and
-//! lines of the user's own, see [`own_lines`].
+//! lines of the user's own, see [`own_lines`]; lines of a drawing are written, see [`write_lines`].
 
 mod elevation_unit;
 mod encoding;
 #[cfg(feature = "gdal")]
 mod gdal;
 mod info;
+mod mapped;
 mod nodata;
 mod own;
 mod read;
@@ -20,12 +21,13 @@ mod without;
 pub use elevation_unit::ElevationUnit;
 pub use encoding::Encoding;
 pub use info::{Info, info, info_and_dem};
+pub use mapped::{MapFormat, MapLine};
 pub use nodata::Nodata;
 pub use own::{OwnLayer, OwnLine, OwnLines};
 pub use read::{Order, ReadOptions, Stage, read, read_all};
 pub use track::{Track, with_layer};
 #[cfg(not(feature = "gdal"))]
-pub use without::{Reading, available, own_lines, track, write};
+pub use without::{Reading, available, own_lines, track, write, write_lines};
 
 #[cfg(feature = "gdal")]
-pub use self::gdal::{Reading, available, own_lines, track, write};
+pub use self::gdal::{Reading, available, own_lines, track, write, write_lines};

@@ -4,7 +4,7 @@ use std::io;
 use std::iter::Empty;
 use std::path::{Path, PathBuf};
 
-use super::{OwnLines, ReadOptions, Stage, Track};
+use super::{MapFormat, MapLine, OwnLines, ReadOptions, Stage, Track};
 use crate::dem::{Crs, Dem};
 use crate::error::{Error, Result};
 
@@ -118,4 +118,12 @@ pub fn write(_: &Path, _: [usize; 2], _: f64, _: impl Fn(usize) -> Vec<f32> + Sy
 
 fn without(what: &str) -> Error {
     Error::limit(format!("{what}, {WITHOUT}"), REMEDY)
+}
+
+/// Writes no lines.
+///
+/// # Errors
+/// Always.
+pub fn write_lines(_: MapFormat, _: &Crs, _: &[MapLine]) -> io::Result<Vec<u8>> {
+    Err(io::Error::other(WITHOUT))
 }

@@ -63,7 +63,7 @@ fn elements(strokes: &[Stroke], layer: &Layer) -> Vec<u8> {
     for stroke in strokes {
         text.extend(b"<path");
         if let Some(chain) = stroke.chain {
-            text.extend(format!(" id=\"c{:x}", chain.0).as_bytes());
+            text.extend(format!(" id=\"{}", chain.written()).as_bytes());
             if stroke.piece > 0 {
                 text.extend(format!("-{}", stroke.piece).as_bytes());
             }

@@ -147,7 +147,7 @@ pub fn stepped(chain: &Chain, longest: f64) -> Chain {
 }
 
 /// The point at share `t` of the way from a to b on the page. Depth is linear there along a straight line of the world.
-fn between(a: &ChainPoint, b: &ChainPoint, t: f64) -> ChainPoint {
+pub(super) fn between(a: &ChainPoint, b: &ChainPoint, t: f64) -> ChainPoint {
     if t == 0.0 {
         return *a;
     }

@@ -26,6 +26,20 @@ pub enum Line {
 }
 
 impl Line {
+    /// What it is called.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Occluding => "silhouette",
+            Self::Skyline => "skyline",
+            Self::Border => "border",
+            Self::Shore => "shore",
+            Self::Drainage => "drainage",
+            Self::Ridge => "ridge",
+            Self::Own(_) => "own",
+            Self::Hachure => "hachure",
+        }
+    }
+
     /// Whether it lies on the land whatever the eye, and bounds nothing of what that sees.
     pub fn is_of_land(self) -> bool {
         !matches!(self, Self::Occluding | Self::Skyline | Self::Border)
@@ -102,6 +116,11 @@ impl Id {
     /// The name of a line on the land in a plan, where rims are named by samples.
     pub(super) fn of_land(self) -> Self {
         Self(self.0 | Self::HIDDEN >> 1)
+    }
+
+    /// As it is written, everywhere.
+    pub fn written(self) -> String {
+        format!("c{:x}", self.0)
     }
 
     /// Whether its chain is hidden by nearer land.

@@ -86,6 +86,16 @@ pub fn weights(samples: &[Sample], gap: f32) -> Vec<f32> {
     given
 }
 
+/// Which sample presses one of them hardest, and how hard, 0 to 1, where all have these weights: the one that it yields to.
+pub fn presses(samples: &[Sample], weights: &[f32], i: usize, gap: f32) -> Option<(usize, f32)> {
+    let sample = &samples[i];
+    // Weaker ones had no weight yet when it yielded.
+    let stronger = |j: &usize| *j != i && samples[*j].rank >= sample.rank && weights[*j] > 0.0;
+    let press = |j: usize| (j, weights[j] * sample.pressed_by(&samples[j], gap));
+    let pressing = (0..samples.len()).filter(stronger).map(press).filter(|(_, pressure)| *pressure > 0.0);
+    pressing.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|_| gap > 0.0)
+}
+
 impl Sample {
     /// How hard a stronger sample of full weight presses, 0 to 1.
     fn pressed_by(&self, other: &Self, gap: f32) -> f32 {

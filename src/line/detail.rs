@@ -24,21 +24,21 @@ use crate::error::Result;
 use crate::relief::{LineKind, Slopes, SurfaceLine, SurfacePoint, spacing};
 
 /// Lengths of a branch on the page up to which it is left out, and from which it is whole, px.
-const LENGTH: [f64; 2] = [10.0, 120.0];
+pub(super) const LENGTH: [f64; 2] = [10.0, 120.0];
 /// The same of how far it falls, px.
-const DROP: [f64; 2] = [2.0, 16.0];
+pub(super) const DROP: [f64; 2] = [2.0, 16.0];
 /// The same of how far the land beside it stands up or falls, px and metres.
-const ACROSS: [f64; 2] = [0.4, 3.0];
-const ACROSS_M: [f64; 2] = [2.0, 10.0];
+pub(super) const ACROSS: [f64; 2] = [0.4, 3.0];
+pub(super) const ACROSS_M: [f64; 2] = [2.0, 10.0];
 /// The same of the slope there.
-const SLOPE: [f64; 2] = [0.03, 0.2];
+pub(super) const SLOPE: [f64; 2] = [0.03, 0.2];
 /// How far aside on the page the land is looked at, px; and between how many cells.
 const ASIDE: f64 = 14.0;
 const ASIDE_CELLS: [f64; 3] = [3.0, 6.0, 12.0];
 /// Streams longer than this are drawn through flat land too, metres.
 const RIVER: [f64; 2] = [2000.0, 4000.0];
 /// Lengths of lines that no relief need show up to which they are left out, and from which they are whole, px.
-const PLAIN_LENGTH: [f64; 2] = [2.0, 12.0];
+pub(super) const PLAIN_LENGTH: [f64; 2] = [2.0, 12.0];
 /// Along the page, what the land beside a line says is averaged over this to either side, px.
 const SOFT: f64 = 10.0;
 /// Weights up to which no pen shows a line, and from which it is as wide as it should be.
@@ -85,7 +85,7 @@ pub enum From {
 
 impl From {
     /// Where a place of the world stands about what sees it, px, and how many pixels a metre across the view takes there.
-    fn sees(self, world: DVec3) -> (DVec3, f64) {
+    pub(super) fn sees(self, world: DVec3) -> (DVec3, f64) {
         match self {
             Self::Eye(eye, focal) => {
                 let scale = focal / world.distance(eye).max(f64::MIN_POSITIVE);
@@ -218,6 +218,15 @@ impl Land {
             across if across.is_nan() => return 0.0,
             _ => {}
         }
+        let (across, aside) = self.across(point, scale);
+        let river = river(kind, point);
+        let by_slope = fade(SLOPE, across / aside).max(river);
+        let by_relief = fade(ACROSS, across * self.exaggeration * scale).min(fade(ACROSS_M, across));
+        by_relief.max(river).min(by_slope)
+    }
+
+    /// How far the land beside a point stands up or falls, and how far aside that is, metres of the land.
+    pub(super) fn across(&self, point: &SurfacePoint, scale: f64) -> (f64, f64) {
         let [near, middle, far] = ASIDE_CELLS;
         let cells = (ASIDE / scale.max(f64::MIN_POSITIVE) / self.cell).clamp(near, far);
         let [a, b, c] = point.across.map(f64::from);
@@ -225,10 +234,12 @@ impl Land {
             true => a.lerp(b, (cells - near) / (middle - near)),
             false => b.lerp(c, (cells - middle) / (far - middle)),
         };
-        let river = river(kind, point);
-        let by_slope = fade(SLOPE, across / (cells * self.cell)).max(river);
-        let by_relief = fade(ACROSS, across * self.exaggeration * scale).min(fade(ACROSS_M, across));
-        by_relief.max(river).min(by_slope)
+        (across, cells * self.cell)
+    }
+
+    /// Exaggerated metres for one of the land.
+    pub(super) fn exaggeration(&self) -> f64 {
+        self.exaggeration
     }
 }
 
@@ -242,12 +253,12 @@ impl Sphere {
 }
 
 /// Whether a line is drawn for the relief that it tells of, and is of a tree.
-fn is_branch(line: &SurfaceLine) -> bool {
+pub(super) fn is_branch(line: &SurfaceLine) -> bool {
     matches!(line.kind, LineKind::Drainage | LineKind::Ridge)
 }
 
 /// How far a stream is a river here, which is drawn whatever the relief.
-fn river(kind: LineKind, point: &SurfacePoint) -> f64 {
+pub(super) fn river(kind: LineKind, point: &SurfacePoint) -> f64 {
     if kind == LineKind::Drainage { fade(RIVER, point.length.into()) } else { 0.0 }
 }
 

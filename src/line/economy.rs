@@ -65,18 +65,39 @@ pub struct Economy {
 
 /// The chains with weights, and with more points between those far from each other.
 pub fn economised(chains: &[Chain], economy: &Economy) -> Vec<Chain> {
-    let longest = (STEP * economy.min_gap).max(LEAST_STEP);
-    let mut chains: Vec<Chain> = chains.par_iter().map(|chain| stepped(chain, longest)).collect();
-    let samples = |(i, chain): (usize, &Chain)| samples(chain, i as u32, economy);
-    let samples: Vec<Vec<Sample>> = chains.par_iter().enumerate().map(samples).collect();
+    let (mut chains, samples) = sampled(chains, economy);
     let weights = clearance::weights(&samples.concat(), economy.min_gap as f32);
     let points = chains.iter_mut().flat_map(|chain| &mut chain.points);
     points.zip(weights).for_each(|(point, weight)| point.weight = weight);
     chains
 }
 
+/// The chains with more points between those far from each other, and all these by their own merit.
+pub(super) fn sampled(chains: &[Chain], economy: &Economy) -> (Vec<Chain>, Vec<Vec<Sample>>) {
+    let longest = (STEP * economy.min_gap).max(LEAST_STEP);
+    let chains: Vec<Chain> = chains.par_iter().map(|chain| stepped(chain, longest)).collect();
+    let samples = |(i, chain): (usize, &Chain)| samples(chain, i as u32, economy);
+    let samples = chains.par_iter().enumerate().map(samples).collect();
+    (chains, samples)
+}
+
+/// How long a line about a point counts, px, and the lengths up to which it is left out and from which it is whole.
+pub(super) fn lengths(chain: &Chain, i: usize, economy: &Economy) -> (f64, [f64; 2]) {
+    let unit = unit(economy);
+    (long(&Along::new(chain), i, unit), LENGTHS.map(|gaps| gaps * unit))
+}
+
+/// Lengths are told in gaps, were they ever so narrow.
+fn unit(economy: &Economy) -> f64 {
+    economy.min_gap.max(LEAST_GAP)
+}
+
+fn long(along: &Along, i: usize, unit: f64) -> f64 {
+    along.reach(i, LONG * unit).max(unit / 2.0)
+}
+
 /// A chain's points by their own merit; `index` tells it from others.
-fn samples(chain: &Chain, index: u32, economy: &Economy) -> Vec<Sample> {
+pub(super) fn samples(chain: &Chain, index: u32, economy: &Economy) -> Vec<Sample> {
     let Economy { min_jump, min_gap } = *economy;
     let along = Along::new(chain);
     let soft = [0, 1].map(|what| (SOFT[what] * min_gap).max(LEAST_SOFT[what]));
@@ -106,10 +127,9 @@ fn samples(chain: &Chain, index: u32, economy: &Economy) -> Vec<Sample> {
         |i: usize| f64::from(u8::from(along.draws(i, |point| point.behind == 0.0 && !point.line.is_of_land())));
     let skyline: Vec<f64> = (0..chain.points.len()).map(is_skyline).collect();
     let skyline = along.spread(&skyline, runs_out);
-    // Lengths are told in gaps, were they ever so narrow.
-    let unit = min_gap.max(LEAST_GAP);
+    let unit = unit(economy);
     let sample = |(i, point): (usize, &ChainPoint)| {
-        let long = along.reach(i, LONG * unit).max(unit / 2.0);
+        let long = long(&along, i, unit);
         let by_length = fade(LENGTHS.map(|gaps| gaps * unit), long);
         let rank = measures[i][1] + LENGTH_SHARE * (long / (2.0 * LONG * unit)).ln();
         // Of skylines the farthest is the true one.

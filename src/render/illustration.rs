@@ -38,14 +38,18 @@ impl Illustration {
         )
     }
 
+    /// How far smoothing may move a line, px.
+    pub fn tolerance(&self) -> f64 {
+        self.style.tolerance * self.sheet.placement(self.frame).px_per_mm
+    }
+
     /// The lines of a page, and their drawing.
     ///
     /// # Errors
     /// As [`ink::draw`].
     pub fn drawing(&self, page: &Page) -> Result<(Lines, Drawing)> {
-        let tolerance = self.style.tolerance * self.sheet.placement(self.frame).px_per_mm;
         let own = self.land.own_layers.clone();
-        let lines = Lines { own, ..page.lines(&self.economy, tolerance) };
+        let lines = Lines { own, ..page.lines(&self.economy, self.tolerance()) };
         let drawing = ink::draw(&lines, &self.sheet, &self.style, &self.split)?;
         Ok((lines, drawing))
     }

@@ -34,19 +34,31 @@ impl Page {
     /// Its lines: curves, drawn as sparingly as `economy` says, and what of its ink no curve accounts for, traced and smoothed
     /// within `tolerance` px; of a plan without curves all its ink, traced.
     pub fn lines(&self, economy: &Economy, tolerance: f64) -> Lines {
-        let Self { marks, chains, hidden, land, perspective, .. } = self;
+        let Self { marks, hidden, land, perspective, .. } = self;
         if !self.frame.plan.has_curves() {
             return Lines::of(marks, perspective, tolerance);
         }
-        let rest = rest(chains, marks, perspective, economy, tolerance);
-        let (strokes, land): (Vec<Chain>, _) = land.iter().cloned().partition(|chain| chain.line() == Line::Hachure);
-        let mut lines = Lines::sparing(&[&chains[..], &rest, &land].concat(), hidden, perspective, economy);
+        let mut lines = Lines::sparing(&self.competing(economy, tolerance), hidden, perspective, economy);
         if let Some(look) = &self.frame.plan.hachures {
+            let strokes = land.iter().filter(|chain| is_hachure(chain)).cloned().collect();
             let strokes = toned(strokes, &lines.chains, look);
             lines.chains.extend(strokes);
         }
         lines
     }
+
+    /// The lines of a plan with curves among which economy chooses, before it does: those that [`Self::lines`] begins with, in its
+    /// order.
+    pub fn competing(&self, economy: &Economy, tolerance: f64) -> Vec<Chain> {
+        let Self { marks, chains, land, perspective, .. } = self;
+        let rest = rest(chains, marks, perspective, economy, tolerance);
+        let land = land.iter().filter(|chain| !is_hachure(chain));
+        chains.iter().chain(&rest).chain(land).cloned().collect()
+    }
+}
+
+fn is_hachure(chain: &Chain) -> bool {
+    chain.line() == Line::Hachure
 }
 
 /// What the device has found of a page: all that is left is done without it, by whatever thread.

@@ -54,6 +54,8 @@ impl Default for Level {
 impl Level {
     /// Eight subdivisions of a cell's edge.
     pub const EIGHT: Self = Self(8);
+    /// As many as there are.
+    pub const FINEST: Self = Self(CELL_STEPS);
 
     /// The level with `n` subdivisions, `None` unless `n` is 1, 2, 4, 8, 16, 32 or 64.
     pub fn new(n: u32) -> Option<Self> {

@@ -22,7 +22,8 @@ use crate::job::{Content, Job, Made};
 /// Keys of a drawing that are no flags of it.
 const OWN: [&str; 2] = ["name", "dem"];
 /// Flags that no drawing has: what they ask for is asked of the whole batch, or told there.
-const NONE: [&str; 8] = ["json", "explain", "adapter", "no-int64", "cache", "cache-size", "quiet", "verbose"];
+const NONE: [&str; 9] =
+    ["json", "georeferenced", "explain", "adapter", "no-int64", "cache", "cache-size", "quiet", "verbose"];
 
 /// Where it stands what a drawing may be asked for.
 const AS_DRAWN: &str = "see `hachure draw --help`";

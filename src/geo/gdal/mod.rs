@@ -32,6 +32,7 @@ mod lie;
 mod limits;
 mod listed;
 mod lossless;
+mod mapped;
 mod membrane;
 mod metric;
 mod mistaken;
@@ -63,6 +64,7 @@ mod write;
 mod xml;
 mod zip;
 
+pub use mapped::write_lines;
 pub use own::own_lines;
 pub use reading::Reading;
 pub use tracks::track;
