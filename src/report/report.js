@@ -46,7 +46,7 @@
     const handle = document.createElement("span");
     handle.className = "handle";
     pair.append(handle);
-    const show = () => pair.style.setProperty("--at", `${range.value}px`);
+    const show = () => pair.style.setProperty("--divide", `${range.value}px`);
     range.addEventListener("input", show);
     // Where the page is narrower than the picture, the boundary begins in sight.
     range.value = Math.min(range.max, document.querySelector("main").clientWidth) / 2;
