@@ -18,6 +18,11 @@ fn page(name: &str) -> String {
     fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(name)).expect(name)
 }
 
+/// What is to be typed into a shell.
+fn typed(text: &str) -> Vec<String> {
+    text.split("```sh\n").skip(1).filter_map(|rest| rest.split("```").next()).flat_map(commands).collect()
+}
+
 /// What stands between single backticks on a line.
 fn spans(text: &str) -> impl Iterator<Item = &str> {
     text.lines().filter(|line| !line.starts_with("```")).flat_map(|line| line.split('`').skip(1).step_by(2))
@@ -48,7 +53,7 @@ fn the_readme_is_short() {
 #[test]
 fn commands_of_the_readme_are_commands() {
     let text = page("README.md");
-    let typed = commands(&text);
+    let typed = typed(&text);
     assert!(typed.len() > 8, "only {typed:?}");
     assert_eq!(typed.iter().find_map(|line| mistake(line)), None);
     let known = Arguments::command();
