@@ -13,7 +13,7 @@ use crate::scenes::Random;
 use crate::tolerances::{HOLES, KEPT_SHARE, ROOM, ROOM_SHARE, SPACED_SHARE, SPACED_TOLERANCE};
 
 /// Spacings, cells: lines of all levels that may be drawn are there.
-const SPACINGS: [f64; 4] = [1.5, 3.1, 6.0, 12.0];
+const SPACINGS: [f64; 4] = [1.5, 4.0, 8.0, 16.0];
 /// Least room that is asked for, cells.
 const LEAST: f64 = 1.5;
 
