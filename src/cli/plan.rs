@@ -85,8 +85,7 @@ pub fn draw(arguments: &DrawArguments, scale: f64, dem: &Dem, land: Option<&Land
     let economy = arguments.drawing.style.economy(&style, px_per_mm);
     let overhead = Overhead { area, size: frame, px_per_metre: px_per_mm * MM / scale };
     let mut lines = Lines { own: wanted.own_layers, ..overhead.lines(dem)? };
-    // Light is of a map's north-west, and black is black.
-    let hachures = style.hachures(px_per_mm).map(|look| Hachures { most_black: 1.0, ..look });
+    let hachures = style.hachures(px_per_mm).map(Hachures::on_map);
     if let Some(land) = land {
         let least = land.slopes().map(Slopes::least_spacing).zip(hachures.as_ref());
         if least.is_some_and(|(least, look)| look.least_apart() / overhead.px_per_metre < NEAR[1] * least) {

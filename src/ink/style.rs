@@ -279,6 +279,7 @@ impl Style {
             spacing: spacing * px_per_mm,
             broadest: self.pens.hachure.width * px_per_mm,
             length: length * px_per_mm,
+            shortest: Hachures::SHORTEST,
             light: self.light.light(),
         })
     }

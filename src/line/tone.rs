@@ -37,8 +37,6 @@ const OTHER_LAND: f32 = 0.2;
 const SHORT_OF: [f64; 2] = [0.3, 0.7];
 /// A line this much farther than a stroke, in ln depth, does not stop it.
 const IN_FRONT: f32 = 0.02;
-/// Lengths of a stroke, spacings, up to which it is left out, and from which it is whole.
-const SHORT: [f64; 2] = [1.0, 3.0];
 /// Lengths over which strokes broaden at their tops and run out at their feet, spacings; at most these parts of the stroke.
 const TAPER: [f64; 2] = [0.4, 1.4];
 const MOST_TAPER: [f64; 2] = [0.15, 0.35];
@@ -117,7 +115,7 @@ fn shaped(stroke: Chain, lines: &Passing, look: &Hachures) -> Chain {
         wanted.min(MOST_TAPER[end] * along.length).max(f64::MIN_POSITIVE)
     });
     let own = samples(0, &stroke);
-    let short = fade(SHORT.map(|spacings| spacings * mean), along.length);
+    let short = fade(look.shortest.map(|spacings| spacings * mean), along.length);
     let point = |(i, point): (usize, &ChainPoint)| {
         let [top, foot] = [along.arcs[i] / taper[0], (along.length - along.arcs[i]) / taper[1]];
         let shape = short * runs_out(top) * runs_out(foot) * room(&own[i], lines, apart[i]);

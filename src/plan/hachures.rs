@@ -92,6 +92,8 @@ pub struct Hachures {
     pub broadest: f64,
     /// About how long they are at most, px.
     pub length: f64,
+    /// Lengths up to which one is left out, and from which it is whole, in what strokes about it are apart.
+    pub shortest: [f64; 2],
     /// Where light comes from.
     pub light: Light,
 }
@@ -105,6 +107,16 @@ pub struct Shade {
 }
 
 impl Hachures {
+    /// Of views: shorter ones are but ticks.
+    pub const SHORTEST: [f64; 2] = [1.0, 3.0];
+    /// Of maps, where they tell of a slope.
+    const SHORTEST_ON_MAP: [f64; 2] = [0.5, 1.5];
+
+    /// The same on a map, where black is black and short strokes count.
+    pub fn on_map(self) -> Self {
+        Self { most_black: 1.0, shortest: Self::SHORTEST_ON_MAP, ..self }
+    }
+
     /// The tone for an eye that looks to this azimuth of the world, degrees, at heights exaggerated by a factor.
     pub fn shade(&self, azimuth: f64, exaggeration: f64) -> Shade {
         Shade { hachures: *self, light: self.light.towards(azimuth), exaggeration }

@@ -38,7 +38,7 @@ impl Map {
         let size = [area[2] - area[0], area[3] - area[1]].map(|metres| (metres * px_per_metre).round() as u32);
         let style = Style { hachures, ..Style::default() };
         let overhead = Overhead { area, size, px_per_metre };
-        let look = Hachures { most_black: 1.0, ..style.hachures(PX_PER_MM).expect("hachures") };
+        let look = style.hachures(PX_PER_MM).expect("hachures").on_map();
         let strokes = overhead.land(&land, 0.0, Some(&look)).expect("strokes");
         Self { surface, land, overhead, look, style, strokes }
     }

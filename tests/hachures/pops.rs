@@ -18,6 +18,7 @@ use crate::scenes::gpu;
 use crate::tolerances::{HACHURE_POPS, HACHURE_POPS_BROAD, HACHURE_POPS_TURN};
 
 const FRAMES: u32 = 20;
+const TURNS: u32 = 8;
 const SIZE: [u32; 2] = [640, 360];
 /// Strokes under this are not seen, mm.
 const SEEN_MM: f64 = 0.1;
@@ -73,10 +74,10 @@ impl Flight {
         Frame { perspective: page.perspective, raster, strokes, lines, widths }
     }
 
-    /// Length of strokes that are seen in a frame by one of these cameras and are not there in the next or the one before, and of
-    /// those that are seen; then of full width that are gone. All in px.
-    pub fn comes_and_goes(&mut self, camera: impl Fn(f64) -> Camera) -> [f64; 3] {
-        let frames: Vec<Frame> = (0..FRAMES).map(|k| self.frame(&camera(f64::from(k)))).collect();
+    /// Length of strokes that are seen in one of so many frames by these cameras and are not there in the next or the one before,
+    /// and of those that are seen; then of full width that are gone. All in px.
+    pub fn comes_and_goes(&mut self, frames: u32, camera: impl Fn(f64) -> Camera) -> [f64; 3] {
+        let frames: Vec<Frame> = (0..frames).map(|k| self.frame(&camera(f64::from(k)))).collect();
         let pen = self.style.pens.hachure.width;
         let pairs = frames.windows(2).flat_map(|pair| [lost(&pair[0], &pair[1], pen), lost(&pair[1], &pair[0], pen)]);
         pairs.fold([0.0; 3], |a, b| [a[0] + b[0], a[1] + b[1], a[2] + b[2]])
@@ -128,7 +129,7 @@ fn hachures_do_not_pop() {
     let ahead = |metres: f64| Camera { eye: camera.eye + forward * metres, ..camera };
     let mut flight = Flight::new(&surface);
     for (step, most) in HACHURE_POPS {
-        let [gone, seen, broad] = flight.comes_and_goes(|k| ahead(k * step));
+        let [gone, seen, broad] = flight.comes_and_goes(FRAMES, |k| ahead(k * step));
         println!(
             "hachures: {:.3} % of what is seen comes or goes a step of {step} m, {broad} px of full width",
             100.0 * gone / seen
@@ -140,7 +141,7 @@ fn hachures_do_not_pop() {
         );
     }
     let [gone, seen, _] =
-        flight.comes_and_goes(|k| Camera { azimuth: camera.azimuth + k * HACHURE_POPS_TURN.0, ..camera });
+        flight.comes_and_goes(TURNS, |k| Camera { azimuth: camera.azimuth + k * HACHURE_POPS_TURN.0, ..camera });
     println!(
         "hachures: {:.3} % of what is seen comes or goes a turn of {} degrees",
         100.0 * gone / seen,
@@ -148,6 +149,6 @@ fn hachures_do_not_pop() {
     );
     assert!(seen > 0.0 && gone / seen <= HACHURE_POPS_TURN.1, "{gone} of {seen} half pixels");
     // Negative control: frames far apart.
-    let [gone, seen, _] = flight.comes_and_goes(|k| ahead(k * 400.0));
+    let [gone, seen, _] = flight.comes_and_goes(2, |k| ahead(k * 400.0));
     assert!(gone / seen > HACHURE_POPS[0].1, "strokes that are others are not noticed: {gone} of {seen}");
 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::{Yard, each, typed, words, write_hill};
 use crate::scenes::Random;
 
-const RUNS: u64 = 14;
+const RUNS: u64 = 8;
 
 /// Files below a folder.
 fn files(folder: &Path) -> Vec<PathBuf> {

@@ -10,7 +10,7 @@ use std::time::Duration;
 use super::{Ended, Yard, each, pick, typed, words, write_hill};
 use crate::cli::stderr;
 
-const RUNS: u64 = 10;
+const RUNS: u64 = 7;
 /// A run lasts about as long, ms.
 const LONGEST: f64 = 700.0;
 
