@@ -120,7 +120,7 @@ pub(super) const CONTOUR: Entry = Entry {
 pub(super) const TOWARD_AWAY: Entry = Entry {
     name: "toward-away",
     family: "toward-away",
-    brief: "Compare toward and away depths: never a false line, but gaps",
+    brief: "Compare toward and away depths: fast at low levels, with gaps",
     aside: "",
     rule: "A pixel is ink if its nearest toward surface is nearer than its nearest away surface, and that is nearer \
            than a neighbour's toward surface (Mower 2015).",
