@@ -38,7 +38,7 @@ fn land(path: &Path, epsg: u32, transform: [f64; 6]) {
     let _ = read(Path::new(""), &ReadOptions::default());
     let height = |i: usize| {
         let (x, y) = ((i % SIDE) as f64, (i / SIDE) as f64);
-        (260.0 + 60.0 * (x / 4.0).sin() * (y / 5.0).cos() + 3.0 * y + 0.37 * (x * 1.7).sin()) as f32
+        (260.0 + 60.0 * (x / 4.0).sin() * (y / 5.0).cos() + 3.0 * y + 6.0 * (x * 1.7).sin()) as f32
     };
     let driver = DriverManager::get_driver_by_name("GTiff").expect("a driver");
     let mut file = driver.create_with_band_type::<f32, _>(path, SIDE, SIDE, 1).expect("a file");

@@ -93,7 +93,10 @@ pub fn presses(samples: &[Sample], weights: &[f32], i: usize, gap: f32) -> Optio
     let stronger = |j: &usize| *j != i && samples[*j].rank >= sample.rank && weights[*j] > 0.0;
     let press = |j: usize| (j, weights[j] * sample.pressed_by(&samples[j], gap));
     let pressing = (0..samples.len()).filter(stronger).map(press).filter(|(_, pressure)| *pressure > 0.0);
-    pressing.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|_| gap > 0.0)
+    // Of those that press alike the nearest.
+    let apart = |j: usize| samples[j].place.distance(sample.place);
+    let hardest = pressing.max_by(|a, b| a.1.total_cmp(&b.1).then_with(|| apart(b.0).total_cmp(&apart(a.0))));
+    hardest.filter(|_| gap > 0.0)
 }
 
 impl Sample {
