@@ -39,6 +39,12 @@ pub fn shared_dems() -> Option<PathBuf> {
     Some(folder)
 }
 
+/// Where the driver keeps compiled shaders, for a process whose caches lie elsewhere: to compile them takes several times as
+/// long as all else that a drawing needs.
+pub fn shader_cache() -> Option<(&'static str, PathBuf)> {
+    dirs::cache_dir().map(|folder| ("MESA_SHADER_CACHE_DIR", folder))
+}
+
 /// Copies a raster as netCDF-4, which is HDF5, in a process of its own: that library serves one thread at a time, and other
 /// tests use it meanwhile. `false`, with a line that says so, where GDAL's tools are missing.
 pub fn netcdf_4(from: &Path, to: &Path) -> bool {

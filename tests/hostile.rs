@@ -19,6 +19,7 @@ use rayon::prelude::*;
 use tempfile::TempDir;
 
 use crate::cli::stderr;
+use crate::common::shader_cache;
 use crate::scenes::Random;
 
 /// A run that lasts longer hangs; a hundred times as long as those that do not, for machines with other work.
@@ -48,8 +49,7 @@ impl Yard {
     fn command(&self, arguments: &[String]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_hachure"));
         command.current_dir(self.0.path()).args(arguments).env("XDG_CACHE_HOME", self.path("cache"));
-        // Compiled shaders of the driver are no part of this, and make runs short.
-        command.envs(dirs::cache_dir().map(|folder| ("MESA_SHADER_CACHE_DIR", folder)));
+        command.envs(shader_cache());
         command.env("RUST_BACKTRACE", "0").stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped());
         command
     }

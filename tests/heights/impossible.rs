@@ -215,6 +215,7 @@ fn draw_warns_of_a_dem_in_its_file_each_time() {
             .arg(dir.path().join("page.json"))
             .arg(&path)
             .env("XDG_CACHE_HOME", dir.path())
+            .envs(crate::common::shader_cache())
             .output()
             .unwrap();
         let words = String::from_utf8_lossy(&done.stderr);

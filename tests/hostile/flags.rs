@@ -3,7 +3,7 @@
 use super::{Yard, each, pick, typed, words, write_hill};
 use crate::scenes::Random;
 
-const RUNS: u64 = 70;
+const RUNS: u64 = 45;
 
 /// Numbers at the ends of what flags take, and beyond.
 const NUMBERS: [&str; 24] = [

@@ -14,7 +14,7 @@ use crate::scenes::Random;
 
 const RUNS: u64 = 240;
 /// Every so many runs a picture is drawn; else the file is read.
-const DRAWN: u64 = 6;
+const DRAWN: u64 = 16;
 /// Samples along a side: of `.hgt` there are 1201.
 const SIDE: usize = 48;
 

@@ -17,13 +17,13 @@ const LONGEST: f64 = 700.0;
 #[test]
 fn signals_leave_whole_files_or_none() {
     let original = Yard::new();
-    write_hill(&original.path("hill.tif"), 300);
+    write_hill(&original.path("hill.tif"), 120);
     each(3, RUNS, |seed, random| {
         let yard = Yard::new();
         fs::copy(original.path("hill.tif"), yard.path("hill.tif")).expect("a copy");
-        let memory = pick(random, &["", " --memory 512KiB"]);
+        let memory = pick(random, &["", " --memory 16KiB"]);
         let run =
-            words(&format!("draw hill.tif -o out.png --mask out-mask.png --size 400x300 --json report.json{memory}"));
+            words(&format!("draw hill.tif -o out.png --mask out-mask.png --size 240x180 --json report.json{memory}"));
         let signal = pick(random, &["-TERM", "-INT", "-HUP"]);
         let wait = random.between(0.0, LONGEST);
         let what = format!("seed {seed:#x}, {} {signal} after {wait:.0} ms", typed(&run));
