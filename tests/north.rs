@@ -18,8 +18,9 @@ use crate::cli::{Place, stderr};
 
 /// Samples along a side of the DEMs here.
 const SIDE: usize = 160;
-/// A page on which a degree is 9.7 px across, of facets as coarse as the samples.
-const PAGE: [&str; 8] = ["--size", "640x360", "--level", "1", "--border", "off", "-o", "out.png"];
+/// A page on which a degree is 9.7 px across, of facets as coarse as the samples, by a method that is soon compiled.
+const PAGE: [&str; 10] =
+    ["--size", "640x360", "--level", "1", "--border", "off", "--method", "toward-away", "-o", "out.png"];
 /// Where the land of [`arctic`] lies: on the meridian 145 degrees east of that on which its map stands upright.
 const ARCTIC: [f64; 2] = [100.0, 72.0];
 /// Where the land of [`degrees`] lies: 2.9 degrees from the middle of the 32nd zone of UTM.
