@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use glam::DVec3;
-use hachure::plan::{Border, Detail, Plan, Thrift, batches};
+use hachure::plan::{Border, Detail, Pieces, Plan, Thrift, batches};
 use hachure::surface::lattice::{CHUNK_QUADS, CHUNK_SIDE, CHUNK_VERTICES};
 use hachure::surface::{Chunk, LatticePoint, Surface};
 use hachure::view::Camera;
@@ -19,6 +19,8 @@ use crate::quadtrees::moor;
 use crate::scenes::{Random, aimed, over, rough};
 
 const PAGE: [u32; 2] = [360, 240];
+/// Where every pixel is looked at for holes.
+const SMALL_PAGE: [u32; 2] = [240, 160];
 
 fn renderer(surface: &Arc<Surface>, error_px: f64, thrift: Thrift) -> Planned {
     let plan = Plan { thrift, ..Plan::new(Detail::Adaptive { error_px }, BY_ID, Border::Off) };
@@ -99,7 +101,7 @@ fn frames_of_several_levels_have_one_vertex_a_place_and_no_pinhole() {
         let mut random = Random::new(seed + 50);
         for error_px in [0.6, 8.0] {
             let mut renderer = renderer(&surface, error_px, Thrift::LeaveOut);
-            for camera in eyes(&surface, &mut random, PAGE) {
+            for camera in eyes(&surface, &mut random, SMALL_PAGE) {
                 let shot = renderer.shoot(&camera);
                 let what = format!("scene {seed}, {error_px} px, {camera:?}");
                 let [shared, wrong] = unlike(shot.lattice.chunks(), &shot.screens);
@@ -117,7 +119,7 @@ fn frames_of_several_levels_have_one_vertex_a_place_and_no_pinhole() {
         }
     }
     println!("{covered} px covered, {uncovered} not; {seams} seams; {compared} vertices compared, {clipped} clipped");
-    assert!(covered > 500_000 && uncovered > 50_000 && seams > 400 && clipped > 1000 && compared > 50_000);
+    assert!(covered > 220_000 && uncovered > 22_000 && seams > 400 && clipped > 1000 && compared > 50_000);
 }
 
 #[test]
@@ -126,11 +128,12 @@ fn the_last_of_several_batches_has_one_vertex_a_place() {
     // Of chunks that are left out the buffer would keep what earlier batches have written.
     let mut renderer = renderer(&surface, 0.0005, Thrift::Nothing);
     let (mut compared, mut seams) = (0, 0);
-    let cameras = [7, 8, 9].map(|seed| eyes(&surface, &mut Random::new(seed), PAGE)).concat();
-    for camera in cameras {
-        let lattice = renderer.frame(&camera).expect("a frame").lattice;
+    for camera in eyes(&surface, &mut Random::new(8), PAGE) {
+        let lattice = renderer.plan_in(&camera, Pieces::from(PAGE)).lattice;
         let all = batches(lattice.chunks().len() as u32);
-        let Some(last) = all.last().filter(|_| all.len() > 1) else { continue };
+        // Of many more batches the last is no other than of two to four, and takes longer.
+        let Some(last) = all.last().filter(|_| (2..=4).contains(&all.len())) else { continue };
+        renderer.frame(&camera).expect("a frame");
         let chunks = &lattice.chunks()[last.first_slot as usize..];
         // Its vertices have taken the place of those of the batches before it.
         let screens = renderer.values("screens", chunks.len() * CHUNK_VERTICES as usize);
