@@ -306,30 +306,40 @@ fn the_checks_of_the_page_can_fail() {
     let policy = between(&page, "<meta http-equiv", ">").to_owned();
     let nothing = "return null";
     let elsewhere = "<img src=\"http://127.0.0.1:9/picture.png\" alt=\"\">";
-    for (what, broken) in [
-        ("an exception", with("<script>missing()</script>")),
-        ("a rejection", with("<script>Promise.reject('no')</script>")),
-        ("a message", with("<script>console.error('no')</script>")),
-        ("a picture from elsewhere", with(elsewhere)),
-        ("the same, were it allowed", with(elsewhere).replace(&format!("<meta http-equiv{policy}>"), "")),
-        ("a number SVG cannot read", with("<svg><rect width=\"wide\"/></svg>")),
+    // An exception, a rejection, a message, a picture from elsewhere, a number SVG cannot read: each is told.
+    let broken = with(&format!(
+        "<script>missing()</script><script>Promise.reject('denied')</script><script>console.error('spoken')</script>\
+         {elsewhere}<svg><rect width=\"wide\"/></svg>"
+    ));
+    let trouble = browser.visit(&broken, nothing, WIDTHS[0]).trouble;
+    for words in [
+        "missing",
+        "rejection denied",
+        "console error spoken",
+        "forbidden http://127.0.0.1:9",
+        "Expected length, \"wide\"",
     ] {
-        assert!(!browser.visit(&broken, nothing, WIDTHS[0]).trouble.is_empty(), "{what} was not noticed");
+        assert!(trouble.iter().any(|told| told.contains(words)), "{words} was not noticed: {trouble:#?}");
     }
+    let allowed = with(elsewhere).replace(&format!("<meta http-equiv{policy}>"), "");
+    assert!(
+        !browser.visit(&allowed, nothing, WIDTHS[0]).trouble.is_empty(),
+        "a picture that is allowed is not noticed"
+    );
     assert!(browser.visit(&page, nothing, WIDTHS[0]).trouble.is_empty());
 
-    // Headings that do nothing, a label on another, a picture that is too small, a page that is too wide.
+    // Headings that do nothing, a label on another, a picture that is too small, a page that is too wide, a boundary that
+    // stays where it is.
     let broken = page
         .replace("body.append(...[...body.rows]", "void ([...body.rows]")
         .replace("</svg>", "<text x=\"300\" y=\"300\">one</text><text x=\"302\" y=\"303\">two</text></svg>")
-        .replace("</style>", ".run img { width: 200px } h1 { width: 2000px }</style>");
+        .replace("</style>", ".run img { width: 200px } h1 { width: 2000px }</style>")
+        .replace("range.addEventListener(\"input\", show);", "");
     let visit = browser.visit(&broken, PROBE, WIDTHS[0]);
     assert!(!sorts(&visit));
     assert!(visit.found["overlaps"].as_array().is_some_and(|overlaps| !overlaps.is_empty()));
     assert!(visit.found["pictures"].as_array().is_some_and(|p| p.iter().any(|p| p[1].as_f64() == Some(200.0))));
     assert!(visit.found["wide"].as_i64() > Some(0));
-    // A boundary that stays where it is.
-    let stuck = page.replace("range.addEventListener(\"input\", show);", "");
-    let sides = &browser.visit(&stuck, PROBE, WIDTHS[0]).found["sides"];
+    let sides = &visit.found["sides"];
     assert_ne!(sides[0], sides[1], "{sides}");
 }
