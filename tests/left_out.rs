@@ -17,7 +17,7 @@ use crate::scenes::{Random, gpu, level, rough};
 
 const PAGE: [u32; 2] = [123, 77];
 /// Frames of each scene and method.
-const FRAMES: usize = 24;
+const FRAMES: usize = 12;
 
 /// Eyes in, over, under and beside the DEM, looking anywhere, with narrow and wide fields of view.
 fn anywhere(surface: &Surface, random: &mut Random) -> Camera {
@@ -96,7 +96,7 @@ fn what_is_left_out_changes_no_bit() {
         for (_, method) in METHODS {
             for n in [1, 4] {
                 let inked = compare(surface, level(n).into(), method, FRAMES, seed * 1000 + u64::from(n));
-                assert!(inked > 500, "{method:?}, level {n}: {inked} px, too little ink to compare");
+                assert!(inked > 250, "{method:?}, level {n}: {inked} px, too little ink to compare");
             }
         }
     }
@@ -107,7 +107,7 @@ fn what_is_left_out_of_real_terrain_changes_no_bit() {
     let Some(dems) = shared_dems() else { return };
     let read = |name: &str| hachure::geo::read(dems.join(name), &Default::default()).expect(name);
     let surface = Arc::new(Surface::new(read("west_temple_50m.tif")));
-    assert!(compare(&surface, level(4).into(), Method::Walk, FRAMES, 77) > 1000);
+    assert!(compare(&surface, level(4).into(), Method::Walk, FRAMES, 77) > 500);
 }
 
 /// Frames of several levels by every method; `frames` of each scene, method and error.
@@ -127,7 +127,7 @@ fn compare_levels(frames: usize, errors: &[f64]) {
 
 #[test]
 fn what_is_left_out_of_several_levels_changes_no_bit() {
-    compare_levels(6, &[1.0]);
+    compare_levels(3, &[1.0]);
 }
 
 #[test]
