@@ -68,7 +68,7 @@ fn counts(answer: &Value) -> [u64; 3] {
 #[test]
 fn jobs_are_answered_by_their_ids_with_the_frames_of_a_run() {
     let place = Place::new();
-    let whole = undisturbed(&place);
+    let whole = undisturbed();
     let mut server = Server::start(&place, &fly("served/%05d.png", &[]));
     for (id, list, done) in [
         (json!(7), json!("3, 5-10"), [7, 0, 0]),
@@ -93,7 +93,7 @@ fn jobs_are_answered_by_their_ids_with_the_frames_of_a_run() {
     let said = stderr(&output);
     assert_eq!(output.status.code(), Some(0), "{said}");
     assert_eq!(said.matches("adapter:").count(), 1, "opened once for all jobs: {said}");
-    assert_eq!(bytes(&frames(&place.path("served"))), bytes(&whole));
+    assert_eq!(bytes(&frames(&place.path("served"))), bytes(whole));
 }
 
 #[test]
@@ -140,7 +140,7 @@ fn lines_are_read_as_jobs_or_refused_in_words() {
 #[test]
 fn a_bad_job_is_answered_and_costs_itself_alone() {
     let place = Place::new();
-    let whole = undisturbed(&place);
+    let whole = undisturbed();
     fs::create_dir_all(place.path("bad/00005.png")).expect("a folder in the way");
     let mut server = Server::start(&place, &fly("bad/%05d.png", &[]));
     server.send("nonsense");
