@@ -6,7 +6,7 @@ use std::process::{Command, Output};
 
 use hachure::gpu::Adapter;
 
-use crate::cli::{DRAW, Place, stderr};
+use crate::cli::{Place, QUICK, stderr};
 use crate::common::gpu;
 
 /// The manifest of the software driver, where drivers are found on Linux.
@@ -80,7 +80,7 @@ fn equal_adapters_are_told_apart_by_their_numbers() {
     let listed = rows(&on_two(&place, &["info", "--adapters"]));
     assert!(matches!(&listed[..], [(a, one), (b, other)] if (&**a, &**b) == ("0", "1") && one == other), "{listed:?}");
     let drawn = |flags: &[&str]| {
-        let output = on_two(&place, &[&DRAW[..], flags].concat());
+        let output = on_two(&place, &[&QUICK[..], flags].concat());
         assert_eq!(output.status.code(), Some(0), "{flags:?}: {}", stderr(&output));
         fs::read(place.path("out.png")).expect("a picture")
     };
@@ -89,7 +89,7 @@ fn equal_adapters_are_told_apart_by_their_numbers() {
         assert!(drawn(&["--adapter", number]) == first, "adapter {number} draws another picture");
     }
     fs::remove_file(place.path("out.png")).expect("it is there");
-    let beyond = on_two(&place, &[&DRAW[..], &["--adapter", "2"]].concat());
+    let beyond = on_two(&place, &[&QUICK[..], &["--adapter", "2"]].concat());
     let (name, said) = (&listed[0].1, stderr(&beyond));
     assert_eq!(beyond.status.code(), Some(1), "{said}");
     assert!(said.contains(&format!("none has the number 2; there is: 0 {name}, 1 {name}")), "{said}");
@@ -102,13 +102,13 @@ fn an_adapter_is_named_by_words_too() {
     let name = &gpu().info.name;
     let words = name.to_uppercase();
     let words = words.split(' ').next().expect("a word");
-    let output = place.run(&[&DRAW[..], &["--adapter", words]].concat());
+    let output = place.run(&[&QUICK[..], &["--adapter", words]].concat());
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let output = place.run(&[&DRAW[..], &["--adapter", "0000:ff:1f.7"]].concat());
+    let output = place.run(&[&QUICK[..], &["--adapter", "0000:ff:1f.7"]].concat());
     let said = stderr(&output);
     assert_eq!(output.status.code(), Some(1), "{said}");
     assert!(said.contains("none is named `0000:ff:1f.7`, nor is its bus; there is: 0 "), "{said}");
-    let empty = place.run(&[&DRAW[..], &["--adapter", ""]].concat());
+    let empty = place.run(&[&QUICK[..], &["--adapter", ""]].concat());
     assert_eq!(empty.status.code(), Some(2));
     assert!(stderr(&empty).contains("want cpu, gpu, an adapter's number, or words of its name or its bus"));
 }

@@ -6,7 +6,7 @@ use std::process::Output;
 
 use serde_json::Value;
 
-use crate::cli::{DRAW, Place, refuses, stderr};
+use crate::cli::{DRAW, Place, QUICK, refuses, stderr};
 
 /// A text grid with these heights, `None` for voids.
 fn write_grid(place: &Place, name: &str, size: usize, cell: f64, height: impl Fn(usize, usize) -> Option<f64>) {
@@ -38,7 +38,7 @@ fn blank(place: &Place, arguments: &[&str], words: &str) {
     let warning = said.lines().find(|line| line.contains(words)).unwrap_or_else(|| panic!("{arguments:?}: {said}"));
     let flags = warning.split("; give ").nth(1).unwrap_or_else(|| panic!("no flags: {warning}"));
     assert!(flags.starts_with("--eye "), "{warning}");
-    let kept = arguments[..4].to_vec();
+    let kept = [&arguments[..4], &QUICK[6..]].concat();
     let (stdout, said) = succeeds(place.run(&[kept, flags.split(' ').collect()].concat()));
     assert!(inked(&stdout) > 0, "{flags}: {stdout}");
     assert!(!said.contains("is on the page") && !said.contains("nothing is drawn"), "{said}");
@@ -57,7 +57,7 @@ fn a_page_without_land_says_where_it_lies_and_how_to_see_it() {
         &["--eye", "5000000,500000,700"],
     ];
     for view in views {
-        blank(&place, &[&DRAW[..], view].concat(), "no part of the DEM is on the page: its middle lies ");
+        blank(&place, &[&QUICK[..], view].concat(), "no part of the DEM is on the page: its middle lies ");
     }
     let (_, said) = succeeds(place.run(&[&DRAW[..], views[0]].concat()));
     assert!(said.contains("lies 1200 m from the eye at azimuth 0, "), "{said}");
@@ -112,7 +112,8 @@ fn without_facets_nothing_starts_and_the_remedy_works() {
                 assert!(said.contains("W 500005 S 4000005 E 500235 N 4000235 m"), "{name}: {said}");
                 let remedy = said.split_once("--fill-voids").expect("a remedy").1.split(',').next().expect("flags");
                 let remedy = format!("--fill-voids{remedy}");
-                let (stdout, _) = succeeds(place.run(&[&DRAW[..], &remedy.split(' ').collect::<Vec<_>>()].concat()));
+                let remedied = [&QUICK[..], &remedy.split(' ').collect::<Vec<_>>()].concat();
+                let (stdout, _) = succeeds(place.run(&remedied));
                 assert!(inked(&stdout) > 0, "{name}: {remedy}");
                 fs::remove_file(place.path("out.png")).expect("out.png");
             }

@@ -11,7 +11,7 @@ use clap::{CommandFactory, Parser};
 use hachure::cli::Arguments;
 use serde_json::Value;
 
-use crate::cli::{DRAW, Place, refuses, stderr};
+use crate::cli::{DRAW, Place, QUICK, refuses, stderr};
 
 /// An eye that is worth a warning.
 const BELOW: [&str; 4] = ["--eye", "500200,4000200,20", "--azimuth", "0"];
@@ -31,9 +31,9 @@ fn succeeds(output: Output) -> Output {
 #[test]
 fn quiet_says_errors_and_answers_only() {
     let place = Place::new();
-    let loud = succeeds(place.run(&[&DRAW[..], &BELOW].concat()));
+    let loud = succeeds(place.run(&[&QUICK[..], &BELOW].concat()));
     assert!(stdout(&loud).contains("view: ") && stderr(&loud).contains("warning: "));
-    for quiet in [[&["-q"], &DRAW[..], &BELOW].concat(), [&DRAW[..], &BELOW, &["--quiet"]].concat()] {
+    for quiet in [[&["-q"], &QUICK[..], &BELOW].concat(), [&QUICK[..], &BELOW, &["--quiet"]].concat()] {
         let output = succeeds(place.run(&quiet));
         assert_eq!((stdout(&output), stderr(&output)), (String::new(), String::new()), "{quiet:?}");
     }
@@ -43,13 +43,13 @@ fn quiet_says_errors_and_answers_only() {
     let [loud, quiet] = [&["info", "hill.asc"][..], &["-q", "info", "hill.asc"]].map(|a| stdout(&place.run(a)));
     assert!(loud.lines().count() > 4);
     assert_eq!(loud, quiet);
-    assert_eq!(place.run(&[&DRAW[..], &["-q", "-v"]].concat()).status.code(), Some(2));
+    assert_eq!(place.run(&[&QUICK[..], &["-q", "-v"]].concat()).status.code(), Some(2));
 }
 
 #[test]
 fn verbose_says_what_was_left_out_and_the_times_that_were_taken() {
     let place = Place::new();
-    let draw = [&DRAW[..], &["--border", "off"]].concat();
+    let draw = [&QUICK[..], &["--border", "off"]].concat();
     let said = |more: &[&str]| stdout(&succeeds(place.run(&[&draw[..], more].concat())));
     let (normal, verbose, timed) = (said(&[]), said(&["-v"]), said(&["-v", "--json", "report.json"]));
     for (words, expected) in [
@@ -65,14 +65,14 @@ fn verbose_says_what_was_left_out_and_the_times_that_were_taken() {
 #[test]
 fn a_dash_gives_the_bytes_of_the_file_and_nothing_else() {
     let place = Place::new();
-    succeeds(place.run(&[&DRAW[..], &["--mask", "mask.png"]].concat()));
+    succeeds(place.run(&[&QUICK[..], &["--mask", "mask.png"]].concat()));
     let written = ["out.png", "mask.png"].map(|name| fs::read(place.path(name)).expect(name));
-    let picture = succeeds(place.run(&["draw", "hill.asc", "-o", "-", "--size", "64x48", "-v"]));
-    let mask = succeeds(place.run(&[&DRAW[..], &["--mask", "-"]].concat()));
+    let picture = succeeds(place.run(&[&["draw", "hill.asc", "-o", "-", "-v"], &QUICK[4..]].concat()));
+    let mask = succeeds(place.run(&[&QUICK[..], &["--mask", "-"]].concat()));
     assert!([picture.stdout, mask.stdout] == written, "standard output differs from the files");
     let lines = String::from_utf8_lossy(&picture.stderr).into_owned();
     assert!(lines.contains("view: ") && lines.contains("driver: "), "lines go aside: {lines}");
-    let report = succeeds(place.run(&[&DRAW[..], &["--json", "-"]].concat()));
+    let report = succeeds(place.run(&[&QUICK[..], &["--json", "-"]].concat()));
     let report: Value = serde_json::from_slice(&report.stdout).expect("nothing but JSON");
     assert!(report["facets"].is_number());
     assert_eq!(place.written(), ["mask.png", "out.png"]);
@@ -84,14 +84,14 @@ fn standard_output_holds_one_file() {
     let words = "standard output is another output already";
     refuses(&place, &["draw", "hill.asc", "-o", "-", "--mask", "-"], 2, words);
     refuses(&place, &["draw", "hill.asc", "-o", "-", "--json", "-"], 2, words);
-    refuses(&place, &[&DRAW[..], &["--mask", "-", "--json", "-"]].concat(), 2, words);
+    refuses(&place, &[&QUICK[..], &["--mask", "-", "--json", "-"]].concat(), 2, words);
 }
 
 #[test]
 #[cfg(target_os = "linux")]
 fn a_full_standard_output_leaves_no_file_and_a_closed_one_is_no_error() {
     let place = Place::new();
-    let draw = [&DRAW[..], &["--mask", "-"]].concat();
+    let draw = [&QUICK[..], &["--mask", "-"]].concat();
     let full = fs::OpenOptions::new().write(true).open("/dev/full").expect("/dev/full");
     let output = place.command(&draw).stdout(full).output().expect("hachure runs");
     assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
@@ -109,7 +109,7 @@ fn a_full_standard_output_leaves_no_file_and_a_closed_one_is_no_error() {
 #[test]
 fn no_colour_goes_into_a_pipe() {
     let place = Place::new();
-    let below = [&DRAW[..], &BELOW].concat();
+    let below = [&QUICK[..], &BELOW].concat();
     let cases: [(&[&str], &str); 4] = [
         (&below, "warning:"),
         (&["info", "none.tif"], "error:"),
@@ -253,7 +253,7 @@ fn held_up(place: &Place, arguments: &str, shell: impl Fn(&str) -> Command) -> S
     };
     let hachure = env!("CARGO_BIN_EXE_hachure");
     let line =
-        format!("{hachure} {arguments} {} --size 640x480 --level 64 & echo $! > pid; wait $!", DRAW[..4].join(" "));
+        format!("{hachure} {arguments} {} --size 640x480 --level 32 & echo $! > pid; wait $!", DRAW[..4].join(" "));
     let mut command = shell(&line);
     let command = command.current_dir(place.path("")).stdout(Stdio::piped()).stderr(Stdio::piped());
     let child = command.spawn().expect("a shell");
