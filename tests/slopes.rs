@@ -8,7 +8,7 @@ mod spaced;
 mod traced;
 
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
@@ -92,14 +92,24 @@ fn part(dem: &Dem, first: [usize; 2], size: [usize; 2]) -> Dem {
     Dem::from_heights(samples.size()[0], dem.cell(), origin, heights)
 }
 
-/// The sample of this repository, a part of it with water.
-fn sample() -> Scene {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("dem/golden-gate.tif");
-    Scene::of("golden-gate", read(&path, &ReadOptions::default()).expect("the sample"))
+/// The sample of this repository, a part of it with hills and water; made once for all tests.
+fn sample() -> Arc<Scene> {
+    static SAMPLE: OnceLock<Arc<Scene>> = OnceLock::new();
+    let make = || {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("dem/golden-gate.tif");
+        let whole = read(&path, &ReadOptions::default()).expect("the sample");
+        Arc::new(Scene::of("golden-gate", part(&whole, [150, 150], [250, 250])))
+    };
+    SAMPLE.get_or_init(make).clone()
 }
 
-/// The sample and, where it is there, parts of the shared terrain.
-fn real() -> Vec<Scene> {
+/// The sample and, where it is there, parts of the shared terrain; made once for all tests.
+fn real() -> Vec<Arc<Scene>> {
+    static REAL: OnceLock<Vec<Arc<Scene>>> = OnceLock::new();
+    REAL.get_or_init(make_real).clone()
+}
+
+fn make_real() -> Vec<Arc<Scene>> {
     let shared = [
         ("west-temple", "west_temple_50m.tif", [0, 0]),
         ("yosemite", "yosemite_utm11n_30m.tif", [250, 200]),
@@ -108,7 +118,7 @@ fn real() -> Vec<Scene> {
     let of_file = |folder: &Path, (name, file, first): (&'static str, &str, [usize; 2])| {
         let dem = read(folder.join(file), &ReadOptions::default()).expect("a DEM");
         let size = [0, 1].map(|i| 200.min([dem.columns(), dem.rows()][i] - first[i]));
-        Scene::of(name, part(&dem, first, size))
+        Arc::new(Scene::of(name, part(&dem, first, size)))
     };
     let shared = shared_dems().map(|folder| shared.map(|scene| of_file(&folder, scene))).into_iter().flatten();
     std::iter::once(sample()).chain(shared).collect()

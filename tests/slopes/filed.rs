@@ -7,7 +7,7 @@ use hachure::error::{Error, Message, Result};
 use hachure::relief::slope::Slopes;
 use hachure::surface::Surface;
 
-use super::{RULES, Scene, blocks, sample};
+use super::{RULES, blocks, sample};
 
 /// Samples as a file's.
 #[derive(Debug)]
@@ -57,7 +57,7 @@ impl Tiles for File {
 
 #[test]
 fn lines_of_a_file_are_those_of_its_samples() {
-    let scene: Scene = sample();
+    let scene = sample();
     let held = scene.surface.dem();
     let origin = held.position(0, 0).truncate();
     let filed = Dem::from_tiles(Arc::new(File(held.clone())), held.cell(), origin, 1.0, 1 << 20);

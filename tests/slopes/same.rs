@@ -42,7 +42,7 @@ fn window(scene: &Scene, [from, to]: [f64; 2]) -> impl Fn([DVec3; 2]) -> f64 + S
 
 #[test]
 fn lines_are_the_same_however_they_are_asked_for() {
-    for scene in [sample(), Scene::bare("plane", plane([160, 160]))] {
+    for scene in [sample(), Arc::new(Scene::bare("plane", plane([160, 160])))] {
         let whole = scene.blocks(ROOM);
         assert!(lines(&whole).count() > 100);
         for shares in [[0.5, 0.7], [0.6, 0.8], [0.7, 1.0]] {

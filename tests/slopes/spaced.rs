@@ -118,7 +118,7 @@ fn judged(scene: &Scene, lines: &[&[SlopePoint]], cells: f64) -> Option<Judged> 
 
 #[test]
 fn lines_keep_every_spacing_and_leave_few_holes() {
-    let scenes = std::iter::once(Scene::bare("plane", plane([160, 160]))).chain(real());
+    let scenes = std::iter::once(Arc::new(Scene::bare("plane", plane([160, 160])))).chain(real());
     for scene in scenes {
         let blocks = scene.blocks(LEAST);
         let lines = by_rank(&blocks);

@@ -1,5 +1,7 @@
 //! Lines run down the slope, and end where they must.
 
+use std::sync::Arc;
+
 use glam::DVec2;
 use hachure::relief::slope::SlopeLine;
 use hachure::relief::{LineKind, SurfaceLine, SurfacePoint};
@@ -44,7 +46,7 @@ fn lines_run_down_the_slope() {
         Scene::bare("sphere", land([81, 81], |at| (1e6 - at.distance_squared(DVec2::splat(400.0))).sqrt())),
         Scene::bare("saddle", land([81, 81], |at| 1e-3 * ((at.x - 400.0).powi(2) - (at.y - 400.0).powi(2)))),
     ];
-    for scene in made.into_iter().chain(real()) {
+    for scene in made.into_iter().map(Arc::new).chain(real()) {
         let blocks = scene.blocks(ROOM);
         let good = downhill(&scene.surface, lines(&blocks), DOWNHILL_DEGREES);
         println!("{}: {:.4} of {} lines within {DOWNHILL_DEGREES} degrees", scene.name, good, lines(&blocks).count());
@@ -148,7 +150,7 @@ fn crossings<'a>(lines: impl Iterator<Item = &'a SlopeLine>, stops: &[SurfaceLin
 fn no_line_crosses_a_crest_or_a_channel() {
     let mut scenes = real();
     let wall = stop(&[[10.0, 30.3], [30.2, 29.0], [50.7, 33.3]]);
-    scenes.push(Scene { stops: vec![wall], ..Scene::bare("plane", plane([64, 64])) });
+    scenes.push(Arc::new(Scene { stops: vec![wall], ..Scene::bare("plane", plane([64, 64])) }));
     for scene in scenes {
         let blocks = scene.blocks(ROOM);
         assert_eq!(crossings(lines(&blocks), &scene.stops), 0, "{}", scene.name);
@@ -166,13 +168,13 @@ fn no_line_enters_water_or_a_void() {
     // A lake in the sample's bay, a void in a plane.
     let scenes = [
         super::sample(),
-        Scene::bare(
+        Arc::new(Scene::bare(
             "void",
             land([64, 64], |at| {
                 let is_void = at.distance(DVec2::splat(300.0)) < 80.0;
                 if is_void { f64::NAN } else { 0.2 * at.x }
             }),
-        ),
+        )),
     ];
     for scene in scenes {
         let (dem, blocks) = (scene.surface.dem(), scene.blocks(ROOM));
