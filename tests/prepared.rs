@@ -25,21 +25,21 @@ use crate::mixed::variety;
 use crate::scenes::Random;
 
 const PAGE: [u32; 2] = [320, 200];
-const SAMPLES: [usize; 2] = [1500, 1100];
+const SAMPLES: [usize; 2] = [1000, 750];
 /// A budget that holds no tile, and one that holds some.
 const SMALL: u64 = 1 << 18;
-const MODERATE: u64 = 1 << 23;
+const MODERATE: u64 = 1 << 21;
 /// Factor on every height, unless a test has its own.
 const EXAGGERATION: f64 = 1.5;
 
-/// Hills of 30 m cells with small bumps; voids around (700, 500) and here and there.
+/// Hills of 30 m cells with small bumps; voids around (350, 260) and here and there.
 fn write_hills(path: &Path, height: f64, voids: bool) {
     let row = |r: usize| {
         let sample = |c: usize| {
             let (x, y) = (c as f64, r as f64);
             let z = height * (x / 37.0).sin() * (y / 29.0).cos() + 6.0 * (x * 1.7 + y).sin() + 300.0;
-            let block = (690..740).contains(&c) && (480..520).contains(&r);
-            let void = voids && (block || (c * 7919 + r * 104_729).is_multiple_of(90_001));
+            let block = (330..380).contains(&c) && (240..280).contains(&r);
+            let void = voids && (block || (c * 7919 + r * 104_729).is_multiple_of(30_011));
             if void { f32::NAN } else { z as f32 }
         };
         (0..SAMPLES[0]).map(sample).collect()
@@ -117,7 +117,7 @@ fn cameras(surface: &Surface) -> Vec<Camera> {
         let eye = DVec3::new(
             random.between(west, east),
             random.between(south, (south + north) / 2.0),
-            random.between(800.0, 1500.0),
+            random.between(800.0, 1100.0),
         );
         Camera { eye, azimuth, altitude, fov: 60.0, width: PAGE[0], height: PAGE[1] }
     };
@@ -126,7 +126,7 @@ fn cameras(surface: &Surface) -> Vec<Camera> {
 
 /// Each frame's lattice and page, bit by bit.
 fn frames(surface: &Arc<Surface>) -> Vec<(Vec<Chunk>, Vec<u8>)> {
-    let plan = Plan::new(Detail::Adaptive { error_px: 0.7 }, Method::Walk, Border::On);
+    let plan = Plan::new(Detail::Adaptive { error_px: 2.0 }, Method::Walk, Border::On);
     let mut renderer = Planned::new(gpu(), surface, plan);
     let mut frame = |camera| {
         let drawn = renderer.draw(camera).expect("a frame");
