@@ -46,7 +46,7 @@ fn becomes(found: &[Stroke], expected: &[Stroke]) {
 #[test]
 fn whatever_is_found_is_drawn_once_and_nothing_else() {
     let mut merged = 0;
-    for seed in 1..400 {
+    for seed in 1..200 {
         let found = tangle(seed);
         let planned = planned(found.clone());
         let faults = faults(&found, &planned);
@@ -55,7 +55,7 @@ fn whatever_is_found_is_drawn_once_and_nothing_else() {
         assert!(!twice(&found).is_empty() && !short(&found).is_empty(), "seed {seed} asks for nothing");
         merged += usize::from(planned.len() < found.len());
     }
-    assert!(merged > 100, "{merged} layers with fewer strokes than found");
+    assert!(merged > 50, "{merged} layers with fewer strokes than found");
 }
 
 #[test]
@@ -217,7 +217,7 @@ fn best(from: DVec2, left: &[&Stroke]) -> f64 {
 #[test]
 fn the_way_is_nearly_the_shortest_there_is() {
     let mut ratios = [Vec::new(), Vec::new()];
-    for seed in 1..100 {
+    for seed in 1..50 {
         let found = curves(seed, 5, [20.0, 120.0]);
         let shortest = best(DVec2::ZERO, &found.iter().collect::<Vec<_>>());
         let planned = planned(found.clone());

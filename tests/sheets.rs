@@ -1,7 +1,7 @@
 //! Sheets of paper: what size they and the frames on them have, and that no stroke leaves their margins.
 
 use std::fs;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use glam::DVec2;
 use hachure::geo::{ReadOptions, read};
@@ -127,8 +127,13 @@ fn over(drawing: &Drawing) -> f64 {
     ink.map(over).fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// The Golden Gate in every built-in style, hidden lines and all, in zones of distance.
-pub fn real_drawings() -> Vec<(BuiltIn, Drawing)> {
+/// The Golden Gate in every built-in style, hidden lines and all, in zones of distance; drawn once for all tests.
+pub fn real_drawings() -> &'static [(BuiltIn, Drawing)] {
+    static DRAWINGS: OnceLock<Vec<(BuiltIn, Drawing)>> = OnceLock::new();
+    DRAWINGS.get_or_init(draw_all)
+}
+
+fn draw_all() -> Vec<(BuiltIn, Drawing)> {
     let dem = concat!(env!("CARGO_MANIFEST_DIR"), "/dem/golden-gate.tif");
     let surface = Arc::new(Surface::new(read(dem, &ReadOptions::default()).expect("a DEM")));
     let sheet = Sheet { size: DVec2::new(105.0, 74.0), margin: 7.5 };
@@ -150,7 +155,7 @@ pub fn real_drawings() -> Vec<(BuiltIn, Drawing)> {
 #[test]
 fn no_stroke_leaves_the_margins_in_any_style() {
     for (name, drawing) in real_drawings() {
-        let (strokes, over) = (drawing.layers.iter().map(|layer| layer.strokes.len()).sum::<usize>(), over(&drawing));
+        let (strokes, over) = (drawing.layers.iter().map(|layer| layer.strokes.len()).sum::<usize>(), over(drawing));
         println!("{name}: {strokes} strokes, {} layers, {over:.4} mm over", drawing.layers.len());
         assert!(strokes > 50 && over <= 1e-9, "{name}");
         // Lines do run off the page, so that something was cut.

@@ -95,9 +95,9 @@ fn drawing(layers: Vec<(&str, Vec<Stroke>)>) -> Drawing {
 #[test]
 fn vpype_reads_a_real_plot_and_finds_no_shorter_way() {
     let Some(vpype) = vpype() else { return };
-    let plot = real_drawings().into_iter().find(|(style, _)| *style == BuiltIn::Plotter);
+    let plot = real_drawings().iter().find(|(style, _)| *style == BuiltIn::Plotter);
     let (_, plot) = plot.expect("a plot");
-    let found = judged(&vpype, &plot);
+    let found = judged(&vpype, plot);
     let names = |said: &[Said]| said.iter().map(|layer| layer.name.clone()).collect::<Vec<_>>();
     assert_eq!(names(&found[0]), plot.layers.iter().map(|layer| layer.name.clone()).collect::<Vec<_>>());
     assert!(plot.layers.len() > 3, "{:?}", names(&found[0]));

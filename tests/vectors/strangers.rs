@@ -109,7 +109,7 @@ fn strangers_see_real_drawings_as_pictures_show_them() {
     let poppler = Poppler::find();
     for (style, drawing) in real_drawings() {
         // Vectors have no paper; and poppler moves upright and level lines, as marks are, to whole pixels.
-        let mut drawing = Drawing { paper: Colour([255; 3]), ..drawing };
+        let mut drawing = Drawing { paper: Colour([255; 3]), ..drawing.clone() };
         drawing.layers.iter_mut().for_each(|layer| layer.strokes.retain(|stroke| stroke.chain.is_some()));
         // Far lines of a tenth of a millimetre are nowhere thinner than a pixel or two.
         let picture = png(&drawing, 16.0);
