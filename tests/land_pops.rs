@@ -17,7 +17,7 @@ use rstar::primitives::GeomWithData;
 use crate::scenes::gpu;
 use crate::tolerances::LAND_POPS;
 
-const FRAMES: u32 = 20;
+const FRAMES: u32 = 8;
 /// Within this a line is where it was, px.
 const HERE: f64 = 1.5;
 /// At the edge of the page nothing counts, px.

@@ -99,16 +99,18 @@ pub fn lehmann() -> HachureStyle {
 /// Of each class of 5 degrees from 5 on: the share of the map, ink wanted, ink there.
 pub fn classes(map: &Map) -> Vec<[f64; 3]> {
     let mut sums = vec![[0.0; 3]; 18];
-    let width = map.overhead.size[0] as usize;
+    let [width, height] = map.overhead.size.map(|pixels| pixels as usize);
     let ink = map.ink();
-    for (i, ink) in ink.iter().enumerate() {
-        let place = DVec2::new((i % width) as f64, (i / width) as f64) + 0.5;
+    // Two by two pixels together: the slope is hardly another one within them.
+    for (x, y) in (0..height / 2).flat_map(|y| (0..width / 2).map(move |x| (2 * x, 2 * y))) {
+        let place = DVec2::new(x as f64, y as f64) + 1.0;
+        let ink = [0, 1, width, width + 1].map(|i| ink[y * width + x + i]).iter().sum::<f64>() / 4.0;
         let Some(gradient) = map.gradient(place) else { continue };
         let slope = gradient.length().atan().to_degrees();
         let class = &mut sums[(slope / 5.0) as usize];
         let wanted = if slope < map.style.hachures.min_slope { 0.0 } else { (slope / map.look.black_at).min(1.0) };
         *class = [class[0] + 1.0, class[1] + wanted, class[2] + ink];
     }
-    let all = ink.len() as f64;
+    let all = (ink.len() / 4) as f64;
     sums.into_iter().map(|[count, wanted, ink]| [count / all, wanted / count, ink / count]).collect()
 }

@@ -17,8 +17,8 @@ use rstar::primitives::GeomWithData;
 use crate::scenes::gpu;
 use crate::tolerances::{HACHURE_POPS, HACHURE_POPS_BROAD, HACHURE_POPS_TURN};
 
-const FRAMES: u32 = 20;
-const TURNS: u32 = 8;
+const FRAMES: u32 = 8;
+const TURNS: u32 = 5;
 const SIZE: [u32; 2] = [640, 360];
 /// Strokes under this are not seen, mm.
 const SEEN_MM: f64 = 0.1;
