@@ -18,15 +18,23 @@ use crate::tolerances::STRANGERS_CHANNELS;
 /// Samples that make a channel.
 const CELLS: u32 = 100;
 
-/// Reads heights as rows of f32 and writes the samples above each as the same.
+/// Reads heights of each DEM as rows of f32 and writes the samples above each as the same.
 const SCRIPT: &str = "
 import sys, numpy, topotoolbox
-columns, rows, cell, heights, areas = int(sys.argv[1]), int(sys.argv[2]), float(sys.argv[3]), sys.argv[4], sys.argv[5]
-dem = topotoolbox.GridObject()
-dem.z = numpy.fromfile(heights, dtype=numpy.float32).reshape(rows, columns)
-dem.cellsize = cell
-topotoolbox.FlowObject(dem).flow_accumulation().z.astype(numpy.float32).tofile(areas)
+for k in range(1, len(sys.argv), 5):
+    columns, rows, cell, heights, areas = sys.argv[k:k + 5]
+    dem = topotoolbox.GridObject()
+    dem.z = numpy.fromfile(heights, dtype=numpy.float32).reshape(int(rows), int(columns))
+    dem.cellsize = float(cell)
+    topotoolbox.FlowObject(dem).flow_accumulation().z.astype(numpy.float32).tofile(areas)
 ";
+
+/// DEMs, and which part of the third: west, south, east, north.
+const DEMS: [(&str, Option<[f64; 4]>); 3] = [
+    ("west_temple_50m.tif", None),
+    ("yosemite_utm11n_30m.tif", None),
+    ("sthelens_utm10n_10m.tif", Some([557_000.0, 5_112_000.0, 565_000.0, 5_120_000.0])),
+];
 
 /// Python with it, as the set-up of the tests installs it. `None`, with a line that says so, where there is none: the test that
 /// called is skipped.
@@ -60,22 +68,26 @@ fn near(ours: &[bool], theirs: &[bool], columns: usize) -> f64 {
 fn channels_are_where_a_stranger_has_them() {
     let (Some(python), Some(dems)) = (python(), shared_dems()) else { return };
     let folder = tempfile::tempdir().expect("a folder");
-    let [heights, areas] = ["heights", "areas"].map(|name| folder.path().join(name));
-    for name in ["west_temple_50m.tif", "yosemite_utm11n_30m.tif", "sthelens_utm10n_10m.tif"] {
-        let dem = read(dems.join(name), &ReadOptions::default()).expect("a DEM");
+    let at = |what: &str, name: &str| folder.path().join(format!("{what}-{name}"));
+    let mut command = Command::new(&python);
+    command.args(["-c", SCRIPT]);
+    let ours = DEMS.map(|(name, crop)| {
+        let dem = read(dems.join(name), &ReadOptions { crop, ..ReadOptions::default() }).expect("a DEM");
         let relief = Relief::of(&dem, 1.0).expect("a relief");
         let frame = relief.flow().frame();
         let smoothed: Vec<f32> = frame.indices().map(|i| relief.grid().smoothed[i]).collect();
-        std::fs::write(&heights, bytemuck::cast_slice(&smoothed)).expect("heights");
-        let numbers = [frame.size[0].to_string(), frame.size[1].to_string(), frame.cell.x.to_string()];
-        let ran = Command::new(&python).args(["-c", SCRIPT]).args(numbers).args([&heights, &areas]).output();
-        let ran = ran.expect("python runs");
-        assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
-        let bytes = std::fs::read(&areas).expect("areas");
+        std::fs::write(at("heights", name), bytemuck::cast_slice(&smoothed)).expect("heights");
+        command.args([frame.size[0].to_string(), frame.size[1].to_string(), frame.cell.x.to_string()]);
+        command.args([at("heights", name), at("areas", name)]);
+        let ours: Vec<bool> = frame.indices().map(|i| relief.area().cells[i] >= CELLS).collect();
+        (name, ours, dem.columns())
+    });
+    let ran = command.output().expect("python runs");
+    assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
+    for (name, ours, columns) in ours {
+        let bytes = std::fs::read(at("areas", name)).expect("areas");
         let theirs = bytes.chunks_exact(4).map(|four| f32::from_le_bytes([four[0], four[1], four[2], four[3]]));
         let theirs: Vec<bool> = theirs.map(|area| area >= CELLS as f32).collect();
-        let ours: Vec<bool> = frame.indices().map(|i| relief.area().cells[i] >= CELLS).collect();
-        let columns = dem.columns();
         let shares = [near(&ours, &theirs, columns), near(&theirs, &ours, columns)];
         println!("{name}: {shares:.3?} of ours and theirs");
         assert!(shares.iter().all(|share| *share >= STRANGERS_CHANNELS), "{name}: {shares:?}");
