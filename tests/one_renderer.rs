@@ -18,7 +18,7 @@ use crate::reflection::shaders;
 use crate::scenes::{Random, gpu, level, look, rough};
 
 /// Frames that are drawn one after the other.
-const FRAMES: usize = 200;
+const FRAMES: usize = 100;
 /// Sizes of their pages.
 const PAGES: [[u32; 2]; 4] = [[96, 64], [64, 96], [160, 90], [33, 47]];
 
@@ -42,7 +42,7 @@ fn camera(surface: &Surface, random: &mut Random, size: [u32; 2]) -> Camera {
 }
 
 #[test]
-fn two_hundred_frames_of_changing_size_method_and_level_are_those_of_new_renderers() {
+fn a_hundred_frames_of_changing_size_method_and_level_are_those_of_new_renderers() {
     let gpu = Arc::new(Gpu::open(&AdapterChoice::Best, Int64::IfPresent).expect("an adapter"));
     let surface = Arc::new(Surface::new(rough(70, 60, 1.0, 6.0, true)));
     let mut warm = Renderer::new(gpu.clone(), surface.clone()).expect("a renderer");
@@ -158,7 +158,7 @@ mod process {
     use crate::tolerances::GROWN_BYTES;
 
     #[test]
-    fn two_hundred_frames_take_no_more_memory_than_one_hundred() {
+    fn a_hundred_frames_take_no_more_memory_than_fifty() {
         // Alone in a process, for what is resident is the process's.
         let test = std::env::current_exe().expect("this test");
         let child = "one_renderer::process::child_draws_frame_after_frame";
@@ -169,7 +169,7 @@ mod process {
     }
 
     #[test]
-    #[ignore = "run by two_hundred_frames_take_no_more_memory_than_one_hundred in a process of its own"]
+    #[ignore = "run by a_hundred_frames_take_no_more_memory_than_fifty in a process of its own"]
     fn child_draws_frame_after_frame() {
         let surface = Arc::new(Surface::new(rough(70, 60, 1.0, 6.0, true)));
         let mut warm = Renderer::new(gpu().clone(), surface.clone()).expect("a renderer");

@@ -140,14 +140,14 @@ fn far_out_on_a_large_page_no_bit_depends_on_the_piece() {
         for (view, level) in views(&surface).into_iter().zip([4, 1, 2, 2]) {
             let camera = Camera { width: LARGEST_PAGE, height: 40_000, ..view };
             let mut renderer = Planned::new(gpu(), &surface, Plan::new(scenes::level(level), method, Border::On));
-            let frame = renderer.plan_in(&camera, Pieces::new([camera.width, camera.height], [400, 300]));
-            for origin in [[0, 39_700], [33_000, 20_000], [40_001, 24_003], [65_136, 30_007], [51_003, 39_700]] {
-                let whole = rectangle(&frame, &mut renderer, origin, [400, 300]);
-                let part = rectangle(&frame, &mut renderer, [origin[0] + 97, origin[1] + 41], [283, 251]);
+            let frame = renderer.plan_in(&camera, Pieces::new([camera.width, camera.height], [240, 180]));
+            for origin in [[0, 39_820], [33_000, 20_000], [40_001, 24_003], [65_296, 30_007], [51_003, 39_820]] {
+                let whole = rectangle(&frame, &mut renderer, origin, [240, 180]);
+                let part = rectangle(&frame, &mut renderer, [origin[0] + 37, origin[1] + 21], [190, 150]);
                 covered += whole.iter().filter(|p| p.depth() != 0.0).count();
                 // Without the halo of the part.
-                for (row, column) in (1..250).flat_map(|r| (1..282).map(move |c| (r, c))) {
-                    let [a, b] = [whole[(row + 41) * 400 + column + 97], part[row * 283 + column]];
+                for (row, column) in (1..149).flat_map(|r| (1..189).map(move |c| (r, c))) {
+                    let [a, b] = [whole[(row + 21) * 240 + column + 37], part[row * 190 + column]];
                     inked += usize::from(a.is_ink());
                     assert_eq!(
                         different(&[a], &[b]),
@@ -158,7 +158,7 @@ fn far_out_on_a_large_page_no_bit_depends_on_the_piece() {
             }
         }
         println!("{name}: {inked} px of ink, {covered} covered");
-        assert!(inked > 100 && covered > 100_000, "{name}: {inked} px of ink, {covered} covered");
+        assert!(inked > 100 && covered > 40_000, "{name}: {inked} px of ink, {covered} covered");
     }
 }
 

@@ -91,7 +91,7 @@ fn a_camera_that_jumps_draws_what_a_new_renderer_draws() {
     let [west, south, east, north] = surface.dem().extent();
     let mut random = Random::new(21);
     let (mut tiles, mut chunks, mut pages) = (HashSet::new(), HashSet::new(), HashSet::new());
-    for frame in 0..10 {
+    for frame in 0..7 {
         let eye = DVec3::new(random.between(west, east), random.between(south, north), random.between(100.0, 900.0));
         let azimuth = random.between(0.0, 360.0);
         let camera = Camera { eye, azimuth, altitude: -20.0, fov: 70.0, width: PAGE[0], height: PAGE[1] };
@@ -106,7 +106,7 @@ fn a_camera_that_jumps_draws_what_a_new_renderer_draws() {
     let asked = [tiles.len() as u64, chunks.len() as u64];
     println!("{asked:?} tiles and chunks in {held:?} places");
     assert!(asked[0] > held[0] && asked[1] > held[1], "{asked:?} in {held:?} places: none was replaced");
-    assert_eq!(pages.len(), 10, "frames are alike");
+    assert_eq!(pages.len(), 7, "frames are alike");
 }
 
 #[test]
@@ -119,7 +119,7 @@ fn vertices_stay_while_the_camera_flies_on() {
         let make = || Planned::new(gpu, &surface, plan);
         let mut flying = make();
         let (mut made, mut chunks, mut pages) = (Vec::new(), Vec::new(), HashSet::new());
-        for frame in 0..8 {
+        for frame in 0..5 {
             let eye = middle + DVec3::new(-900.0 + 40.0 * f64::from(frame), -1100.0, 300.0);
             let camera = look(eye, middle, 60.0, PAGE);
             let drawn = flying.bytes(&camera);
@@ -132,6 +132,6 @@ fn vertices_stay_while_the_camera_flies_on() {
         assert_eq!(made[0], chunks[0], "the first frame makes all");
         let [few, all] = [made, chunks].map(|counts| counts[2..].iter().sum::<usize>());
         assert!(few > 0 && few < all / 2, "{few} of {all} are made anew");
-        assert_eq!(pages.len(), 8, "frames are alike");
+        assert_eq!(pages.len(), 5, "frames are alike");
     }
 }

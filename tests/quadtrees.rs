@@ -154,7 +154,7 @@ fn check(dem: &Dem, lattice: &Lattice, what: &str) {
 #[test]
 fn random_lattices_are_conforming_meshes_of_the_land() {
     let mut seams = 0;
-    for seed in 1..=21 {
+    for seed in 1..=14 {
         let kind = KINDS[seed as usize % KINDS.len()];
         let mut random = Random::new(seed * 104_729);
         let dem = flat(kind, &mut random);
@@ -162,7 +162,7 @@ fn random_lattices_are_conforming_meshes_of_the_land() {
         check(&dem, &lattice, &format!("seed {seed}, {kind:?}"));
         seams += variety(&lattice)[1];
     }
-    assert!(seams > 1000, "{seams} seams");
+    assert!(seams > 600, "{seams} seams");
 }
 
 /// A camera anywhere over a DEM.

@@ -107,17 +107,17 @@ fn random_terrain_has_no_pinhole(n: u32, samples: usize, seeds: u64) {
 
 #[test]
 fn no_pinhole_at_level_1() {
-    random_terrain_has_no_pinhole(1, 9, 6);
+    random_terrain_has_no_pinhole(1, 9, 3);
 }
 
 #[test]
 fn no_pinhole_at_level_2() {
-    random_terrain_has_no_pinhole(2, 7, 6);
+    random_terrain_has_no_pinhole(2, 7, 3);
 }
 
 #[test]
 fn no_pinhole_at_level_8() {
-    random_terrain_has_no_pinhole(8, 6, 6);
+    random_terrain_has_no_pinhole(8, 6, 3);
 }
 
 #[test]

@@ -1,7 +1,6 @@
 //! Truth's bounds, tree and proofs of facing change nothing: piece by piece it is what the slow program finds.
 
 use std::f64::consts::TAU;
-use std::ops::RangeInclusive;
 
 use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
@@ -18,8 +17,9 @@ const PAGE: [u32; 2] = [48, 36];
 const CELL: DVec2 = DVec2::new(20.0, 15.0);
 /// Columns and rows of samples.
 const SAMPLES: [usize; 2] = [8, 6];
-/// Surfaces of each exaggeration. On those of 105, 114 and 121 a sliver faces away beside patches that do not.
-const SEEDS: RangeInclusive<u64> = 105..=121;
+/// Surfaces of each exaggeration, of every shape, some with voids. On those of 105, 114 and 121 a sliver faces away beside
+/// patches that do not.
+const SEEDS: [u64; 8] = [105, 106, 107, 112, 114, 116, 119, 121];
 
 /// What a small surface is made of.
 #[derive(Debug, Clone, Copy)]
@@ -153,7 +153,7 @@ fn from_eyes(of: Ground) -> Compared {
 fn truth_is_what_all_facets_say() {
     for exaggeration in [0.3, 1.0, 5.0, 30.0, 100.0] {
         let ground = |seed| Ground { seed, shape: SHAPES[seed as usize % 3], exaggeration, voids: seed % 4 == 0 };
-        let all = SEEDS.map(|seed| from_eyes(ground(seed))).fold(Compared::default(), Compared::and);
+        let all = SEEDS.map(|seed| from_eyes(ground(seed))).into_iter().fold(Compared::default(), Compared::and);
         let Compared { pieces, border, doubtful, .. } = all;
         println!("exaggeration {exaggeration}: {pieces} pieces, {border} of border lines, {doubtful} doubtful");
         assert!(border > 1000 && pieces - border > 1000, "{pieces} pieces, {border} of border lines: too few");
