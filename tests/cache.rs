@@ -385,7 +385,8 @@ fn grids_of_a_container_and_members_of_an_archive_are_apart() {
         let view =
             ["--eye", "502250,4194000,260", "--azimuth", "0", "--altitude", "-8", "--size", "160x100", "-o", "o.png"];
         let draw = |name: &str, flags: &[&str]| {
-            let output = place.run(&[&["draw", name, "--mask", "m.png"], &view[..], flags].concat());
+            let output =
+                place.run(&[&["draw", name, "--hachures", "none", "--mask", "m.png"], &view[..], flags].concat());
             assert!(output.status.success(), "{name}: {}", stderr(&output));
             fs::read(place.path("m.png")).expect("a mask")
         };
