@@ -1,14 +1,14 @@
 #!/bin/sh
-# The crate without GDAL: lints, documentation, its own tests and those beside it, and a program that does not load the
-# library.
+# The crate without GDAL: lints, documentation, the tests beside it, and a program that does not load the library. The
+# crate's own tests are the same with GDAL, and run there.
 set -eu
 cd "$(dirname "$0")/.."
 cargo clippy --release --no-default-features --all-targets -- -D warnings
 RUSTDOCFLAGS="-D warnings" cargo doc --release --no-default-features --no-deps
 status=0
-said=$(cargo test --release --no-default-features --lib --test without_gdal) || status=$?
+said=$(cargo test --release --no-default-features --test without_gdal) || status=$?
 echo "$said" | grep '^test result: ok. [1-9]' || true
-if [ "$status" -ne 0 ] || [ "$(echo "$said" | grep -c '^test result: ok. [1-9]')" -ne 2 ]; then
+if [ "$status" -ne 0 ] || ! echo "$said" | grep -q '^test result: ok. [1-9]'; then
     echo "$said"
     exit 1
 fi
