@@ -14,7 +14,7 @@ use hachure::cache::Cache;
 use hachure::error::Result;
 use hachure::geo::read;
 use hachure::gpu::{AdapterChoice, Gpu, Int64};
-use hachure::measure::compare::Hearing;
+use hachure::measure::compare::CompareObserver;
 use hachure::measure::{Comparison, Sequence};
 use hachure::plan::{Border, Detail, Method};
 use hachure::report::lines::lines;
@@ -66,7 +66,7 @@ fn run(value: &dyn Fn(&str) -> Option<String>) -> Result<()> {
     };
     let gpu = Arc::new(Gpu::open(&AdapterChoice::Best, Int64::IfPresent)?);
     let (step, frames) = (number("step", 1.0), number("frames", 20.0) as u32);
-    let hearing = Hearing {
+    let hearing = CompareObserver {
         stage: &|_, _| (),
         warn: &|_| (),
         found: &|found| {

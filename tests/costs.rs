@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
 use hachure::measure::cost::{PassCost, Quantities};
 use hachure::plan::batches::BATCH_CHUNKS;
-use hachure::plan::frame::Kept;
+use hachure::plan::frame::KeptLattice;
 use hachure::plan::passes::passes;
 use hachure::plan::{Border, Detail, Frame, Method, Plan, batches};
 use hachure::surface::Surface;
@@ -31,7 +31,7 @@ fn from_south(surface: &Surface) -> Camera {
 fn frame(n: u32, int64: bool) -> Frame {
     let surface = flat();
     let plan = Plan::new(level(n), Method::Walk, Border::On);
-    Frame::new(&plan, &surface, &from_south(&surface), int64, &mut Kept::default()).expect("a frame")
+    Frame::new(&plan, &surface, &from_south(&surface), int64, &mut KeptLattice::default()).expect("a frame")
 }
 
 /// The same with more chunks than one batch holds.

@@ -7,7 +7,7 @@ use hachure::error::Result;
 use hachure::gpu::Gpu;
 use hachure::line::InkRaster;
 use hachure::plan::batches::BATCH_CHUNKS;
-use hachure::plan::{Border, Frame, Method, Pieces, Plan, Share, Yields};
+use hachure::plan::{Border, Frame, Method, Pieces, Plan, SharedVertices, Yields};
 use hachure::render::{Drawn, FrameTime, Page, Renderer};
 use hachure::surface::lattice::CHUNK_VERTICES;
 use hachure::surface::{Lattice, Level, Surface};
@@ -37,7 +37,7 @@ pub const METHODS: [(&str, Method); Method::ALL.len() - 1] = {
 };
 
 /// The method of tests that look at facets: its raster keeps depth and ID.
-pub const BY_ID: Method = Method::Adjacency { share: Share::Edge };
+pub const BY_ID: Method = Method::Adjacency { share: SharedVertices::Edge };
 
 /// A renderer that draws one plan.
 pub struct Planned {

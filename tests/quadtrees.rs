@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
-use hachure::plan::{Curves, Thrift, detail};
+use hachure::plan::{Culling, Curves, detail};
 use hachure::surface::lattice::{CELL_STEPS, CHUNK_FACETS, CHUNK_QUADS};
 use hachure::surface::quadtree::NO_SLOT;
 use hachure::surface::{Lattice, LatticePoint, Surface};
@@ -202,7 +202,7 @@ fn lattices_of_frames_are_conforming_meshes_of_the_land() {
         for error_px in [0.5, 3.0, 20.0] {
             let camera = above(&surface, &mut random);
             let (lattice, _) =
-                detail::adaptive(&surface, &camera, error_px, Thrift::Nothing, Curves::Off).expect("few chunks");
+                detail::adaptive(&surface, &camera, error_px, Culling::Off, Curves::Off).expect("few chunks");
             check(surface.dem(), &lattice, &format!("scene {i}, {error_px} px, {camera:?}"));
             levels[0] = levels[0].max(variety(&lattice)[0]);
             levels[1] += variety(&lattice)[1];

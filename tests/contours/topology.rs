@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
 use hachure::line::Bound;
-use hachure::plan::{Curves, Thrift, detail};
+use hachure::plan::{Culling, Curves, detail};
 use hachure::surface::{Lattice, LatticePoint, Surface};
 
 use super::twin::{Edge, Node, Piece, Twin, string_pieces};
@@ -200,7 +200,7 @@ fn contours_end_only_where_chunks_are_left_out() {
     let mut random = Random::new(11);
     for _ in 0..4 {
         let camera = above(&surface, &mut random);
-        let (lattice, _) = detail::adaptive(&surface, &camera, 2.0, Thrift::LeaveOut, Curves::Off).expect("few chunks");
+        let (lattice, _) = detail::adaptive(&surface, &camera, 2.0, Culling::On, Curves::Off).expect("few chunks");
         let twin = Twin::new(&surface, &lattice, camera.eye);
         let pieces = twin.pieces();
         check(&twin, &pieces, &format!("{camera:?}"));
