@@ -9,9 +9,10 @@ use std::time::{Duration, Instant, SystemTime};
 
 use gdal::raster::Buffer;
 use gdal::{DriverManager, Metadata};
-use hachure::cache::{Cache, CacheKey, CacheKind, CacheObserver, KeptEntry, NewEntry};
-use hachure::cli::words::told;
+use hachure::cache::{Cache, CacheObserver};
 use hachure::dem::Dem;
+use hachure::door::cache::{CacheKey, CacheKind, KeptEntry, NewEntry};
+use hachure::door::cli::words::told;
 use hachure::geo::{ReadOptions, read};
 use tempfile::TempDir;
 

@@ -9,10 +9,11 @@ use std::fs;
 
 use glam::DVec2;
 use hachure::dem::Dem;
+use hachure::door::line::LandWay;
+use hachure::door::line::hachures::{Viewer, hatched};
 use hachure::geo::{ReadOptions, read};
 use hachure::ink::HachureStyle;
-use hachure::line::hachures::{Viewer, hatched};
-use hachure::line::{Chain, LandWay};
+use hachure::line::Chain;
 use hachure::plan::{Hachures, Tone};
 use rstar::RTree;
 use rstar::primitives::{GeomWithData, Line};

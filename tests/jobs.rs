@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
 use hachure::cache::Cache;
+use hachure::door::job::manifest::SequenceKey;
+use hachure::door::job::name::Naming;
+use hachure::door::job::{Frames, Job, JobFile, Manifest, Merged, Pattern, Shard};
 use hachure::ink::Seal;
-use hachure::job::manifest::SequenceKey;
-use hachure::job::name::Naming;
-use hachure::job::{Frames, Job, JobFile, Manifest, Merged, Pattern, Shard};
 
 #[test]
 fn lists_of_frames_read_as_farms_write_them() {

@@ -4,8 +4,9 @@ use std::collections::HashSet;
 use std::fmt::Debug;
 use std::hash::Hash;
 
-use hachure::plan::registry::{Marker, MethodEntry, PlotLook};
-use hachure::plan::{Method, Yields};
+use hachure::door::plan::Yields;
+use hachure::door::plan::registry::{Marker, MethodEntry, PlotLook};
+use hachure::plan::Method;
 
 /// What is wrong with these entries.
 fn faults(entries: &[MethodEntry]) -> Vec<String> {

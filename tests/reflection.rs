@@ -8,20 +8,22 @@ use std::mem::offset_of;
 use std::path::Path;
 
 use glam::DVec2;
-use hachure::cli::words::line;
-use hachure::gpu::Capacity;
-use hachure::gpu::pass::{parse, reflect};
-use hachure::gpu::sizes::{BLOCK, LARGEST_BINDING, fits, of_page, of_scene};
-use hachure::gpu::uniforms::{BatchUniform, ChunkUniform, Counts, SceneUniform, Segment, Tally, code, seen};
-use hachure::gpu::{CameraUniform, adjacency, border, candidates, compose, crossed, curves, facing, lay, meet, pairs};
-use hachure::gpu::{project, rasterize, rasterize_large, rim_segments, seam, segments, sight, tessellate};
-use hachure::gpu::{toward_away, turn, turning, walk, walk_rest, wanted};
+use hachure::door::cli::words::line;
+use hachure::door::gpu::Capacity;
+use hachure::door::gpu::pass::{parse, reflect};
+use hachure::door::gpu::sizes::{BLOCK, LARGEST_BINDING, fits, of_page, of_scene};
+use hachure::door::gpu::uniforms::{BatchUniform, ChunkUniform, Counts, SceneUniform, Segment, Tally, code, seen};
+use hachure::door::gpu::{
+    CameraUniform, adjacency, border, candidates, compose, crossed, curves, facing, lay, meet, pairs,
+};
+use hachure::door::gpu::{project, rasterize, rasterize_large, rim_segments, seam, segments, sight, tessellate};
+use hachure::door::gpu::{toward_away, turn, turning, walk, walk_rest, wanted};
+use hachure::door::measure::depth_draw;
+use hachure::door::plan::batches::{BATCH_CHUNKS, PART_CHUNKS};
+use hachure::door::surface::rim::RimEdge;
+use hachure::door::surface::{Lattice, lattice, quadtree, tile};
 use hachure::line::{Kind, Pixel};
-use hachure::measure::depth_draw;
 use hachure::plan::Visibility;
-use hachure::plan::batches::{BATCH_CHUNKS, PART_CHUNKS};
-use hachure::surface::rim::RimEdge;
-use hachure::surface::{Lattice, lattice, quadtree, tile};
 use wgpu::naga;
 
 use crate::scenes::level;
@@ -113,7 +115,7 @@ fn shared_structs() -> Vec<(&'static str, Layout)> {
         ("Scene", layout!(SceneUniform: cell, samples, roots, root_size, near)),
         (
             "Camera",
-            layout!(CameraUniform: right, up, forward, eye_cell, eye_offset, eye_height, centre, focal, chunks, size, wedge, origin, seen, fresh),
+            layout!(CameraUniform: right, up, forward, eye_cell, eye_offset, eye_height, centre, focal, chunks, size, frustum, origin, seen, fresh),
         ),
         ("Batch", layout!(BatchUniform: first_slot, part_slot, round, passing)),
         ("Counts", layout!(Counts: longest_walk, orphans, cut_short)),

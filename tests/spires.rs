@@ -5,12 +5,13 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
-use hachure::gpu::uniforms::SceneUniform;
-use hachure::gpu::walk;
+use hachure::door::gpu::uniforms::SceneUniform;
+use hachure::door::gpu::walk;
+use hachure::door::surface::LatticePoint;
+use hachure::door::surface::lattice::CHUNK_FACETS;
 use hachure::line::Kind as LineKind;
 use hachure::plan::{Border, Detail, Method, Plan};
-use hachure::surface::lattice::CHUNK_FACETS;
-use hachure::surface::{LatticePoint, Surface};
+use hachure::surface::Surface;
 use hachure::truth::{Terrain, Truth};
 use hachure::view::Camera;
 

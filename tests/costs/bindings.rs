@@ -6,16 +6,18 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
-use hachure::gpu::sizes::{LIST_HEADER, RIM_EDGE_BYTES, of_page, of_scene};
-use hachure::gpu::{Capacity, Gpu, project};
-use hachure::measure::cost::{PassCost, Quantities, Traffic};
-use hachure::measure::costs;
+use hachure::door::gpu::sizes::{LIST_HEADER, RIM_EDGE_BYTES, of_page, of_scene};
+use hachure::door::gpu::{Capacity, project};
+use hachure::door::measure::cost::{PassCost, Quantities, Traffic};
+use hachure::door::measure::costs;
+use hachure::door::surface::Lattice;
+use hachure::door::surface::lattice::{CHUNK_FACETS, CHUNK_VERTICES, CHUNK_WORDS};
+use hachure::door::surface::rim::rim_length;
+use hachure::door::surface::tile::TILE_SAMPLES;
+use hachure::gpu::Gpu;
 use hachure::plan::{Border, Detail, Method, Plan, Visibility};
 use hachure::render::Drawn;
-use hachure::surface::lattice::{CHUNK_FACETS, CHUNK_VERTICES, CHUNK_WORDS};
-use hachure::surface::rim::rim_length;
-use hachure::surface::tile::TILE_SAMPLES;
-use hachure::surface::{Lattice, Surface};
+use hachure::surface::Surface;
 use hachure::view::Camera;
 
 use super::{bytes, flat, frame, from_south, in_two_batches, on_page};

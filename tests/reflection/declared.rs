@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use hachure::gpu::seam;
-use hachure::gpu::sizes::LIST_HEADER;
+use hachure::door::gpu::seam;
+use hachure::door::gpu::sizes::LIST_HEADER;
 use wgpu::naga;
 
 use super::{all_modules, bound, constants, layouts, shared_constants, shared_structs};
