@@ -83,7 +83,7 @@
 //! compares bits. Large pages are drawn in [`pieces`](plan::pieces), of which only the inked pixels are kept; strokes are filled in bands of 128
 //! rows, which go to the file one after the other: memory grows with the ink, not with the page.
 //!
-//! One pass has one name: `shaders/rasterize.wgsl` and `src/gpu/rasterize.rs` hold the pass `rasterize`. What runs for a frame is
+//! One pass has one name: `shaders/rasterize.wgsl` holds the pass `rasterize`, a line of `src/gpu/shaders.rs` what it is composed of. What runs for a frame is
 //! planned in [`plan::passes`], in the order of [`render`].
 //!
 //! # Coordinates
@@ -111,7 +111,7 @@
 //! | [`relief`] | lines on the land that do not depend on the eye: drainage, ridges, shores, peaks, own lines |
 //! | [`view`] | the camera, how it sees, a view where none is given, cameras along a way |
 //! | [`plan`] | what a frame needs, as data: lattice, batches, passes, pieces, what is left out; the registry of methods |
-//! | [`gpu`] | device, buffers, one adapter a pass; the mathematics stands in `shaders/` |
+//! | [`gpu`] | device, buffers, a table of passes; the mathematics stands in `shaders/` |
 //! | [`mod@line`] | curves with kind and world place: ink traced to chains, smoothed; lines of the world projected |
 //! | [`ink`] | chains to strokes to pictures |
 //! | [`truth`] | where the lines really are, in f64, and how far ink is from them; knows nothing of the GPU |
@@ -122,22 +122,29 @@
 //! | [`cli`] | flags as typed become options checked |
 
 #![deny(missing_docs)]
+#![warn(unreachable_pub)]
+// Those who read the code follow such links, or `cargo doc --document-private-items`.
+#![allow(rustdoc::private_intra_doc_links)]
+// Much serves the reading of rasters alone.
+#![cfg_attr(not(feature = "gdal"), allow(dead_code, unused_imports))]
 
 pub mod cache;
-pub mod cli;
+mod cli;
 pub mod dem;
+#[doc(hidden)]
+pub mod door;
 pub mod error;
-pub mod files;
+mod files;
 pub mod geo;
 pub mod gpu;
 pub mod ink;
-pub mod job;
+mod job;
 pub mod line;
-pub mod measure;
+mod measure;
 pub mod plan;
 pub mod relief;
 pub mod render;
-pub mod report;
+mod report;
 pub mod surface;
 pub mod truth;
 pub mod view;

@@ -23,8 +23,8 @@ use crate::surface::Surface;
 use crate::view::{Camera, Perspective};
 
 pub use crate::gpu::clock::{FrameTime, PassTime};
-pub use estimate::Estimate;
-pub use illustration::Illustration;
+pub(crate) use estimate::Estimate;
+pub(crate) use illustration::Illustration;
 pub use page::{Found, Page};
 
 /// A surface on a device, ready to be seen from any eye by any plan on a page of any size.
@@ -187,11 +187,6 @@ impl Renderer {
         Ok(Drawn { raster: InkRaster { width, height, pixels }, longest_walk })
     }
 
-    /// How a frame's camera sees, with the near plane of its depths.
-    pub fn perspective(&self, frame: &Frame) -> Perspective {
-        Perspective::new(&frame.camera, self.near())
-    }
-
     /// Metres to the near plane: depths of a frame are this over the distance along the view axis.
     pub fn near(&self) -> f64 {
         near_plane(self.surface.dem())
@@ -211,6 +206,15 @@ impl Renderer {
     /// one that failed on its way there or back.
     pub fn last(&self) -> Option<&Frame> {
         self.last.as_ref().map(|(frame, _)| frame)
+    }
+}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
+impl Renderer {
+    /// How a frame's camera sees, with the near plane of its depths.
+    pub fn perspective(&self, frame: &Frame) -> Perspective {
+        Perspective::new(&frame.camera, self.near())
     }
 
     /// What lies on the device, for reading what passes left.

@@ -16,10 +16,10 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use glam::DVec3;
+use hachure::door::measure::{DepthDraw, depth_draw};
 use hachure::error::{Error, Result};
 use hachure::geo::read;
 use hachure::gpu::{AdapterChoice, Gpu, Int64};
-use hachure::measure::{DepthDraw, depth_draw};
 use hachure::plan::{Border, Method, Plan, Share};
 use hachure::render::Renderer;
 use hachure::surface::{Level, Surface};
@@ -72,7 +72,7 @@ fn main() -> ExitCode {
         Ok(_) => ExitCode::SUCCESS,
         Err(e) => {
             eprintln!("{e}");
-            ExitCode::from(hachure::cli::words::exit_code(&e))
+            ExitCode::from(hachure::door::cli::words::exit_code(&e))
         }
     }
 }

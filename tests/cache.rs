@@ -9,9 +9,10 @@ use std::time::{Duration, Instant, SystemTime};
 
 use gdal::raster::Buffer;
 use gdal::{DriverManager, Metadata};
-use hachure::cache::{Cache, Hearing, Kept, Key, Kind, Sheet};
-use hachure::cli::words::told;
+use hachure::cache::{Cache, Hearing};
 use hachure::dem::Dem;
+use hachure::door::cache::{Kept, Key, Kind, Sheet};
+use hachure::door::cli::words::told;
 use hachure::geo::{ReadOptions, read};
 use tempfile::TempDir;
 

@@ -11,13 +11,13 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use hachure::cache::Cache;
+use hachure::door::measure::compare::Hearing;
+use hachure::door::measure::{Comparison, Sequence};
+use hachure::door::report::lines::lines;
 use hachure::error::Result;
 use hachure::geo::read;
 use hachure::gpu::{AdapterChoice, Gpu, Int64};
-use hachure::measure::compare::Hearing;
-use hachure::measure::{Comparison, Sequence};
 use hachure::plan::{Border, Detail, Method};
-use hachure::report::lines::lines;
 use hachure::surface::{Level, Surface};
 use hachure::truth::Terrain;
 use hachure::view::{Camera, Fixed, choose};
@@ -45,7 +45,7 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(e) => {
             eprintln!("{e}");
-            ExitCode::from(hachure::cli::words::exit_code(&e))
+            ExitCode::from(hachure::door::cli::words::exit_code(&e))
         }
     }
 }

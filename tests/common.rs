@@ -6,7 +6,7 @@ use std::process::Command;
 use std::sync::{Arc, OnceLock};
 use std::thread;
 
-use hachure::cli::words::told;
+use hachure::door::cli::words::told;
 use hachure::error::Message;
 use hachure::gpu::{AdapterChoice, Gpu, Int64};
 

@@ -5,11 +5,12 @@ mod bindings;
 
 use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
-use hachure::measure::cost::{PassCost, Quantities};
-use hachure::plan::batches::BATCH_CHUNKS;
-use hachure::plan::frame::Kept;
-use hachure::plan::passes::passes;
-use hachure::plan::{Border, Detail, Frame, Method, Plan, batches};
+use hachure::door::measure::cost::{PassCost, Quantities};
+use hachure::door::plan::batches::BATCH_CHUNKS;
+use hachure::door::plan::frame::Kept;
+use hachure::door::plan::passes::passes;
+use hachure::door::plan::{Frame, batches};
+use hachure::plan::{Border, Detail, Method, Plan};
 use hachure::surface::Surface;
 use hachure::view::Camera;
 

@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
+use hachure::door::plan::Pieces;
 use hachure::line::{Chain, Economy, Land, Line};
-use hachure::plan::{Border, Curves, LandLines, Method, Pieces, Plan};
+use hachure::plan::{Border, Curves, LandLines, Method, Plan};
 use hachure::relief::{LineKind, SurfaceLine, SurfacePoint};
 use hachure::render::{Page, Renderer};
 use hachure::surface::Surface;

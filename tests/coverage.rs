@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
+use hachure::door::surface::lattice::{CHUNK_FACETS, CHUNK_SIDE, CHUNK_VERTICES};
 use hachure::geo::read;
 use hachure::plan::{Border, Method, Plan};
 use hachure::surface::Surface;
-use hachure::surface::lattice::{CHUNK_FACETS, CHUNK_SIDE, CHUNK_VERTICES};
 use hachure::view::Camera;
 
 use crate::common::{gpu, shared_dems};

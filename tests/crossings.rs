@@ -5,10 +5,10 @@
 
 use glam::{DVec2, IVec2};
 use hachure::dem::Dem;
-use hachure::gpu::uniforms::SceneUniform;
-use hachure::surface::lattice::{CHUNK_FACETS, CHUNK_QUADS};
-use hachure::surface::quadtree::NO_SLOT;
-use hachure::surface::{Lattice, LatticePoint};
+use hachure::door::gpu::uniforms::SceneUniform;
+use hachure::door::surface::lattice::{CHUNK_FACETS, CHUNK_QUADS};
+use hachure::door::surface::quadtree::NO_SLOT;
+use hachure::door::surface::{Lattice, LatticePoint};
 
 use crate::kernels::{Share, UNITS, WALK, chunk_uniforms, entry, run, square_of};
 use crate::mixed::{Kind, exists, flat, lattice, leaves, variety};

@@ -3,9 +3,11 @@
 use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
-use hachure::gpu::{AdapterChoice, Clock, Gpu, Int64};
-use hachure::measure::depth_draw::{self, shows_facets};
-use hachure::measure::{BareCopy, Floor};
+use hachure::door::gpu::Clock;
+use hachure::door::measure::depth_draw;
+use hachure::door::measure::depth_draw::shows_facets;
+use hachure::door::measure::{BareCopy, Floor};
+use hachure::gpu::{AdapterChoice, Gpu, Int64};
 use hachure::plan::{Border, Detail, Method, Plan};
 use hachure::surface::Surface;
 use hachure::view::Camera;

@@ -2,8 +2,8 @@
 
 use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
+use hachure::door::line::detail::From;
 use hachure::line::Land;
-use hachure::line::detail::From;
 use hachure::relief::{LineKind, SurfaceLine, SurfacePoint};
 
 use crate::tolerances::FADE_STEP;

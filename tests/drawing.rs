@@ -3,12 +3,13 @@
 use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
+use hachure::door::files::Output;
+use hachure::door::line::crowded;
 use hachure::error::Error;
-use hachure::files::Output;
 use hachure::ink::plot::Journey;
 use hachure::ink::style::Weight;
 use hachure::ink::{Colour, Drawing, Form, Layer, Pen, Sheet, Stroke, StrokePoint, Style, draw, write_png};
-use hachure::line::{Chain, ChainPoint, InkRaster, Kind, Line, Lines, Marks, Pixel, Recession, crowded};
+use hachure::line::{Chain, ChainPoint, InkRaster, Kind, Line, Lines, Marks, Pixel, Recession};
 use hachure::view::{Camera, Perspective};
 
 use crate::ink::raster;

@@ -3,9 +3,10 @@
 use std::time::{Duration, Instant};
 
 use glam::{DVec2, DVec3};
-use hachure::line::ends::free;
-use hachure::line::{Chain, ChainPoint, Economy, Id, Line, economised};
-use hachure::measure::chains::drawn_recall;
+use hachure::door::line::economised;
+use hachure::door::line::ends::free;
+use hachure::door::measure::chains::drawn_recall;
+use hachure::line::{Chain, ChainPoint, Economy, Id, Line};
 use hachure::truth::metrics::Judge;
 
 use crate::judged::truth;

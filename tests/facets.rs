@@ -5,9 +5,10 @@ use std::collections::HashMap;
 
 use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
-use hachure::surface::lattice::{CELL_STEPS, CHUNK_FACETS};
-use hachure::surface::rim::rim;
-use hachure::surface::{Lattice, Surface};
+use hachure::door::surface::Lattice;
+use hachure::door::surface::lattice::{CELL_STEPS, CHUNK_FACETS};
+use hachure::door::surface::rim::rim;
+use hachure::surface::Surface;
 
 use crate::scenes::{Random, level};
 use crate::tolerances::GRADIENT;

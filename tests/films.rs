@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use glam::DVec2;
-use hachure::ink::drawing::{Form, Layer, Pen};
+use hachure::door::ink::drawing::{Form, Layer, Pen};
+use hachure::door::job::{Film, Inks};
 use hachure::ink::plot::Journey;
 use hachure::ink::{Colour, Drawing, Sheet, Stroke, StrokePoint, write_png};
-use hachure::job::{Film, Inks};
 
 const PAPER: Colour = Colour([250, 246, 235]);
 const INKS: [Colour; 2] = [Colour([38, 32, 26]), Colour([30, 60, 140])];

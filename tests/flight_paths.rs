@@ -5,7 +5,7 @@ use std::process::Command;
 
 use clap::Parser;
 use glam::{DVec2, DVec3};
-use hachure::cli::words::line;
+use hachure::door::cli::words::line;
 use hachure::error::Error;
 use hachure::surface::Level;
 use hachure::view::Camera;

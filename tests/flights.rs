@@ -6,9 +6,9 @@ use std::sync::OnceLock;
 
 use clap::Parser;
 use glam::{DVec2, DVec3};
-use hachure::cli::flight::{FlightArguments, FlightPlan};
-use hachure::cli::words::line;
 use hachure::dem::Dem;
+use hachure::door::cli::flight::{FlightArguments, FlightPlan};
+use hachure::door::cli::words::line;
 use hachure::error::Result;
 use hachure::geo::{ReadOptions, read};
 use hachure::surface::{Level, Surface};

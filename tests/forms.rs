@@ -8,7 +8,8 @@
 
 use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
-use hachure::surface::{LatticePoint, Level, Surface};
+use hachure::door::surface::LatticePoint;
+use hachure::surface::{Level, Surface};
 use hachure::truth::Truth;
 use hachure::view::Camera;
 

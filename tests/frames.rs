@@ -3,14 +3,16 @@
 use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
 
+use hachure::door::plan::batches::BATCH_CHUNKS;
+use hachure::door::plan::{Frame, Pieces, Yields};
+use hachure::door::surface::Lattice;
+use hachure::door::surface::lattice::CHUNK_VERTICES;
 use hachure::error::Result;
 use hachure::gpu::Gpu;
 use hachure::line::InkRaster;
-use hachure::plan::batches::BATCH_CHUNKS;
-use hachure::plan::{Border, Frame, Method, Pieces, Plan, Share, Yields};
+use hachure::plan::{Border, Method, Plan, Share};
 use hachure::render::{Drawn, FrameTime, Page, Renderer};
-use hachure::surface::lattice::CHUNK_VERTICES;
-use hachure::surface::{Lattice, Level, Surface};
+use hachure::surface::{Level, Surface};
 use hachure::truth::Mask;
 use hachure::view::Camera;
 

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use glam::DVec2;
 use hachure::dem::Window;
-use hachure::dem::generalise::{generalise, halo};
+use hachure::door::dem::generalise::{generalise, halo};
 use rayon::ThreadPoolBuilder;
 
 use crate::scenes::Random;

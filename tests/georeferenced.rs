@@ -11,8 +11,9 @@ use gdal::vector::LayerAccess;
 use gdal::{Dataset, DriverManager};
 use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
+use hachure::door::surface::LatticePoint;
 use hachure::geo::{ReadOptions, read};
-use hachure::surface::{LatticePoint, Level, Surface};
+use hachure::surface::{Level, Surface};
 
 use crate::cli::{Place, refuses, stderr};
 use crate::tolerances::{MAPPED_CELLS, MAPPED_DEGREES};

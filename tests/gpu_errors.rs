@@ -4,12 +4,15 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use glam::DVec2;
-use hachure::cli::words::{exit_code, line};
 use hachure::dem::Dem;
+use hachure::door::cli::words::{exit_code, line};
+use hachure::door::gpu::CameraUniform;
+use hachure::door::plan::{PassName, Pieces};
+use hachure::door::surface::Lattice;
 use hachure::error::{Error, Result};
-use hachure::gpu::{AdapterChoice, CameraUniform, Gpu, Int64};
-use hachure::plan::{Border, Method, PassName, Pieces, Plan};
-use hachure::surface::{Lattice, Surface};
+use hachure::gpu::{AdapterChoice, Gpu, Int64};
+use hachure::plan::{Border, Method, Plan};
+use hachure::surface::Surface;
 use hachure::view::Camera;
 
 use crate::common::gpu;

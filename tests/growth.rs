@@ -1,7 +1,7 @@
 //! What the benchmark of scaling relies on: terrain resampled, and growth judged and plotted.
 
-use hachure::measure::{Growth, Promise};
-use hachure::report::growth_svg;
+use hachure::door::measure::{Growth, Promise};
+use hachure::door::report::growth_svg;
 
 use crate::resample::resampled;
 

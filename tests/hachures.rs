@@ -9,10 +9,11 @@ use std::fs;
 
 use glam::DVec2;
 use hachure::dem::Dem;
+use hachure::door::line::Way;
+use hachure::door::line::hachures::{Seen, hatched};
 use hachure::geo::{ReadOptions, read};
 use hachure::ink::HachureStyle;
-use hachure::line::hachures::{Seen, hatched};
-use hachure::line::{Chain, Way};
+use hachure::line::Chain;
 use hachure::plan::{Hachures, Tone};
 use rstar::RTree;
 use rstar::primitives::{GeomWithData, Line};

@@ -12,8 +12,8 @@ use std::path::{Path, PathBuf};
 use gdal::raster::{Buffer, ColorInterpretation, GdalType};
 use gdal::spatial_ref::SpatialRef;
 use gdal::{DriverManager, Metadata};
-use hachure::cli::values;
 use hachure::dem::Dem;
+use hachure::door::cli::values;
 use hachure::geo::{ReadOptions, read, read_all};
 use tempfile::TempDir;
 

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use glam::DVec2;
+use hachure::door::line::visible::{chains, seen_and_hidden};
 use hachure::geo::{ReadOptions, read};
-use hachure::line::visible::{chains, seen_and_hidden};
 use hachure::line::{Chain, Sight};
 use hachure::plan::{Border, Curves, Detail, Method, Plan};
 use hachure::render::{Page, Renderer};

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::CommandFactory;
-use hachure::cli::Arguments;
+use hachure::door::cli::Arguments;
 
 /// Folders and files of `src` in the order in which the data flows; errors are everyone's.
 const ORDER: [&str; 18] = [

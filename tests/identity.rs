@@ -3,8 +3,8 @@
 use std::collections::HashSet;
 
 use glam::DVec2;
-use hachure::line::identity::{Held, key, names};
-use hachure::line::visible::chains;
+use hachure::door::line::identity::{Held, key, names};
+use hachure::door::line::visible::chains;
 use hachure::line::{Chain, Curve, Id};
 
 use crate::page_curves::{PAGE, disc};

@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
 use hachure::cache::Cache;
+use hachure::door::job::manifest::Sequence;
+use hachure::door::job::name::Naming;
+use hachure::door::job::{Frames, Job, Made, Manifest, Merged, Pattern, Shard};
 use hachure::ink::Seal;
-use hachure::job::manifest::Sequence;
-use hachure::job::name::Naming;
-use hachure::job::{Frames, Job, Made, Manifest, Merged, Pattern, Shard};
 
 #[test]
 fn lists_of_frames_read_as_farms_write_them() {

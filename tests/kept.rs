@@ -1,8 +1,8 @@
 //! Ids of chains from one frame to the next: known by construction.
 
 use glam::DVec3;
+use hachure::door::measure::kept::{Seen, ids_kept};
 use hachure::line::{Chain, ChainPoint, Id, Line};
-use hachure::measure::kept::{Seen, ids_kept};
 use hachure::view::{Camera, Perspective};
 
 use crate::tolerances::SUM;

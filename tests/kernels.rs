@@ -8,11 +8,11 @@ use std::collections::HashMap;
 use bytemuck::Zeroable;
 use glam::{DVec2, IVec2};
 use hachure::dem::Dem;
+use hachure::door::gpu::uniforms::{ChunkUniform, SceneUniform};
+use hachure::door::surface::lattice::{CELL_STEPS, CHUNK_FACETS};
+use hachure::door::surface::quadtree::NO_SLOT;
+use hachure::door::surface::{Chunk, Lattice, LatticePoint};
 use hachure::gpu::Gpu;
-use hachure::gpu::uniforms::{ChunkUniform, SceneUniform};
-use hachure::surface::lattice::{CELL_STEPS, CHUNK_FACETS};
-use hachure::surface::quadtree::NO_SLOT;
-use hachure::surface::{Chunk, Lattice, LatticePoint};
 use wgpu::BufferUsages;
 
 use crate::scenes::{Random, gpu, level};

@@ -5,9 +5,11 @@ use std::collections::{BTreeMap, HashSet};
 use std::sync::Arc;
 
 use glam::DVec3;
-use hachure::plan::frame::Kept;
-use hachure::plan::{Border, Curves, Detail, Frame, Method, PassName, Plan, Thrift, detail};
-use hachure::surface::{Surface, Tile};
+use hachure::door::plan::frame::Kept;
+use hachure::door::plan::{Frame, PassName, detail};
+use hachure::door::surface::Tile;
+use hachure::plan::{Border, Curves, Detail, Method, Plan, Thrift};
+use hachure::surface::Surface;
 use hachure::view::Camera;
 
 use crate::common::shared_dems;

@@ -3,7 +3,7 @@
 use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
-use hachure::gpu::uniforms::near_plane;
+use hachure::door::gpu::uniforms::near_plane;
 use hachure::line::{Chain, Line, Lines, Marks};
 use hachure::plan::{Border, Method};
 use hachure::render::Drawn;

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use hachure::gpu::Capacity;
-use hachure::gpu::sizes::{of_page, of_scene};
+use hachure::door::gpu::Capacity;
+use hachure::door::gpu::sizes::{of_page, of_scene};
 use hachure::plan::{Border, Method, Plan};
 use hachure::surface::Surface;
 
@@ -43,7 +43,7 @@ mod process {
     use std::hint::black_box;
     use std::process::Command;
 
-    use hachure::measure::memory::{peak, reset_peak};
+    use hachure::door::measure::memory::{peak, reset_peak};
 
     use crate::tolerances::RESIDENT_BYTES;
 

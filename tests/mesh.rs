@@ -6,8 +6,9 @@
 //! Cost: one division a facet and pixel of its box that is still uncovered.
 
 use glam::{DVec2, DVec3};
-use hachure::surface::lattice::CHUNK_FACETS;
-use hachure::surface::{Lattice, Surface};
+use hachure::door::surface::Lattice;
+use hachure::door::surface::lattice::CHUNK_FACETS;
+use hachure::surface::Surface;
 use hachure::view::Camera;
 
 use crate::tolerances::raster::RAY_PX;

@@ -4,8 +4,9 @@ use std::collections::HashSet;
 use std::fmt::Debug;
 use std::hash::Hash;
 
-use hachure::plan::registry::{Entry, Look, Marker};
-use hachure::plan::{Method, Yields};
+use hachure::door::plan::Yields;
+use hachure::door::plan::registry::{Look, Marker};
+use hachure::plan::{Entry, Method};
 
 /// What is wrong with these entries.
 fn faults(entries: &[Entry]) -> Vec<String> {

@@ -2,10 +2,10 @@
 
 use glam::DVec2;
 use hachure::dem::Dem;
-use hachure::surface::Lattice;
-use hachure::surface::lattice::{CELL_STEPS, CHUNK_QUADS, NORTH, Role, SOUTH, WEST};
-use hachure::surface::quadtree::{Growth, NO_SLOT};
-use hachure::surface::{Chunk, LatticePoint};
+use hachure::door::surface::Lattice;
+use hachure::door::surface::lattice::{CELL_STEPS, CHUNK_QUADS, NORTH, Role, SOUTH, WEST};
+use hachure::door::surface::quadtree::{Growth, NO_SLOT};
+use hachure::door::surface::{Chunk, LatticePoint};
 
 use crate::scenes::{Random, hashed};
 

@@ -5,12 +5,12 @@ use std::fs;
 use std::path::Path;
 
 use clap::CommandFactory;
-use hachure::cli::Arguments;
-use hachure::cli::choices::default_share;
-use hachure::cli::viewpoint::{FOV, SIZE};
-use hachure::cli::{flight, info, page};
+use hachure::door::cli::Arguments;
+use hachure::door::cli::choices::default_share;
+use hachure::door::cli::viewpoint::{FOV, SIZE};
+use hachure::door::cli::{flight, info, page};
+use hachure::door::plan::detail::ERROR_PX;
 use hachure::ink::{Sheet, Style};
-use hachure::plan::detail::ERROR_PX;
 
 use crate::cli::{DRAW, Place, refuses, stderr};
 

@@ -3,7 +3,8 @@
 use std::collections::BTreeSet;
 
 use glam::{DVec2, DVec3};
-use hachure::line::{Chain, ChainPoint, Kind, Line, Marks, one_pixel_wide};
+use hachure::door::line::one_pixel_wide;
+use hachure::line::{Chain, ChainPoint, Kind, Line, Marks};
 use hachure::truth::{Inked, Mask};
 
 use crate::judged::truth;

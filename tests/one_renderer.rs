@@ -5,12 +5,14 @@ use std::collections::HashSet;
 use std::sync::Arc;
 
 use glam::DVec3;
-use hachure::gpu::pass::reflect;
+use hachure::door::gpu::pass::reflect;
+use hachure::door::plan::Pieces;
+use hachure::door::plan::passes::passes;
+use hachure::door::surface::Tile;
 use hachure::gpu::{AdapterChoice, Gpu, Int64};
-use hachure::plan::passes::passes;
-use hachure::plan::{Border, Detail, Method, Pieces, Plan, Visibility};
+use hachure::plan::{Border, Detail, Method, Plan, Visibility};
 use hachure::render::Renderer;
-use hachure::surface::{Surface, Tile};
+use hachure::surface::Surface;
 use hachure::view::Camera;
 
 use crate::frames::{METHODS, Planned};

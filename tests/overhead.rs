@@ -4,9 +4,10 @@ use std::fs;
 
 use glam::DVec2;
 use hachure::dem::Dem;
+use hachure::door::line::Overhead;
 use hachure::geo::{ReadOptions, read};
 use hachure::ink::styles::BuiltIn;
-use hachure::line::{Chain, Land, Lines, Overhead};
+use hachure::line::{Chain, Land, Lines};
 use hachure::relief::{LineKind, SurfaceLine, SurfacePoint};
 use serde_json::Value;
 
@@ -46,7 +47,7 @@ fn lines_on_the_land_that_no_page_holds_are_refused() {
     assert_eq!(at(1.0).expect("a line").len(), 1);
     let refused = at(most * 1.01).expect_err("too long");
     let words = "lines of the land are 16944988 px long on the page, 16777216 can be laid; use --scale 1:N with a larger N, or fewer --creases, --hachures or --lines";
-    assert_eq!(hachure::cli::words::line(&refused), words);
+    assert_eq!(hachure::door::cli::words::line(&refused), words);
 }
 
 /// Twice the area to the left of a ring as seen from above; rows run down.

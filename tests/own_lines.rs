@@ -12,8 +12,8 @@ use gdal::DriverManager;
 use gdal::raster::Buffer;
 use gdal::spatial_ref::SpatialRef;
 use glam::DVec2;
-use hachure::cli::words::line;
 use hachure::dem::{Crs, Dem};
+use hachure::door::cli::words::line;
 use hachure::geo::{OwnLayer, OwnLine, OwnLines, ReadOptions, own_lines, read};
 use hachure::relief::{self, LineKind, SurfaceLine};
 

@@ -3,12 +3,13 @@
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
-use hachure::cli::words::line;
 use hachure::dem::Dem;
+use hachure::door::cli::words::line;
+use hachure::door::plan::pieces::{HALO, LARGEST_PAGE, LARGEST_PIECE, LONGEST_PIECE, Rectangle};
+use hachure::door::plan::{Frame, Piece, Pieces};
 use hachure::gpu::Gpu;
 use hachure::line::{Marks, Pixel};
-use hachure::plan::pieces::{HALO, LARGEST_PAGE, LARGEST_PIECE, LONGEST_PIECE, Rectangle};
-use hachure::plan::{Border, Detail, Frame, Method, Piece, Pieces, Plan, Share};
+use hachure::plan::{Border, Detail, Method, Plan, Share};
 use hachure::surface::Surface;
 use hachure::view::Camera;
 
@@ -250,13 +251,13 @@ fn pieces_cover_the_page_once() {
 #[test]
 fn only_pages_beyond_a_limit_are_cut() {
     let count = |page: [u32; 2]| Pieces::from(page).iter().len();
-    assert_eq!(LARGEST_PIECE * 8, hachure::gpu::sizes::LARGEST_BINDING);
+    assert_eq!(LARGEST_PIECE * 8, hachure::door::gpu::sizes::LARGEST_BINDING);
     assert_eq!([[1920, 1080], [4096, 4096], [LONGEST_PIECE, 1024]].map(count), [1; 3]);
     assert!(count([4096, 4097]) > 1 && count([LONGEST_PIECE + 1, 1]) > 1);
     assert!(Pieces::from([LARGEST_PAGE; 2]).check().is_ok());
     let line = line(&Pieces::from([LARGEST_PAGE + 1, 1]).check().expect_err("too long"));
     assert!(line.contains("65537x1") && line.contains("--size"), "{line}");
     for page in [[LARGEST_PAGE; 2], [32_768, 32_768], [40_000, 8]] {
-        assert!(hachure::gpu::sizes::page_fits(Pieces::from(page).largest()).is_ok());
+        assert!(hachure::door::gpu::sizes::page_fits(Pieces::from(page).largest()).is_ok());
     }
 }

@@ -5,11 +5,12 @@ use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use glam::DVec3;
-use hachure::gpu::pool::Pool;
+use hachure::door::gpu::pool::Pool;
+use hachure::door::surface::lattice::CHUNK_VERTICES;
+use hachure::door::surface::tile::TILE_SAMPLES;
+use hachure::door::surface::{Chunk, Tile};
 use hachure::plan::{Border, Detail, Method, Plan};
-use hachure::surface::lattice::CHUNK_VERTICES;
-use hachure::surface::tile::TILE_SAMPLES;
-use hachure::surface::{Chunk, Surface, Tile};
+use hachure::surface::Surface;
 use hachure::view::Camera;
 
 use crate::common::gpu;

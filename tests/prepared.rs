@@ -9,13 +9,14 @@ use std::thread;
 
 use glam::DVec3;
 use hachure::cache::Cache;
-use hachure::cli::words::told;
 use hachure::dem::Dem;
+use hachure::door::cli::words::told;
+use hachure::door::surface::Chunk;
+use hachure::door::surface::lattice::CELL_STEPS;
 use hachure::error::Message;
 use hachure::geo::{ReadOptions, read, write};
 use hachure::plan::{Border, Detail, Method, Plan};
-use hachure::surface::lattice::CELL_STEPS;
-use hachure::surface::{Chunk, Surface};
+use hachure::surface::Surface;
 use hachure::view::Camera;
 use tempfile::TempDir;
 

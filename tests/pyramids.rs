@@ -3,8 +3,9 @@
 
 use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
-use hachure::surface::lattice::{CELL_STEPS, CHUNK_QUADS};
-use hachure::surface::{Chunk, LatticePoint, Pyramid, Surface};
+use hachure::door::surface::lattice::{CELL_STEPS, CHUNK_QUADS};
+use hachure::door::surface::{Chunk, LatticePoint, Pyramid};
+use hachure::surface::Surface;
 
 use crate::scenes::rough;
 use crate::tolerances::{DEVIATION_MOST, DEVIATION_SHARE};

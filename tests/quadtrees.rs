@@ -5,10 +5,12 @@ use std::collections::HashMap;
 
 use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
-use hachure::plan::{Curves, Thrift, detail};
-use hachure::surface::lattice::{CELL_STEPS, CHUNK_FACETS, CHUNK_QUADS};
-use hachure::surface::quadtree::NO_SLOT;
-use hachure::surface::{Lattice, LatticePoint, Surface};
+use hachure::door::plan::detail;
+use hachure::door::surface::lattice::{CELL_STEPS, CHUNK_FACETS, CHUNK_QUADS};
+use hachure::door::surface::quadtree::NO_SLOT;
+use hachure::door::surface::{Lattice, LatticePoint};
+use hachure::plan::{Curves, Thrift};
+use hachure::surface::Surface;
 use hachure::view::Camera;
 
 use crate::mixed::{Kind, exists, flat, has_void, lattice, leaves, may_be_coarse, sides, variety};

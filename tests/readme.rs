@@ -5,7 +5,7 @@ use std::path::Path;
 
 use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser};
-use hachure::cli::Arguments;
+use hachure::door::cli::Arguments;
 
 use crate::shell::{commands, words};
 

@@ -4,11 +4,11 @@ mod browser;
 mod page;
 mod sample;
 
+use hachure::door::measure::compare::Found;
+use hachure::door::report::lines::lines;
+use hachure::door::report::results::Results;
+use hachure::door::report::{error_time_svg, write_csv};
 use hachure::error::Error;
-use hachure::measure::compare::Found;
-use hachure::report::lines::lines;
-use hachure::report::results::Results;
-use hachure::report::{error_time_svg, write_csv};
 use sample::AWKWARD;
 
 /// A page of the sample, px.

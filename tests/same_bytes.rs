@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use hachure::plan::batches::BATCH_CHUNKS;
+use hachure::door::plan::batches::BATCH_CHUNKS;
 use hachure::plan::{Border, Detail, Method, Plan, Thrift};
 use hachure::surface::Surface;
 use hachure::view::Camera;

@@ -17,13 +17,13 @@ use std::time::Instant;
 
 use glam::{DVec2, DVec3};
 use hachure::dem::{Dem, fractal};
+use hachure::door::files::{Output, output};
+use hachure::door::measure::{Growth, Promise};
+use hachure::door::report::growth_svg;
 use hachure::error::{Error, Result};
-use hachure::files::{Output, output};
 use hachure::gpu::{AdapterChoice, Gpu, Int64};
-use hachure::measure::{Growth, Promise};
 use hachure::plan::{Border, Detail, Method, Plan};
 use hachure::render::{Page, Renderer};
-use hachure::report::growth_svg;
 use hachure::surface::{Level, Surface};
 use hachure::view::Camera;
 use repeat::{median, moved};
@@ -62,7 +62,7 @@ fn main() -> ExitCode {
         Ok(false) => ExitCode::FAILURE,
         Err(e) => {
             eprintln!("{e}");
-            ExitCode::from(hachure::cli::words::exit_code(&e))
+            ExitCode::from(hachure::door::cli::words::exit_code(&e))
         }
     }
 }

@@ -4,8 +4,9 @@ use std::sync::{Arc, OnceLock};
 
 use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
+use hachure::door::surface::LatticePoint;
 use hachure::gpu::{AdapterChoice, Gpu, Int64};
-use hachure::surface::{LatticePoint, Level, Surface};
+use hachure::surface::{Level, Surface};
 use hachure::view::Camera;
 
 pub use crate::common::gpu;

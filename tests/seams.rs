@@ -5,9 +5,11 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use glam::DVec3;
-use hachure::plan::{Border, Detail, Plan, Thrift, batches};
-use hachure::surface::lattice::{CHUNK_QUADS, CHUNK_SIDE, CHUNK_VERTICES};
-use hachure::surface::{Chunk, LatticePoint, Surface};
+use hachure::door::plan::batches;
+use hachure::door::surface::lattice::{CHUNK_QUADS, CHUNK_SIDE, CHUNK_VERTICES};
+use hachure::door::surface::{Chunk, LatticePoint};
+use hachure::plan::{Border, Detail, Plan, Thrift};
+use hachure::surface::Surface;
 use hachure::view::Camera;
 
 use crate::common::gpu;

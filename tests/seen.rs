@@ -6,9 +6,11 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
-use hachure::plan::{Border, Curves, Detail, Plan, Thrift, detail};
-use hachure::surface::lattice::CHUNK_FACETS;
-use hachure::surface::{Chunk, Lattice, LatticePoint, Surface};
+use hachure::door::plan::detail;
+use hachure::door::surface::lattice::CHUNK_FACETS;
+use hachure::door::surface::{Chunk, Lattice, LatticePoint};
+use hachure::plan::{Border, Curves, Detail, Plan, Thrift};
+use hachure::surface::Surface;
 use hachure::view::Camera;
 
 use crate::common::gpu;

@@ -8,15 +8,16 @@ use std::process::{Child, ChildStdin, ChildStdout, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
 use clap::Parser;
-use hachure::cli::Arguments;
-use hachure::cli::jobs::Share;
-use hachure::cli::progress::Progress;
-use hachure::cli::talk::Talk;
-use hachure::cli::work::Work;
+use hachure::door::cli::Arguments;
+use hachure::door::cli::jobs::Share;
+use hachure::door::cli::progress::Progress;
+use hachure::door::cli::talk::Talk;
+use hachure::door::cli::work::Work;
+use hachure::door::job::manifest::Sequence;
+use hachure::door::job::serve;
+use hachure::door::job::serve::{LONGEST, Refusal};
+use hachure::door::job::{Frames, Job, Shard};
 use hachure::error::Error;
-use hachure::job::manifest::Sequence;
-use hachure::job::serve::{self, LONGEST, Refusal};
-use hachure::job::{Frames, Job, Shard};
 use serde_json::{Value, json};
 
 use crate::cli::{Place, stderr};
@@ -284,7 +285,7 @@ fn a_lost_device_ends_the_process_and_leaves_the_rest_unanswered() {
                 _ => Ok(()),
             }
         };
-        let ended = hachure::cli::serve::run(&work, &talk, asked.as_bytes(), &mut said, make);
+        let ended = hachure::door::cli::serve::run(&work, &talk, asked.as_bytes(), &mut said, make);
         let text = String::from_utf8(said).expect("text");
         let exits = text.lines().map(|line| serde_json::from_str::<Value>(line).expect("JSON")["exit"].as_u64());
         (ended, exits.collect::<Vec<_>>(), begun.get())

@@ -4,8 +4,8 @@ use std::fs;
 use std::sync::Arc;
 
 use glam::DVec2;
+use hachure::door::ink::sheet::PAPERS;
 use hachure::geo::{ReadOptions, read};
-use hachure::ink::sheet::PAPERS;
 use hachure::ink::styles::BuiltIn;
 use hachure::ink::{Drawing, Sheet, draw};
 use hachure::plan::{Border, Curves, Detail, Method, Plan};

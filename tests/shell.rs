@@ -8,7 +8,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use clap::{CommandFactory, Parser};
-use hachure::cli::Arguments;
+use hachure::door::cli::Arguments;
 use serde_json::Value;
 
 use crate::cli::{DRAW, Place, refuses, stderr};

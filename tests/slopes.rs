@@ -12,8 +12,8 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
+use hachure::door::relief::slope::{Need, SlopeBlock, SlopeLine, SlopeRules, Slopes};
 use hachure::geo::{ReadOptions, read};
-use hachure::relief::slope::{Need, SlopeBlock, SlopeLine, SlopeRules, Slopes};
 use hachure::relief::{ChannelArea, FlatWater, Relief, SurfaceLine};
 use hachure::surface::Surface;
 
@@ -118,7 +118,7 @@ fn real() -> Vec<Scene> {
 fn position(surface: &Surface, at: DVec2) -> Option<DVec3> {
     let vertex = |at: DVec2| {
         let [x, y] = at.to_array().map(|at| at as u32);
-        surface.position(hachure::surface::LatticePoint { x, y })
+        surface.position(hachure::door::surface::LatticePoint { x, y })
     };
     let (floor, share) = ((at * 64.0).floor(), (at * 64.0).fract());
     let mix = |from: Option<DVec3>, to: Option<DVec3>, share: f64| match share {

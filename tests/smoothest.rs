@@ -1,7 +1,7 @@
 //! The smoothest surface inside a band: no height leaves it, a window has the bits of the whole, planes come back from steps.
 
 use hachure::dem::Window;
-use hachure::dem::smoothest::{HALO, smoothest};
+use hachure::door::dem::smoothest::{HALO, smoothest};
 use rayon::ThreadPoolBuilder;
 
 use crate::scenes::Random;

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 use hachure::dem::Window;
-use hachure::dem::smoothest::smoothest;
+use hachure::door::dem::smoothest::smoothest;
 use hachure::line::{InkRaster, Kind};
 use hachure::plan::{Border, Detail, Method, Plan};
 use hachure::surface::Surface;

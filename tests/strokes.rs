@@ -1,10 +1,11 @@
 //! From lines to layers of strokes: widths, tapers, zones of distance, pens, dashes, wobble, on lines made here.
 
 use glam::{DVec2, DVec3};
+use hachure::door::line::ends;
 use hachure::error::Error;
 use hachure::ink::style::{Dashes, Plot, Weight, Wobble};
 use hachure::ink::{Drawing, Form, Pen, Sheet, Stroke, Style, draw};
-use hachure::line::{Chain, ChainPoint, Id, Line, Lines, Recession, ends};
+use hachure::line::{Chain, ChainPoint, Id, Line, Lines, Recession};
 
 /// A sheet of 200 x 100 mm without margins, and its frame of 2 pixels a millimetre.
 const SHEET: Sheet = Sheet { size: DVec2::new(200.0, 100.0), margin: 0.0 };

@@ -3,12 +3,14 @@
 use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
-use hachure::gpu::clock::{CLEAR, PASSES_OF_SET, Stamps};
-use hachure::gpu::{AdapterChoice, Clock, Gpu, Int64};
-use hachure::plan::batches::BATCH_CHUNKS;
+use hachure::door::gpu::Clock;
+use hachure::door::gpu::clock::{CLEAR, PASSES_OF_SET, Stamps};
+use hachure::door::plan::batches::BATCH_CHUNKS;
+use hachure::door::surface::Lattice;
+use hachure::gpu::{AdapterChoice, Gpu, Int64};
 use hachure::plan::{Border, Method, Plan};
 use hachure::render::{FrameTime, PassTime};
-use hachure::surface::{Lattice, Surface};
+use hachure::surface::Surface;
 use hachure::view::Camera;
 
 use crate::frames::{METHODS, Planned};

@@ -3,9 +3,10 @@
 use std::fs;
 
 use glam::{DVec2, DVec3};
+use hachure::door::ink::unstroked;
+use hachure::door::ink::unstroked::{Unstroked, Why};
 use hachure::ink::style::{Plot, Weight};
-use hachure::ink::unstroked::{Unstroked, Why};
-use hachure::ink::{Sheet, Style, draw, unstroked};
+use hachure::ink::{Sheet, Style, draw};
 use hachure::line::{Chain, ChainPoint, Kind, Line, Lines, Marks, Recession};
 
 use serde_json::Value;

@@ -5,12 +5,13 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use glam::DVec2;
-use hachure::cli::words::line;
-use hachure::dem::{BLOCK_SIDE, Dem, Validity};
+use hachure::dem::Dem;
+use hachure::door::cli::words::line;
+use hachure::door::dem::{BLOCK_SIDE, Validity};
+use hachure::door::gpu::sizes::{LARGEST_BINDING, rim_fits, valid_fits};
+use hachure::door::surface::rim::{RimEdge, rim, rim_length};
 use hachure::geo::{ReadOptions, read, write};
-use hachure::gpu::sizes::{LARGEST_BINDING, rim_fits, valid_fits};
 use hachure::surface::Surface;
-use hachure::surface::rim::{RimEdge, rim, rim_length};
 use tempfile::TempDir;
 
 use crate::scenes::Random;
@@ -168,7 +169,8 @@ fn filed_voids_are_known_after_one_look() {
         assert_eq!(rim(&held).expect("a rim"), rim(&filed).expect("a rim"), "{name}");
         let surface = Surface::new(filed);
         for n in [1, 2] {
-            let lattice = hachure::surface::Lattice::uniform(surface.dem(), crate::scenes::level(n)).expect("chunks");
+            let lattice =
+                hachure::door::surface::Lattice::uniform(surface.dem(), crate::scenes::level(n)).expect("chunks");
             assert_eq!(lattice.facets(surface.dem()), surface.patches() * u64::from(n * n), "{name}");
         }
         assert_eq!(surface.dem().samples_read(), looked, "{name}: samples are read again");

@@ -7,9 +7,10 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use hachure::gpu::uniforms::near_plane;
-use hachure::surface::lattice::{CHUNK_SIDE, CHUNK_VERTICES};
-use hachure::surface::{LatticePoint, Surface};
+use hachure::door::gpu::uniforms::near_plane;
+use hachure::door::surface::LatticePoint;
+use hachure::door::surface::lattice::{CHUNK_SIDE, CHUNK_VERTICES};
+use hachure::surface::Surface;
 use hachure::view::Camera;
 
 use crate::common::gpu;

@@ -1,7 +1,7 @@
 //! From curves to the chains that the eye sees, where the answer is known.
 
 use glam::DVec2;
-use hachure::line::visible::chains;
+use hachure::door::line::visible::chains;
 use hachure::line::{Bound, Chain, Curve, Line, Sight, Stretch};
 
 use crate::page_curves::{PAGE, disc, seen, through, with};

@@ -4,8 +4,9 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use hachure::surface::lattice::{CHUNK_FACETS, CHUNK_SIDE, CHUNK_VERTICES};
-use hachure::surface::{Lattice, Surface};
+use hachure::door::surface::Lattice;
+use hachure::door::surface::lattice::{CHUNK_FACETS, CHUNK_SIDE, CHUNK_VERTICES};
+use hachure::surface::Surface;
 use hachure::view::Camera;
 
 use crate::common::gpu;
@@ -153,7 +154,7 @@ fn pinholes_are_found() {
     let holed = surface(9, 50.0, heights);
     let camera = aimed(over(&whole, 4.0, 4.0, 150.0), 20.0, -90.0, PAGE);
     let mesh = facets(&whole, &Lattice::uniform(whole.dem(), level(2)).expect("IDs suffice"));
-    let near = hachure::gpu::uniforms::near_plane(whole.dem());
+    let near = hachure::door::gpu::uniforms::near_plane(whole.dem());
     let depths =
         |surface| Planned::by_id(gpu(), surface, 2).shoot(&camera).pixels.iter().map(|p| p[1]).collect::<Vec<_>>();
     // Drawn without the patches around one sample: a hexagon is missing.

@@ -6,22 +6,24 @@
 //! the folder costs time and a warning, never the work. Not handled: folders on a network whose clocks are minutes apart: two
 //! processes may make the same then.
 
-mod entry;
+pub(crate) mod entry;
 mod lock;
-pub mod shelf;
+pub(crate) mod shelf;
 
 use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Message, Result, Setting, shown};
 use crate::message;
 
-pub use entry::{Kept, Sheet};
-pub use shelf::{Cleared, Shown};
+pub(crate) use entry::{Kept, Sheet};
+pub(crate) use shelf::{Cleared, Shown};
 
 /// Bytes that a cache may take unless told otherwise.
+#[doc(hidden)]
 pub const SIZE: u64 = 2 << 30;
 
 /// A kind of artefact.
+#[doc(hidden)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Kind {
     /// Begins the names of its files.
@@ -33,6 +35,7 @@ pub struct Kind {
 }
 
 /// What an artefact is, of what, and by a hash of all that it depends on.
+#[doc(hidden)]
 #[derive(Debug, Clone)]
 pub struct Key {
     /// Its kind.
@@ -75,11 +78,6 @@ impl Cache {
         Self { folder: None, size: SIZE }
     }
 
-    /// The same, of at most so many bytes: what is in use or was just made stays, whatever its size.
-    pub fn with_size(self, size: u64) -> Self {
-        Self { size, ..self }
-    }
-
     /// Where it is.
     pub fn folder(&self) -> Option<&Path> {
         self.folder.as_deref()
@@ -92,6 +90,38 @@ impl Cache {
 
     fn path(&self, key: &Key) -> Option<PathBuf> {
         self.folder.as_ref().map(|folder| folder.join(key.file_name()))
+    }
+
+    /// Makes an artefact under its lock, and keeps it where it can be kept.
+    fn make<T>(
+        &self,
+        path: &Path,
+        key: &Key,
+        lock: &lock::Lock,
+        hearing: Hearing<'_>,
+        make: impl FnOnce(Option<Sheet>, &dyn Fn(f64)) -> Result<T>,
+    ) -> Result<T> {
+        let sheet = Sheet::create(path, key).inspect_err(|error| (hearing.warn)(&not_kept(key, error)));
+        let made = make(sheet.ok(), &|share| {
+            lock.tell(share);
+            (hearing.progress)(share);
+        });
+        self.trim(Some(path));
+        made
+    }
+
+    /// An artefact that is there, safe from removal as long as it is open: who needs several holds all of them first.
+    pub fn hold(&self, key: &Key) -> Option<Kept> {
+        self.path(key).and_then(|path| entry::open(&path, key).ok().flatten())
+    }
+}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
+impl Cache {
+    /// The same, of at most so many bytes: what is in use or was just made stays, whatever its size.
+    pub fn with_size(self, size: u64) -> Self {
+        Self { size, ..self }
     }
 
     /// An artefact: found and read by `recall`, which fails where the bytes are not those that were written; else made by
@@ -149,29 +179,6 @@ impl Cache {
         }
     }
 
-    /// Makes an artefact under its lock, and keeps it where it can be kept.
-    fn make<T>(
-        &self,
-        path: &Path,
-        key: &Key,
-        lock: &lock::Lock,
-        hearing: Hearing<'_>,
-        make: impl FnOnce(Option<Sheet>, &dyn Fn(f64)) -> Result<T>,
-    ) -> Result<T> {
-        let sheet = Sheet::create(path, key).inspect_err(|error| (hearing.warn)(&not_kept(key, error)));
-        let made = make(sheet.ok(), &|share| {
-            lock.tell(share);
-            (hearing.progress)(share);
-        });
-        self.trim(Some(path));
-        made
-    }
-
-    /// An artefact that is there, safe from removal as long as it is open: who needs several holds all of them first.
-    pub fn hold(&self, key: &Key) -> Option<Kept> {
-        self.path(key).and_then(|path| entry::open(&path, key).ok().flatten())
-    }
-
     /// Removes an artefact that turned out damaged.
     pub fn remove(&self, key: &Key) {
         // One that cannot be removed is found damaged again.
@@ -199,7 +206,7 @@ fn found<T>(path: &Path, key: &Key, recall: impl Fn(Kept) -> std::io::Result<T>)
 }
 
 /// That something was made and could not be kept.
-pub fn not_kept(key: &Key, why: &Error) -> Message {
+pub(crate) fn not_kept(key: &Key, why: &Error) -> Message {
     let why = match why {
         Error::Output { path, what, .. } => format!("{}: {what}", shown(path)),
         other => other.to_string(),

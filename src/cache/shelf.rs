@@ -43,29 +43,6 @@ pub struct Cleared {
 }
 
 impl Cache {
-    /// Its files, the one used last first.
-    pub fn list(&self) -> Vec<Shown> {
-        let mut files: Vec<Shown> =
-            self.files().map(|(path, shown)| Shown { of: entry::made_of(&path), ..shown }).collect();
-        files.sort_by(|a, b| b.used.cmp(&a.used).then_with(|| a.name.cmp(&b.name)));
-        files
-    }
-
-    /// Removes all that nobody uses.
-    pub fn clear(&self) -> Cleared {
-        let mut cleared = Cleared::default();
-        for (path, shown) in self.files() {
-            if remove(&path) {
-                cleared.files += 1;
-                cleared.bytes += shown.bytes;
-            } else {
-                cleared.stayed += 1;
-            }
-        }
-        self.sweep();
-        cleared
-    }
-
     /// Removes what was used longest ago until the rest fits; `fresh` stays, and so does what some process has open.
     pub(super) fn trim(&self, fresh: Option<&Path>) {
         self.sweep();
@@ -110,6 +87,33 @@ impl Cache {
     fn names(&self) -> impl Iterator<Item = (PathBuf, String)> {
         let entries = self.folder().and_then(|folder| fs::read_dir(folder).ok()).into_iter().flatten().flatten();
         entries.filter_map(|entry| Some((entry.path(), entry.file_name().into_string().ok()?)))
+    }
+}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
+impl Cache {
+    /// Its files, the one used last first.
+    pub fn list(&self) -> Vec<Shown> {
+        let mut files: Vec<Shown> =
+            self.files().map(|(path, shown)| Shown { of: entry::made_of(&path), ..shown }).collect();
+        files.sort_by(|a, b| b.used.cmp(&a.used).then_with(|| a.name.cmp(&b.name)));
+        files
+    }
+
+    /// Removes all that nobody uses.
+    pub fn clear(&self) -> Cleared {
+        let mut cleared = Cleared::default();
+        for (path, shown) in self.files() {
+            if remove(&path) {
+                cleared.files += 1;
+                cleared.bytes += shown.bytes;
+            } else {
+                cleared.stayed += 1;
+            }
+        }
+        self.sweep();
+        cleared
     }
 }
 

@@ -54,7 +54,7 @@ Examples:
 /// Flags of `hachure batch`, as typed.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES, after_long_help = reference::of(&[reference::LIST, reference::JOBS, EXAMPLES]))]
-pub struct BatchArguments {
+pub(crate) struct BatchArguments {
     /// The list of drawings
     #[arg(value_name = "FILE.toml")]
     file: PathBuf,
@@ -100,7 +100,7 @@ enum What {
 ///
 /// # Errors
 /// As [`Work::run`] and [`serve::run`]; [`Error::Input`] for a file that is no list of drawings.
-pub fn run(arguments: &BatchArguments, talk: &Talk) -> Result<()> {
+pub(crate) fn run(arguments: &BatchArguments, talk: &Talk) -> Result<()> {
     if arguments.jobs.serve {
         serve::end_unread();
     }
@@ -152,7 +152,7 @@ pub fn run(arguments: &BatchArguments, talk: &Talk) -> Result<()> {
 
 impl BatchArguments {
     /// Which jobs, and how they are told of.
-    pub fn jobs(&self) -> &JobArguments {
+    pub(crate) fn jobs(&self) -> &JobArguments {
         &self.jobs
     }
 }

@@ -9,7 +9,7 @@ use crate::relief::{Relief, auto_cells};
 ///
 /// # Errors
 /// As [`Relief::of`].
-pub fn told(dem: &Dem) -> Result<String> {
+pub(super) fn told(dem: &Dem) -> Result<String> {
     let relief = Relief::of(dem, 1.0)?;
     Ok(lines(&relief.trials(), relief.grid().frame.area()))
 }

@@ -36,13 +36,13 @@ const PROGRESS: [Word<Form>; 4] = [
 const BORDERS: [Word<Border>; 2] = [("on", "Draw it", Border::On), ("off", "Leave it out", Border::Off)];
 
 /// A method without its variants, which have flags of their own.
-pub fn family() -> impl TypedValueParser<Value = Method> {
+pub(crate) fn family() -> impl TypedValueParser<Value = Method> {
     let plain = Method::ALL.into_iter().filter(|method| method.entry().name == method.entry().family);
     one_of(plain.map(|method| (method.entry().family, method.entry().brief, method)))
 }
 
 /// What neighbouring facets share.
-pub fn share() -> impl TypedValueParser<Value = Share> {
+pub(crate) fn share() -> impl TypedValueParser<Value = Share> {
     one_of(SHARES)
 }
 
@@ -52,12 +52,12 @@ pub fn default_share() -> &'static str {
 }
 
 /// What azimuths are counted from.
-pub fn north() -> impl TypedValueParser<Value = North> {
+pub(crate) fn north() -> impl TypedValueParser<Value = North> {
     one_of(NORTHS)
 }
 
 /// What the darkness of hachures says.
-pub fn tone() -> impl TypedValueParser<Value = Tone> {
+pub(crate) fn tone() -> impl TypedValueParser<Value = Tone> {
     one_of(Tone::ALL.map(|tone| {
         let help = match tone {
             Tone::None => "There are no strokes",
@@ -70,37 +70,37 @@ pub fn tone() -> impl TypedValueParser<Value = Tone> {
 }
 
 /// What becomes of lines that nearer land hides.
-pub fn hidden() -> impl TypedValueParser<Value = Hidden> {
+pub(crate) fn hidden() -> impl TypedValueParser<Value = Hidden> {
     one_of(HIDDEN)
 }
 
 /// The word for what becomes of them if nothing is said.
-pub fn default_hidden() -> &'static str {
+pub(crate) fn default_hidden() -> &'static str {
     word_for(&HIDDEN, Hidden::default())
 }
 
 /// How progress is shown.
-pub fn progress() -> impl TypedValueParser<Value = Form> {
+pub(crate) fn progress() -> impl TypedValueParser<Value = Form> {
     one_of(PROGRESS)
 }
 
 /// The word for how it is shown if nothing is said.
-pub fn default_progress() -> &'static str {
+pub(crate) fn default_progress() -> &'static str {
     word_for(&PROGRESS, Form::default())
 }
 
 /// Whether the border is drawn.
-pub fn border() -> impl TypedValueParser<Value = Border> {
+pub(crate) fn border() -> impl TypedValueParser<Value = Border> {
     one_of(BORDERS)
 }
 
 /// The word for whether it is if nothing is said.
-pub fn default_border() -> &'static str {
+pub(crate) fn default_border() -> &'static str {
     word_for(&BORDERS, Border::default())
 }
 
 /// The methods by the names that reports have for them, and what tells apart those of like names.
-pub fn methods() -> String {
+pub(crate) fn methods() -> String {
     let listed = |method: Method| match method.entry() {
         Entry { name, aside: "", .. } => (*name).to_owned(),
         Entry { name, aside, .. } => format!("{name} ({aside})"),

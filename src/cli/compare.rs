@@ -55,7 +55,7 @@ Examples:
 /// Flags of `hachure compare`, as typed.
 #[derive(Debug, clap::Args)]
 #[command(after_help = reference::of(&[&methods(), EXAMPLES]), after_long_help = reference::of(&[&methods(), reference::COMPARED, EXAMPLES]))]
-pub struct CompareArguments {
+pub(crate) struct CompareArguments {
     #[command(flatten)]
     terrain: TerrainArguments,
 
@@ -139,7 +139,7 @@ struct Job {
 ///
 /// # Errors
 /// Whatever went wrong; no page stands in the folder then.
-pub fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
+pub(crate) fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
     let sizes = arguments.sizes();
     arguments.check(&sizes)?;
     let jobs = arguments.jobs(talk)?;

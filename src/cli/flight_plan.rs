@@ -44,7 +44,7 @@ pub struct FlightPlan {
 
 impl Keys {
     /// Seconds from the first key to the last, where they are timed.
-    pub fn seconds(&self) -> Option<f64> {
+    pub(super) fn seconds(&self) -> Option<f64> {
         Some(self.keys.last()?.time? - self.keys.first()?.time?)
     }
 }

@@ -62,7 +62,7 @@ Examples:
 /// Flags of `hachure fly`, as typed.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES, after_long_help = reference::of(&[reference::FLOWN, reference::JOBS, EXAMPLES]))]
-pub struct FlyArguments {
+pub(crate) struct FlyArguments {
     #[command(flatten)]
     terrain: TerrainArguments,
     #[command(flatten)]
@@ -107,7 +107,7 @@ struct Aloft {
 ///
 /// # Errors
 /// As [`Work::run`] and [`serve::run`]; whatever keeps all frames from being drawn.
-pub fn run(arguments: &FlyArguments, talk: &Talk) -> Result<()> {
+pub(crate) fn run(arguments: &FlyArguments, talk: &Talk) -> Result<()> {
     if arguments.jobs.serve {
         serve::end_unread();
     }
@@ -184,7 +184,7 @@ fn fly(aloft: &mut Option<Aloft>, asked: &Asked, work: &Work, progress: &Progres
 
 impl FlyArguments {
     /// Which jobs, and how they are told of.
-    pub fn jobs(&self) -> &JobArguments {
+    pub(crate) fn jobs(&self) -> &JobArguments {
         &self.jobs
     }
 

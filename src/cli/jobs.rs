@@ -11,7 +11,7 @@ use crate::message;
 /// The flags, as typed.
 #[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "Jobs")]
-pub struct JobArguments {
+pub(crate) struct JobArguments {
     /// Make these alone, counted from 0: numbers and ranges, every fifth with :5
     #[arg(long, value_name = "3,5-10,0-99:5", value_parser = |text: &str| text.parse::<Frames>())]
     frames: Option<Frames>,
@@ -48,7 +48,7 @@ pub struct Share {
 
 impl JobArguments {
     /// Whether standard output holds something else than lines on the work.
-    pub fn fills_stdout(&self) -> bool {
+    pub(crate) fn fills_stdout(&self) -> bool {
         self.list || self.serve || matches!(self.progress, Form::Json | Form::OpenJd)
     }
 
@@ -56,7 +56,7 @@ impl JobArguments {
     ///
     /// # Errors
     /// [`Error::Setting`] for jobs beyond the last, and where the environment names no shard.
-    pub fn share(&self, count: u32, called: &str) -> Result<Share> {
+    pub(crate) fn share(&self, count: u32, called: &str) -> Result<Share> {
         let all = self.frames.clone().unwrap_or_else(|| Frames::first(count));
         check(&all, count, called)?;
         let from_env = || {
@@ -77,7 +77,7 @@ impl JobArguments {
 ///
 /// # Errors
 /// [`Error::Setting`].
-pub fn check(frames: &Frames, count: u32, called: &str) -> Result<()> {
+pub(crate) fn check(frames: &Frames, count: u32, called: &str) -> Result<()> {
     frames.last().filter(|last| *last >= count).map_or(Ok(()), |last| {
         let what = format!("there is no {last}; the {count} {called} count from 0 to {}", count.saturating_sub(1));
         Err(Error::setting(Setting::Frames, what, "name those that there are"))

@@ -11,7 +11,7 @@ use crate::ink::{Drawing, Form, Layer};
 ///
 /// # Errors
 /// As [`Talk::say`].
-pub fn tell(drawing: &Drawing, plotter: &Plot, talk: &Talk) -> Result<()> {
+pub(crate) fn tell(drawing: &Drawing, plotter: &Plot, talk: &Talk) -> Result<()> {
     let is_line = |layer: &&Layer| layer.form == Form::CentreLines;
     let layers: Vec<&Layer> = drawing.layers.iter().filter(is_line).collect();
     if layers.is_empty() || !plotter.centre_lines {

@@ -34,7 +34,7 @@ struct Line {
 ///
 /// # Errors
 /// As [`Frame::new`] and [`Estimate::of`].
-pub fn estimate(plan: &Plan, surface: &Surface, camera: &Camera, kept: &mut Kept) -> Result<Estimate> {
+pub(crate) fn estimate(plan: &Plan, surface: &Surface, camera: &Camera, kept: &mut Kept) -> Result<Estimate> {
     Estimate::of(&Frame::new(plan, surface, camera, true, kept)?, surface)
 }
 
@@ -42,7 +42,7 @@ pub fn estimate(plan: &Plan, surface: &Surface, camera: &Camera, kept: &mut Kept
 ///
 /// # Errors
 /// As [`Talk::answer`].
-pub fn tell(job: &Job, estimate: Result<Estimate>, talk: &Talk) -> Result<()> {
+pub(crate) fn tell(job: &Job, estimate: Result<Estimate>, talk: &Talk) -> Result<()> {
     let error = estimate.as_ref().err().map(words::line);
     let Estimate { samples, facets, start, seconds, memory, device } = estimate.unwrap_or(Estimate::NOTHING);
     let line = Line {

@@ -24,7 +24,7 @@ Example:
 /// Flags of `hachure merge`, as typed.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
-pub struct MergeArguments {
+pub(crate) struct MergeArguments {
     /// The folder into which frames or drawings were made
     #[arg(value_name = "DIR")]
     folder: PathBuf,
@@ -38,7 +38,7 @@ pub struct MergeArguments {
 ///
 /// # Errors
 /// As [`Merged::all`]; [`Error::Incomplete`] where something is missing.
-pub fn run(arguments: &MergeArguments, talk: &Talk) -> Result<()> {
+pub(crate) fn run(arguments: &MergeArguments, talk: &Talk) -> Result<()> {
     let all = Merged::all(&arguments.folder)?;
     all.iter().try_for_each(|merged| tell(merged, &arguments.folder, talk))?;
     let missing: usize = all.iter().map(Merged::missing).sum();

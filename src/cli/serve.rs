@@ -40,7 +40,7 @@ struct Answer {
 
 /// From here on the process ends when nobody is left to read its answers, for nobody else would end it: at once where none is
 /// due, as at the end of standard input, else as a signal ends it.
-pub fn end_unread() {
+pub(crate) fn end_unread() {
     let watch = || {
         reader::wait_until_gone();
         // Who was asked already is about to end.

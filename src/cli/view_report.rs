@@ -7,7 +7,7 @@ use crate::dem::{Georeference, North};
 
 /// A view, its eye on the map and on the globe, and its projection.
 #[derive(Serialize)]
-pub struct ViewReport {
+pub(crate) struct ViewReport {
     eye: [f64; 3],
     lonlat: Option<[f64; 2]>,
     /// What `azimuth` is counted from.
@@ -54,7 +54,7 @@ struct FileReport {
 
 impl ViewReport {
     /// Of a view of a DEM that lies there, with heights times `exaggeration`.
-    pub fn of(view: &View, georeference: &Georeference, exaggeration: f64) -> Self {
+    pub(crate) fn of(view: &View, georeference: &Georeference, exaggeration: f64) -> Self {
         let (camera, norths) = (&view.camera, &view.norths);
         let [right, up, forward] = camera.axes().map(|axis| axis.to_array());
         let (world, file) = (georeference.world(), georeference.file());

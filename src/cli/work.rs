@@ -41,7 +41,7 @@ const LEFT: Duration = Duration::from_secs(600);
 ///
 /// # Errors
 /// [`Error::Output`].
-pub fn create(path: &Path) -> Result<Output> {
+pub(crate) fn create(path: &Path) -> Result<Output> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     folder.map_or(Ok(()), |folder| fs::create_dir_all(folder).map_err(|error| Error::output(folder, &error)))?;
     Output::create(path)

@@ -47,7 +47,7 @@ struct Kept {
 
 impl Filed {
     /// All of `tiles`, of which up to half of `budget` bytes are kept, [`MOST_KEPT`] at most.
-    pub fn new(tiles: Arc<dyn Tiles>, exaggeration: f64, budget: usize) -> Self {
+    pub(super) fn new(tiles: Arc<dyn Tiles>, exaggeration: f64, budget: usize) -> Self {
         let tiling = tiles.tiling();
         Self {
             tiles,
@@ -63,53 +63,53 @@ impl Filed {
     }
 
     /// The same samples without exaggeration, nothing read yet.
-    pub fn plain(&self) -> Self {
+    pub(super) fn plain(&self) -> Self {
         Self::new(self.tiles.clone(), 1.0, self.budget)
     }
 
     /// Where the samples come from.
-    pub fn tiles(&self) -> &dyn Tiles {
+    pub(super) fn tiles(&self) -> &dyn Tiles {
         &*self.tiles
     }
 
     /// Rows of a tile.
-    pub fn tile_rows(&self) -> usize {
+    pub(super) fn tile_rows(&self) -> usize {
         self.tiling.size[1]
     }
 
     /// Whether several threads gain by reading at once.
-    pub fn is_parallel(&self) -> bool {
+    pub(super) fn is_parallel(&self) -> bool {
         self.tiles.is_parallel()
     }
 
     /// Bytes of memory that all work with the samples may take.
-    pub fn budget(&self) -> usize {
+    pub(super) fn budget(&self) -> usize {
         self.budget
     }
 
     /// Factor on every elevation.
-    pub fn exaggeration(&self) -> f64 {
+    pub(super) fn exaggeration(&self) -> f64 {
         self.exaggeration
     }
 
     /// The stamp of the tiles, whatever the exaggeration. Cost: the first time, a look into each file.
-    pub fn stamp(&self) -> Option<u128> {
+    pub(super) fn stamp(&self) -> Option<u128> {
         *self.stamp.get_or_init(|| self.tiles.stamp())
     }
 
     /// Exaggerated metres of `window`, counted from the first sample, NaN at voids. `progress` hears the share done.
-    pub fn read(&self, window: Window, progress: &dyn Fn(f64)) -> Result<Vec<f32>> {
+    pub(super) fn read(&self, window: Window, progress: &dyn Fn(f64)) -> Result<Vec<f32>> {
         let tiles = self.tiling.tiles(window);
         gather(window, &tiles, self.tiles.is_parallel(), |tile| self.tile(tile), progress)
     }
 
     /// The same on this thread alone, for whoever works inside a reading.
-    pub fn read_alone(&self, window: Window) -> Result<Vec<f32>> {
+    pub(super) fn read_alone(&self, window: Window) -> Result<Vec<f32>> {
         gather(window, &self.tiling.tiles(window), false, |tile| self.tile(tile), &|_| ())
     }
 
     /// Exaggerated metres of one sample, NaN at a void.
-    pub fn height(&self, at: [usize; 2]) -> Result<f32> {
+    pub(super) fn height(&self, at: [usize; 2]) -> Result<f32> {
         let window = self.tiling.tile(at);
         let [c, r] = [0, 1].map(|i| at[i] - window.first[i]);
         Ok(self.tile(window)?[r * window.size[0] + c])
@@ -117,7 +117,7 @@ impl Filed {
 
     /// Exaggerated metres of `window` of every `spacing`-th sample and row, NaN at voids; `None` where no overviews have
     /// them, or damaged ones. Overviews themselves are not exaggerated.
-    pub fn overview(&self, spacing: usize, window: Window) -> Option<Vec<f32>> {
+    pub(super) fn overview(&self, spacing: usize, window: Window) -> Option<Vec<f32>> {
         let overviews = self.overviews()?;
         let tiles = overviews.tiling(spacing)?.tiles(window);
         let load = |tile: Window| {
@@ -131,27 +131,27 @@ impl Filed {
     }
 
     /// Takes overviews, unless there are some.
-    pub fn remember(&self, overviews: Overviews) {
+    pub(super) fn remember(&self, overviews: Overviews) {
         let _ = self.overviews.set(overviews);
     }
 
     /// What was taken.
-    pub fn overviews(&self) -> Option<&Overviews> {
+    pub(super) fn overviews(&self) -> Option<&Overviews> {
         self.overviews.get()
     }
 
     /// How many samples were read from the files so far, each as often as it was.
-    pub fn samples_read(&self) -> u64 {
+    pub(super) fn samples_read(&self) -> u64 {
         self.samples_read.load(Ordering::Relaxed)
     }
 
     /// Keeps the first error of those who could not return it.
-    pub fn fail(&self, error: Error) {
+    pub(super) fn fail(&self, error: Error) {
         let _ = self.failure.set(error);
     }
 
     /// The first error of those who could not return it, and whether the files are still those that were opened.
-    pub fn check(&self) -> Result<()> {
+    pub(super) fn check(&self) -> Result<()> {
         let noticed = self.failure.get().cloned().map_or_else(|| self.tiles.check(), Err);
         noticed.inspect_err(|error| self.fail(error.clone()))
     }

@@ -19,7 +19,7 @@ use super::Window;
 
 /// Which samples of a window are flat water: runs of columns, row by row.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Water {
+pub(crate) struct Water {
     /// First column and that beyond the last.
     runs: Vec<[u32; 2]>,
     /// Where the runs of each row begin, and where they end.
@@ -27,7 +27,7 @@ pub struct Water {
 }
 
 /// It in the making, from the rows of a window.
-pub struct WaterBuilder {
+pub(crate) struct WaterBuilder {
     width: usize,
     row: u32,
     above: Vec<Run>,
@@ -67,7 +67,7 @@ enum Before {
 
 impl Water {
     /// Sets `half` to 0 at the water of `window`, row-major.
-    pub fn level(&self, window: Window, half: &mut [f32]) {
+    pub(crate) fn level(&self, window: Window, half: &mut [f32]) {
         let [from, to] = [window.first[0], window.first[0] + window.size[0]];
         for (r, half) in half.chunks_exact_mut(window.size[0].max(1)).enumerate() {
             for [first, end] in
@@ -79,17 +79,17 @@ impl Water {
     }
 
     /// First columns of the water of a row, and those beyond its last ones.
-    pub fn row(&self, r: usize) -> &[[u32; 2]] {
+    pub(crate) fn row(&self, r: usize) -> &[[u32; 2]] {
         self.rows.get(r..r + 2).map_or(&[], |rows| &self.runs[rows[0] as usize..rows[1] as usize])
     }
 
     /// Where the runs of each row begin, and the runs.
-    pub fn parts(&self) -> (&[u32], &[[u32; 2]]) {
+    pub(crate) fn parts(&self) -> (&[u32], &[[u32; 2]]) {
         (&self.rows, &self.runs)
     }
 
     /// From [`Self::parts`]; `None` where they are none.
-    pub fn from_parts(rows: Vec<u32>, runs: Vec<[u32; 2]>) -> Option<Self> {
+    pub(crate) fn from_parts(rows: Vec<u32>, runs: Vec<[u32; 2]>) -> Option<Self> {
         let sound = rows.is_sorted() && rows.last().copied().unwrap_or(0) as usize == runs.len();
         sound.then_some(Self { runs, rows })
     }
@@ -97,18 +97,18 @@ impl Water {
 
 impl WaterBuilder {
     /// Of a window so many columns wide, no row seen yet.
-    pub fn new(width: usize) -> Self {
+    pub(crate) fn new(width: usize) -> Self {
         let columns = vec![Column { first: 0, before: Before::Nothing }; width];
         Self { width, row: 0, above: Vec::new(), columns, regions: Regions::default() }
     }
 
     /// Takes the next rows, whole ones: metres, NaN at voids.
-    pub fn take(&mut self, heights: &[f32]) {
+    pub(crate) fn take(&mut self, heights: &[f32]) {
         heights.chunks_exact(self.width).for_each(|row| self.take_row(row));
     }
 
     /// The water, when all rows have been taken.
-    pub fn finish(mut self) -> Water {
+    pub(crate) fn finish(mut self) -> Water {
         for over in std::mem::take(&mut self.above) {
             let beyond = Run { height: f32::NAN, region: NONE, ..over };
             self.regions.shore([&over, &beyond], over.end - over.first);

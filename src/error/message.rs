@@ -185,7 +185,7 @@ impl Setting {
     }
 
     /// The setting at a value of the user's own.
-    pub fn with_value(self) -> Part {
+    pub(crate) fn with_value(self) -> Part {
         Part::Setting(self, Form::WithValue)
     }
 
@@ -282,6 +282,7 @@ impl From<Setting> for Message {
 }
 
 /// A [`Message`](crate::error::Message) of words, settings and other messages: `message!["use a smaller ", Setting::Size]`.
+#[doc(hidden)]
 #[macro_export]
 macro_rules! message {
     ($($part:expr),+ $(,)?) => {{

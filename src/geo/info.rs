@@ -70,7 +70,11 @@ pub fn info(paths: &[PathBuf], options: &ReadOptions, progress: &dyn Fn(Stage, f
 ///
 /// # Errors
 /// Those of [`info()`].
-pub fn info_and_dem(paths: &[PathBuf], options: &ReadOptions, progress: &dyn Fn(Stage, f64)) -> Result<(Info, Dem)> {
+pub(crate) fn info_and_dem(
+    paths: &[PathBuf],
+    options: &ReadOptions,
+    progress: &dyn Fn(Stage, f64),
+) -> Result<(Info, Dem)> {
     let reading = Reading::new(paths, options)?;
     let (driver, source) = (reading.format().to_owned(), reading.warped_from());
     let dem = reading.finish_as_read(progress)?;

@@ -8,26 +8,31 @@
 mod elevation_unit;
 mod encoding;
 #[cfg(feature = "gdal")]
-mod gdal;
+pub(crate) mod gdal;
 mod info;
 mod mapped;
 mod nodata;
 mod own;
 mod read;
-mod track;
+pub(crate) mod track;
 #[cfg(not(feature = "gdal"))]
 mod without;
 
 pub use elevation_unit::ElevationUnit;
 pub use encoding::Encoding;
-pub use info::{Info, info, info_and_dem};
+pub(crate) use info::info_and_dem;
+pub use info::{Info, info};
 pub use mapped::{MapFormat, MapLine};
 pub use nodata::Nodata;
 pub use own::{OwnLayer, OwnLine, OwnLines};
 pub use read::{Order, ReadOptions, Stage, read, read_all};
-pub use track::{Track, with_layer};
+pub(crate) use track::{Track, with_layer};
 #[cfg(not(feature = "gdal"))]
-pub use without::{Reading, available, own_lines, track, write, write_lines};
+pub(crate) use without::{Reading, track};
+#[cfg(not(feature = "gdal"))]
+pub use without::{available, own_lines, write, write_lines};
 
 #[cfg(feature = "gdal")]
-pub use self::gdal::{Reading, available, own_lines, track, write, write_lines};
+pub(crate) use self::gdal::{Reading, track};
+#[cfg(feature = "gdal")]
+pub use self::gdal::{available, own_lines, write, write_lines};

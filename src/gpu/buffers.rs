@@ -77,7 +77,7 @@ pub enum Made {
 }
 
 /// A buffer of these bytes.
-pub fn upload(gpu: &Gpu, name: &'static str, bytes: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
+pub(crate) fn upload(gpu: &Gpu, name: &'static str, bytes: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(name),
         size: rounded(bytes.len() as u64),

@@ -10,11 +10,10 @@ use std::sync::Arc;
 use bytemuck::Zeroable;
 
 use super::buffers::{Buffers, Made};
-use super::candidates::NO_PIXELS;
 use super::capacity::{Capacity, Moves};
 use super::device::Gpu;
 use super::pool::{Placed, Pool};
-use super::rasterize_large::EMPTY_QUEUE;
+use super::shaders::{EMPTY_QUEUE, NO_PIXELS};
 use super::sizes::{self, TILE_BYTES, rim_fits, valid_fits};
 use super::uniforms::{CameraUniform, ChunkUniform, SceneUniform};
 use crate::error::{Error, Result};

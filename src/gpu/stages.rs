@@ -8,10 +8,8 @@ use super::device::Gpu;
 use super::page::PageBuffers;
 use super::pass::Pass;
 use super::scene::Scene;
+use super::shaders;
 use super::uniforms::BatchUniform;
-use super::{adjacency, border, candidates, compose, crossed, facing, lay, meet, pairs, project, rasterize};
-use super::{rasterize_large, rim_segments, seam, segments, sight, tessellate, toward_away, turn, turning};
-use super::{walk, walk_rest, wanted};
 use crate::error::{Error, Result};
 use crate::plan::batches::PART_CHUNKS;
 use crate::plan::passes::{Often, PlannedPass, passes};
@@ -186,33 +184,12 @@ fn constants(frame: &Frame) -> [(&'static str, f64); 6] {
 
 /// Compiles a pass of a frame.
 fn pass(gpu: &Gpu, frame: &Frame, name: PassName, constants: &[(&str, f64)]) -> Result<Arc<Pass>> {
-    // Of a method's own passes.
-    let own = || [constants, frame.plan.method.entry().constants].concat();
-    match name {
-        PassName::Tessellate => tessellate::pass(gpu, constants),
-        PassName::Seam => seam::pass(gpu, constants),
-        PassName::Facing => facing::pass(gpu, constants),
-        PassName::Project => project::pass(gpu, constants),
-        PassName::Rasterize => rasterize::pass(gpu, frame.visibility, constants),
-        PassName::RasterizeLarge => rasterize_large::pass(gpu, frame.visibility, constants),
-        PassName::Candidates => candidates::pass(gpu, &own()),
-        PassName::Pairs => pairs::pass(gpu, &own()),
-        PassName::Walk => walk::pass(gpu, frame.keeps_vertices(), &own()),
-        PassName::WalkRest => walk_rest::pass(gpu, frame.keeps_vertices(), &own()),
-        PassName::TowardAway => toward_away::pass(gpu, &own()),
-        PassName::Adjacency => adjacency::pass(gpu, &own()),
-        PassName::Border => border::pass(gpu, constants),
-        PassName::Turning => turning::pass(gpu, constants),
-        PassName::Wanted => wanted::pass(gpu, constants),
-        PassName::Turn => turn::pass(gpu, constants),
-        PassName::Meet => meet::pass(gpu, constants),
-        PassName::Crossed => crossed::pass(gpu, constants),
-        PassName::Segments => segments::pass(gpu, frame.keeps_vertices(), constants),
-        PassName::RimSegments => rim_segments::pass(gpu, frame.keeps_vertices(), constants),
-        PassName::Lay => lay::pass(gpu, frame.keeps_vertices(), constants),
-        PassName::Sight => sight::pass(gpu, frame.keeps_vertices(), constants),
-        PassName::Compose => compose::pass(gpu, constants),
-    }
+    let source = shaders::source(name, frame.visibility, frame.keeps_vertices());
+    let method = frame.plan.method.entry();
+    let of_method = if method.passes.contains(&name) { method.constants } else { &[] };
+    let own = shaders::OWN_CONSTANTS.iter().filter(|(of, _)| *of == name).map(|(_, constant)| *constant);
+    let constants: Vec<_> = constants.iter().chain(of_method).copied().chain(own).collect();
+    gpu.pass(name.name(), source, &constants)
 }
 
 fn batch_uniforms(batches: &[Batch], rounds: u32) -> Vec<BatchUniform> {

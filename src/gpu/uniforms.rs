@@ -11,7 +11,7 @@ use crate::surface::{Chunk, Lattice, Pyramid};
 use crate::view::Camera;
 
 /// The near plane in cells: a power of two, so that depths scale without rounding.
-pub const NEAR_CELLS: f64 = 1.0 / 1024.0;
+pub(crate) const NEAR_CELLS: f64 = 1.0 / 1024.0;
 
 /// `Scene` of scene.wgsl.
 #[repr(C)]

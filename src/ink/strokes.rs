@@ -22,7 +22,7 @@ const SQUARE: f64 = 81.0;
 
 /// A point of a line on the sheet.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Inked {
+pub(crate) struct Inked {
     /// Millimetres from the sheet's top left corner.
     pub place: DVec2,
     /// As a share of the pen's.
@@ -33,7 +33,7 @@ pub struct Inked {
 
 /// A line on the sheet, without lifting the pen.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Run {
+pub(crate) struct Run {
     /// At least one.
     pub points: Vec<Inked>,
     /// Whether the last point is joined to the first, which is not repeated.
@@ -42,7 +42,7 @@ pub struct Run {
 
 /// How the chains of a page come to lie on the sheet.
 #[derive(Debug)]
-pub struct Inking<'a> {
+pub(crate) struct Inking<'a> {
     /// From pixels to millimetres.
     pub placement: Placement,
     /// Where lines may lie, mm.
@@ -71,7 +71,7 @@ impl Inked {
 
 impl Inking<'_> {
     /// The runs of a chain, cut where it has no weight; `free` tells which of its ends taper.
-    pub fn weighed(&self, chain: &Chain, free: [bool; 2]) -> Vec<Run> {
+    pub(crate) fn weighed(&self, chain: &Chain, free: [bool; 2]) -> Vec<Run> {
         let points = chain.points.iter().map(|point| self.inked(point, self.width(point))).collect();
         let mut run = Run { points, closed: chain.closed };
         run.taper(free, self.weight.taper);
@@ -79,12 +79,12 @@ impl Inking<'_> {
     }
 
     /// The run of a chain, as wide as the pen.
-    pub fn even(&self, chain: &Chain) -> Run {
+    pub(crate) fn even(&self, chain: &Chain) -> Run {
         Run { points: chain.points.iter().map(|point| self.inked(point, 1.0)).collect(), closed: chain.closed }
     }
 
     /// The dashes of a hidden chain where economy leaves it, as wide as the pen: what is shorter than a dash says nothing.
-    pub fn dashed(&self, chain: &Chain, dashes: &Dashes) -> Vec<Run> {
+    pub(crate) fn dashed(&self, chain: &Chain, dashes: &Dashes) -> Vec<Run> {
         let points = chain.points.iter().map(|point| self.inked(point, point.weight.into())).collect();
         let parts = Run { points, closed: chain.closed }.banded(&[SHOWN], |point| point.width);
         let shown = parts.into_iter().filter(|(band, run)| *band == 1 && run.length() >= dashes.dash);
@@ -92,7 +92,7 @@ impl Inking<'_> {
     }
 
     /// What lies inside the margins of a run that a pen so wide draws, as the hand draws it.
-    pub fn finished(&self, run: Run, pen: f64) -> Vec<Run> {
+    pub(crate) fn finished(&self, run: Run, pen: f64) -> Vec<Run> {
         let [low, high] = [self.area[0] + inset(pen), self.area[1] - inset(pen)];
         // A pen may be broader than the sheet.
         if low.cmplt(high).all() { self.strayed(run).within([low, high]) } else { Vec::new() }
@@ -126,18 +126,18 @@ impl Inking<'_> {
 }
 
 /// How far inside the margins the lines of a pen end, mm: what is too short to leave ink will grow.
-pub fn inset(pen: f64) -> f64 {
+pub(crate) fn inset(pen: f64) -> f64 {
     pen / 2.0 + plot::GROWTH
 }
 
 impl Run {
     /// Length of line, mm.
-    pub fn length(&self) -> f64 {
+    pub(crate) fn length(&self) -> f64 {
         self.steps().map(|[a, b]| a.place.distance(b.place)).sum()
     }
 
     /// The same, as wide as the pen everywhere.
-    pub fn evened(mut self) -> Self {
+    pub(crate) fn evened(mut self) -> Self {
         self.points.iter_mut().for_each(|point| point.width = 1.0);
         self
     }
@@ -225,7 +225,7 @@ impl Run {
     }
 
     /// The parts in each band between two bounds of a value, which rise; bands are numbered from 0, up to the first bound.
-    pub fn banded(self, bounds: &[f64], value: impl Fn(&Inked) -> f64) -> Vec<(usize, Self)> {
+    pub(crate) fn banded(self, bounds: &[f64], value: impl Fn(&Inked) -> f64) -> Vec<(usize, Self)> {
         let band = |v: f64| bounds.partition_point(|&bound| bound <= v);
         let first = self.points.first().map_or(0, |point| band(value(point)));
         if self.points.iter().all(|point| band(value(point)) == first) {

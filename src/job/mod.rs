@@ -6,23 +6,23 @@
 //! [`run`] draws on one thread and writes on another; [`Frames`] and [`Shard`] say which jobs are whose; a [`Manifest`] beside
 //! the files says what was to be made by which process, and [`Merged`] whether all of it is there.
 
-pub mod content;
-pub mod engine;
-pub mod film;
-pub mod frames;
-pub mod manifest;
-pub mod merge;
-pub mod name;
-pub mod pattern;
-pub mod serve;
-pub mod shard;
+pub(crate) mod content;
+pub(crate) mod engine;
+pub(crate) mod film;
+pub(crate) mod frames;
+pub(crate) mod manifest;
+pub(crate) mod merge;
+pub(crate) mod name;
+pub(crate) mod pattern;
+pub(crate) mod serve;
+pub(crate) mod shard;
 
 use std::path::PathBuf;
 
 use crate::ink::Seal;
 
-pub use content::Content;
-pub use engine::{Event, run};
+pub(crate) use content::Content;
+pub(crate) use engine::{Event, run};
 pub use film::{Film, Inks};
 pub use frames::Frames;
 pub use manifest::Manifest;

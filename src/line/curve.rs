@@ -9,7 +9,7 @@ use glam::{DVec2, DVec3};
 use super::Line;
 
 /// A place on the lattice, in 1/256 of its finest step, x east and y south of the north-west sample.
-pub type Place = [i32; 2];
+pub(crate) type Place = [i32; 2];
 
 /// A point of a curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -118,7 +118,11 @@ impl Curve {
             black: a.black + (b.black - a.black) * share as f32,
         }
     }
+}
 
+/// What other stages and tests look into.
+#[doc(hidden)]
+impl Curve {
     /// Lets a closed curve begin at another of its points.
     pub fn turn(&mut self, point: usize) {
         self.points.rotate_left(point);

@@ -10,7 +10,7 @@ use std::collections::HashSet;
 use super::grid::Grid;
 
 /// Branches of thinned lines, each a walk over cells.
-pub struct Graph {
+pub(super) struct Graph {
     /// Branches from node to node, both nodes' cells included; a lone cell is a branch of one cell.
     pub branches: Vec<Vec<usize>>,
     /// Walks round rings without a node, the first cell not repeated.
@@ -19,7 +19,7 @@ pub struct Graph {
 
 impl Graph {
     /// The graph of these line cells, given in reading order.
-    pub fn new(lines: &Grid, cells: &[usize]) -> Self {
+    pub(super) fn new(lines: &Grid, cells: &[usize]) -> Self {
         let nodes: HashSet<usize> = cells.iter().copied().filter(|&c| links(lines, c).len() != 2).collect();
         let mut graph = Self { branches: Vec::new(), rings: Vec::new() };
         let mut walked = HashSet::new();

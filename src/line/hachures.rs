@@ -24,13 +24,13 @@ use crate::view::Perspective;
 /// Shares of the wanted spacing up to which a line is left out, and from which it is whole.
 const ROOM: [f64; 2] = [0.75, 0.95];
 /// Spacings that are wanted, in parts of the least that lines have, up to which there are none, and from which they are whole.
-pub const NEAR: [f64; 2] = [0.4, 0.7];
+pub(crate) const NEAR: [f64; 2] = [0.4, 0.7];
 /// How far along a line, in spacings, is looked for how much of it is there.
 const AROUND: f64 = 0.7;
 /// The share of that up to which it is left out, and from which it is whole.
 const LASTS: [f64; 2] = [0.4, 0.9];
 /// So far beside the page lines are looked for, px: they tell those on it how broad they are, and how close.
-pub const BESIDE: f64 = 64.0;
+pub(crate) const BESIDE: f64 = 64.0;
 /// A cut between two pieces of a line, spacings.
 const CUT: f64 = 0.8;
 /// By how much of the share that is to be black it is shorter.

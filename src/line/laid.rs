@@ -29,7 +29,7 @@ const MOST: usize = 1 << 24;
 
 /// Lines on the land as a page shows them, in points.
 #[derive(Debug, Clone, Default)]
-pub struct Laid {
+pub(crate) struct Laid {
     /// Where the points lie on the lattice.
     pub places: Vec<Place>,
     /// As [`Hatched::bare`](super::hachures::Hatched::bare).
@@ -52,7 +52,7 @@ impl Laid {
     ///
     /// # Errors
     /// [`Error::Limit`] where they are longer than a device numbers their points.
-    pub fn new(ways: &[Way], perspective: &Perspective) -> Result<Self> {
+    pub(crate) fn new(ways: &[Way], perspective: &Perspective) -> Result<Self> {
         let runs: Vec<Run> = ways.par_iter().flat_map_iter(|way| runs(way, perspective)).collect();
         let places: Vec<Place> = runs.iter().flat_map(|run| run.places.iter().copied()).collect();
         check_length(places.len(), message!["use a smaller ", Setting::Size])?;
@@ -60,7 +60,7 @@ impl Laid {
     }
 
     /// The curves of these lines, by the points that the device found on the page; the others of `segments` play no part.
-    pub fn curves(&self, segments: &[Segment], perspective: &Perspective) -> Vec<Curve> {
+    pub(crate) fn curves(&self, segments: &[Segment], perspective: &Perspective) -> Vec<Curve> {
         let mut found: Vec<Option<&Segment>> = vec![None; self.places.len()];
         for segment in segments.iter().filter(|segment| is_laid(segment)) {
             found[(segment.code >> code::PART_SHIFT) as usize] = Some(segment);
@@ -88,7 +88,7 @@ pub(super) fn check_length(px: usize, less: Message) -> Result<()> {
 }
 
 /// Whether a segment is a point of a line on the land.
-pub fn is_laid(segment: &Segment) -> bool {
+pub(crate) fn is_laid(segment: &Segment) -> bool {
     segment.code & code::CORNER == code::LAID
 }
 

@@ -61,20 +61,9 @@ impl Marks {
         self.ink().map(|mark| [mark.column, mark.row])
     }
 
-    /// Depths of the inked ones, in reading order; 0 where there is none.
-    pub fn depths(&self) -> impl Iterator<Item = f32> {
-        self.ink().map(|mark| mark.pixel.depth())
-    }
-
     /// How many pixels are ink.
     pub fn inked(&self) -> usize {
         self.ink().count()
-    }
-
-    /// The marks of a row from left to right; none outside the page.
-    pub fn row(&self, row: i64) -> &[Mark] {
-        let inside = usize::try_from(row).ok().filter(|row| row + 1 < self.rows.len());
-        inside.map_or(&[], |row| &self.list[self.rows[row]..self.rows[row + 1]])
     }
 
     /// The mark in this column and row, if there is one.
@@ -82,6 +71,21 @@ impl Marks {
         let row = self.row(row);
         let found = row.binary_search_by_key(&column, |mark| i64::from(mark.column));
         found.ok().map(|i| &row[i])
+    }
+}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
+impl Marks {
+    /// Depths of the inked ones, in reading order; 0 where there is none.
+    pub fn depths(&self) -> impl Iterator<Item = f32> {
+        self.ink().map(|mark| mark.pixel.depth())
+    }
+
+    /// The marks of a row from left to right; none outside the page.
+    pub fn row(&self, row: i64) -> &[Mark] {
+        let inside = usize::try_from(row).ok().filter(|row| row + 1 < self.rows.len());
+        inside.map_or(&[], |row| &self.list[self.rows[row]..self.rows[row + 1]])
     }
 }
 
@@ -95,7 +99,7 @@ impl From<&InkRaster> for Marks {
 }
 
 /// The marks of a piece, which was drawn as `raster`, halo and all.
-pub fn of_piece(raster: &InkRaster, piece: Piece) -> Vec<Mark> {
+pub(crate) fn of_piece(raster: &InkRaster, piece: Piece) -> Vec<Mark> {
     let [left, top] = [0, 1].map(|axis| piece.kept.origin[axis] - piece.drawn.origin[axis]);
     let [width, height] = piece.kept.size;
     let [x, y] = piece.drawn.origin;
@@ -114,7 +118,7 @@ pub fn of_piece(raster: &InkRaster, piece: Piece) -> Vec<Mark> {
 }
 
 /// How many pixels of a piece, which was drawn as `raster`, show land.
-pub fn covered(raster: &InkRaster, piece: Piece) -> u64 {
+pub(crate) fn covered(raster: &InkRaster, piece: Piece) -> u64 {
     let [left, top] = [0, 1].map(|axis| (piece.kept.origin[axis] - piece.drawn.origin[axis]) as usize);
     let [width, height] = piece.kept.size.map(|side| side as usize);
     let of_row = |row: usize| {

@@ -16,7 +16,7 @@ use super::{Kind, Marks};
 const HOLE: usize = 2;
 
 /// Lines one pixel wide that keep the shape of the ink, and their cells in reading order.
-pub fn thin(marks: &Marks) -> (Grid, Vec<usize>) {
+pub(super) fn thin(marks: &Marks) -> (Grid, Vec<usize>) {
     let mut lines = Grid::new(marks.width, marks.height);
     let mut ink: Vec<usize> = marks.ink().map(|mark| lines.cell(mark.column, mark.row)).collect();
     let mut scratch = lines.clone();

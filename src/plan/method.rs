@@ -113,7 +113,11 @@ impl Method {
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|method| method.entry().name == name)
     }
+}
 
+/// What other stages and tests look into.
+#[doc(hidden)]
+impl Method {
     /// How its raster is made on a device with or without 64-bit atomics.
     pub fn visibility(self, int64: bool) -> Visibility {
         match self.entry().raster {
@@ -124,6 +128,10 @@ impl Method {
     }
 }
 
+impl Visibility {}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
 impl Visibility {
     /// How often the facets are rasterized.
     pub fn rounds(self) -> u32 {

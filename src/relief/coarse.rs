@@ -17,7 +17,7 @@ use crate::error::Result;
 const MOST: usize = 1 << 23;
 
 /// Samples along the side of a block on which lines of a DEM are found: 1 of a held one.
-pub fn spacing(dem: &Dem) -> usize {
+pub(crate) fn spacing(dem: &Dem) -> usize {
     let blocks = |side: usize| dem.columns().div_ceil(side) * dem.rows().div_ceil(side);
     let mut side = 1;
     while dem.is_filed() && blocks(side) > MOST {

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 /// Columns and rows of the eight neighbours, from the east clockwise; that across from `k` is `(k + 4) % 8`.
-pub const AROUND: [[isize; 2]; 8] = [[1, 0], [1, 1], [0, 1], [-1, 1], [-1, 0], [-1, -1], [0, -1], [1, -1]];
+pub(crate) const AROUND: [[isize; 2]; 8] = [[1, 0], [1, 1], [0, 1], [-1, 1], [-1, 0], [-1, -1], [0, -1], [1, -1]];
 
 /// Size and cells of a grid whose arrays have one sample more on every side.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -13,7 +13,7 @@ use super::{LineKind, SurfaceLine, SurfacePoint};
 
 /// What is known of a node.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Node {
+pub(super) struct Node {
     /// Column and row.
     pub at: DVec2,
     /// As of a [`SurfacePoint`], but need not grow.
@@ -25,7 +25,7 @@ pub struct Node {
 }
 
 /// The lines of branches, largest first; `node` tells what is known of one of the branch of a number.
-pub fn lines(
+pub(super) fn lines(
     grid: &Grid,
     branches: &[Branch],
     follows: Follows,

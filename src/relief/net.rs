@@ -23,7 +23,7 @@ const NOTHING: u32 = u32::MAX;
 
 /// A place of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Joint {
+pub(super) struct Joint {
     /// Which line.
     pub line: u32,
     /// Which of its places.
@@ -32,7 +32,7 @@ pub struct Joint {
 
 /// A line that lies.
 #[derive(Debug)]
-pub struct Laid {
+pub(super) struct Laid {
     /// At least two.
     pub places: Vec<Place>,
     /// The place of another that the last one is.
@@ -43,7 +43,7 @@ pub struct Laid {
 
 /// Lines by the cells that they run through.
 #[derive(Debug)]
-pub struct Net {
+pub(super) struct Net {
     /// All, as they were laid.
     pub lines: Vec<Laid>,
     /// Columns and rows.
@@ -56,7 +56,7 @@ pub struct Net {
 
 impl Net {
     /// No line on a grid.
-    pub fn new(frame: Frame) -> Self {
+    pub(super) fn new(frame: Frame) -> Self {
         Self {
             lines: Vec::new(),
             size: frame.size,
@@ -67,7 +67,7 @@ impl Net {
 
     /// Lays a line where it is not near another, if it is anywhere not, and tells whether it did. Whether it joins one in the
     /// end is known.
-    pub fn lay(&mut self, mut line: Vec<Place>, is_branch: bool) -> bool {
+    pub(super) fn lay(&mut self, mut line: Vec<Place>, is_branch: bool) -> bool {
         let Some(first) = line.iter().position(|place| self.near(place.at, NEAR).is_none()) else { return false };
         line.drain(..first);
         let meets = line.iter().position(|place| self.near(place.at, NEAR).is_some());

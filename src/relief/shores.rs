@@ -77,6 +77,10 @@ impl Shores {
     }
 }
 
+impl FlatWater {}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
 impl FlatWater {
     /// Blanks what of a line lies in the water.
     pub fn blank(&self, line: &mut SurfaceLine) {

@@ -7,14 +7,14 @@
 use super::frame::Frame;
 
 /// No neighbour is lower: a pit or a flat.
-pub const NONE: u8 = 8;
+pub(super) const NONE: u8 = 8;
 /// Water ends here.
-pub const OUTLET: u8 = 9;
+pub(super) const OUTLET: u8 = 9;
 /// There is no land.
-pub const VOID: u8 = 10;
+pub(super) const VOID: u8 = 10;
 
 /// Of each sample the number of the neighbour, [`NONE`] or [`VOID`].
-pub fn steepest(frame: Frame, heights: &[f32]) -> Vec<u8> {
+pub(super) fn steepest(frame: Frame, heights: &[f32]) -> Vec<u8> {
     let mut to = vec![VOID; frame.samples()];
     let mut best = vec![0.0_f32; frame.size[0]];
     let mut which = vec![0_u32; frame.size[0]];

@@ -11,13 +11,13 @@ use super::channels::Channels;
 use super::grid::Grid;
 
 /// Samples of the least area that is tried.
-pub const FIRST: u32 = 10;
+pub(crate) const FIRST: u32 = 10;
 /// How many times the last the next is.
 const GROWTH: f64 = 1.67;
 /// |t| from which the means differ.
-pub const LIMIT: f64 = 2.0;
+pub(crate) const LIMIT: f64 = 2.0;
 /// Least streams of the first order and of higher ones.
-pub const ENOUGH: [usize; 2] = [20, 5];
+pub(crate) const ENOUGH: [usize; 2] = [20, 5];
 
 /// An area that was tried.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,7 +31,7 @@ pub struct Trial {
 }
 
 /// All areas with enough streams, the least first.
-pub fn trials(grid: &Grid, channels: &Channels, area: &Area) -> Vec<Trial> {
+pub(crate) fn trials(grid: &Grid, channels: &Channels, area: &Area) -> Vec<Trial> {
     let mut least = f64::from(FIRST);
     let trial = || {
         let cells = least.round() as u32;

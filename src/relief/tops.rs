@@ -6,7 +6,7 @@ use super::bits::Bits;
 use super::frame::Frame;
 
 /// Of framed heights, NaN at voids, where the lowest of each piece is: heights are negated.
-pub fn tops(frame: Frame, negated: &[f32]) -> Bits {
+pub(super) fn tops(frame: Frame, negated: &[f32]) -> Bits {
     let [mut tops, mut seen] = [Bits::none(frame.samples()), Bits::none(frame.samples())];
     let steps = frame.steps();
     let mut front = Vec::new();

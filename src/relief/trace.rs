@@ -12,7 +12,7 @@ use super::grid::Grid;
 
 /// What a line follows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Follows {
+pub(super) enum Follows {
     /// The lowest places across it.
     Valley,
     /// The highest.
@@ -21,7 +21,7 @@ pub enum Follows {
 
 impl Follows {
     /// What makes of heights those of which the lowest are followed.
-    pub fn sign(self) -> f32 {
+    pub(super) fn sign(self) -> f32 {
         match self {
             Self::Valley => 1.0,
             Self::Crest => -1.0,
@@ -31,7 +31,7 @@ impl Follows {
 
 /// A place of a curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Place {
+pub(super) struct Place {
     /// Column and row, fractional.
     pub at: DVec2,
     /// How many nodes of the branch lie before it, fractional.
@@ -41,7 +41,7 @@ pub struct Place {
 }
 
 /// Cells between places.
-pub const SPACING: f64 = 0.5;
+pub(super) const SPACING: f64 = 0.5;
 /// How far across the bottom is looked for each time, cells, and in how many steps to each side.
 const REACH: [f64; 6] = [6.0, 6.0, 4.0, 2.0, 1.0, 0.5];
 const STEPS: i32 = 8;
@@ -62,7 +62,7 @@ const DIRECTION: f64 = 5.0;
 const AHEAD: usize = 6;
 
 /// The curve of at least two nodes; one place, where they are at one corner of the grid.
-pub fn trace(grid: &Grid, nodes: &[DVec2], follows: Follows) -> Vec<Place> {
+pub(super) fn trace(grid: &Grid, nodes: &[DVec2], follows: Follows) -> Vec<Place> {
     let nodes = nodes.iter().enumerate().map(|(k, at)| Place { at: *at, node: k as f64, is_lowest: false });
     let mut places: Vec<Place> = nodes.collect();
     let mut farthest = f64::INFINITY;

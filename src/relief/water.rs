@@ -10,7 +10,7 @@ use super::frame::Frame;
 const LEAST: usize = 32;
 
 /// Which of the framed heights are sea.
-pub fn sea(frame: Frame, heights: &[f32]) -> Bits {
+pub(super) fn sea(frame: Frame, heights: &[f32]) -> Bits {
     let [mut sea, mut seen] = [Bits::none(frame.samples()), Bits::none(frame.samples())];
     let steps = frame.steps();
     let mut piece = Vec::new();

@@ -74,34 +74,6 @@ impl Relief {
         &self.grid
     }
 
-    /// Its sea, in the grid's frame.
-    pub fn sea(&self) -> &Bits {
-        &self.sea
-    }
-
-    /// Where water goes.
-    pub fn flow(&self) -> &Flow {
-        &self.flow
-    }
-
-    /// How much of it gathers.
-    pub fn area(&self) -> &Area {
-        &self.area
-    }
-
-    /// Areas from which water may run in beds, and how streams then fall.
-    pub fn trials(&self) -> Vec<Trial> {
-        trials(&self.grid, &Channels::of(&self.flow, &self.area, FIRST), &self.area)
-    }
-
-    /// Samples that make a channel.
-    pub fn channel_cells(&self, area: ChannelArea) -> u32 {
-        match area {
-            ChannelArea::Auto => auto_cells(found(&self.trials())),
-            ChannelArea::SquareMetres(area) => (area / self.grid.frame.area()).ceil().max(1.0) as u32,
-        }
-    }
-
     /// The lines along which water runs, the largest first, each after the one it joins.
     pub fn drainage(&self, area: ChannelArea) -> Vec<SurfaceLine> {
         let least = self.channel_cells(area);
@@ -166,5 +138,37 @@ impl Relief {
             i = from;
         }
         i
+    }
+}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
+impl Relief {
+    /// Its sea, in the grid's frame.
+    pub fn sea(&self) -> &Bits {
+        &self.sea
+    }
+
+    /// Where water goes.
+    pub fn flow(&self) -> &Flow {
+        &self.flow
+    }
+
+    /// How much of it gathers.
+    pub fn area(&self) -> &Area {
+        &self.area
+    }
+
+    /// Areas from which water may run in beds, and how streams then fall.
+    pub fn trials(&self) -> Vec<Trial> {
+        trials(&self.grid, &Channels::of(&self.flow, &self.area, FIRST), &self.area)
+    }
+
+    /// Samples that make a channel.
+    pub fn channel_cells(&self, area: ChannelArea) -> u32 {
+        match area {
+            ChannelArea::Auto => auto_cells(found(&self.trials())),
+            ChannelArea::SquareMetres(area) => (area / self.grid.frame.area()).ceil().max(1.0) as u32,
+        }
     }
 }

@@ -23,16 +23,6 @@ impl Renderer {
         Ok(link(segments, &frame.lattice, &self.perspective(&frame)))
     }
 
-    /// What the eye sees of the curves of the last frame.
-    ///
-    /// # Errors
-    /// As [`Self::curves`].
-    pub fn chains(&mut self) -> Result<Vec<Chain>> {
-        let curves = self.curves()?;
-        let size = self.last().map_or([0; 2], |frame| frame.pieces.page());
-        Ok(visible::chains(curves, size))
-    }
-
     /// Lays lines on the land over a frame that has room for them: those that its page shows, and not what its pixels, where they
     /// are known, are known to hide.
     pub(super) fn lay(&mut self, frame: &Frame, pixels: Option<&InkRaster>) -> Result<Laid> {
@@ -85,5 +75,19 @@ impl Renderer {
         work.clear(&["turning", "tally"])?;
         frame.of_curves().into_iter().try_for_each(|(pass, batch)| work.run(pass, [batch, 0]))?;
         work.finish()
+    }
+}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
+impl Renderer {
+    /// What the eye sees of the curves of the last frame.
+    ///
+    /// # Errors
+    /// As [`Self::curves`].
+    pub fn chains(&mut self) -> Result<Vec<Chain>> {
+        let curves = self.curves()?;
+        let size = self.last().map_or([0; 2], |frame| frame.pieces.page());
+        Ok(visible::chains(curves, size))
     }
 }

@@ -49,7 +49,7 @@ impl Page {
 
     /// The lines of a plan with curves among which economy chooses, before it does: those that [`Self::lines`] begins with, in its
     /// order.
-    pub fn competing(&self, economy: &Economy, tolerance: f64) -> Vec<Chain> {
+    pub(crate) fn competing(&self, economy: &Economy, tolerance: f64) -> Vec<Chain> {
         let Self { marks, chains, land, perspective, .. } = self;
         let rest = rest(chains, marks, perspective, economy, tolerance);
         let land = land.iter().filter(|chain| !is_hachure(chain));
@@ -117,32 +117,6 @@ impl Renderer {
         self.find(plan, camera, progress).map(Found::page)
     }
 
-    /// The part of it that needs the device.
-    ///
-    /// # Errors
-    /// As [`Self::page`].
-    pub fn find(&mut self, plan: &Plan, camera: &Camera, progress: impl Fn(f64)) -> Result<Found> {
-        if plan.curves != Curves::All {
-            let frame = self.plan(plan, camera)?;
-            return Ok(Found { seen: self.list(frame, progress)?, all: None });
-        }
-        // Land behind the horizon is as fine as before it, which may make that finer too: what is seen is not to change.
-        // Of what it finds hidden curves alone are kept, and hachures are none.
-        let all = self.plan(&Plan { hachures: None, ..*plan }, camera)?;
-        let all = self.list(all, |share| progress(share / 2.0))?;
-        let seen = self.plan(&Plan { curves: Curves::On, ..*plan }, camera)?;
-        let seen = self.list(seen, |share| progress(0.5 + share / 2.0))?;
-        Ok(Found { seen, all: Some(all) })
-    }
-
-    /// A page of a frame that is planned, which may be [cut](Frame::cut) in a way of its own.
-    ///
-    /// # Errors
-    /// As [`Self::page`].
-    pub fn page_of(&mut self, frame: Frame, progress: impl Fn(f64)) -> Result<Page> {
-        self.list(frame, progress).map(Listed::page)
-    }
-
     fn list(&mut self, frame: Frame, progress: impl Fn(f64)) -> Result<Listed> {
         let (mut list, mut segments, mut covered, mut longest_walk) = (Vec::new(), Vec::new(), 0, 0);
         let (count, yields) = (frame.pieces.iter().len() as f64, frame.plan.method.entry().yields);
@@ -169,6 +143,36 @@ impl Renderer {
         let perspective = self.perspective(&frame);
         let laid = laid.unwrap_or_default();
         Ok(Listed { marks: list, segments, laid, covered, longest_walk, frame, perspective })
+    }
+}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
+impl Renderer {
+    /// The part of it that needs the device.
+    ///
+    /// # Errors
+    /// As [`Self::page`].
+    pub fn find(&mut self, plan: &Plan, camera: &Camera, progress: impl Fn(f64)) -> Result<Found> {
+        if plan.curves != Curves::All {
+            let frame = self.plan(plan, camera)?;
+            return Ok(Found { seen: self.list(frame, progress)?, all: None });
+        }
+        // Land behind the horizon is as fine as before it, which may make that finer too: what is seen is not to change.
+        // Of what it finds hidden curves alone are kept, and hachures are none.
+        let all = self.plan(&Plan { hachures: None, ..*plan }, camera)?;
+        let all = self.list(all, |share| progress(share / 2.0))?;
+        let seen = self.plan(&Plan { curves: Curves::On, ..*plan }, camera)?;
+        let seen = self.list(seen, |share| progress(0.5 + share / 2.0))?;
+        Ok(Found { seen, all: Some(all) })
+    }
+
+    /// A page of a frame that is planned, which may be [cut](Frame::cut) in a way of its own.
+    ///
+    /// # Errors
+    /// As [`Self::page`].
+    pub fn page_of(&mut self, frame: Frame, progress: impl Fn(f64)) -> Result<Page> {
+        self.list(frame, progress).map(Listed::page)
     }
 
     /// Draws a piece of a frame and brings it back, halo and all: `piece.drawn` of the page.

@@ -237,7 +237,7 @@ pub(super) fn whole([x, y]: [f64; 2]) -> (i32, i32) {
 
 impl<'a> Axis<'a> {
     /// An axis that holds all values with room to spare; where it reaches down to a floor, it ends there.
-    pub fn new(
+    pub(super) fn new(
         name: &'a str,
         number: fn(&f64) -> String,
         values: impl Iterator<Item = f64>,

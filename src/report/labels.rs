@@ -48,12 +48,12 @@ const LETTER: f64 = 0.66;
 
 impl Rect {
     /// The square around a point.
-    pub fn around(point: [f64; 2], half: f64) -> Self {
+    pub(super) fn around(point: [f64; 2], half: f64) -> Self {
         Self([point[0] - half, point[1] - half, point[0] + half, point[1] + half])
     }
 
     /// The place in it that is nearest to a point.
-    pub fn nearest(&self, point: [f64; 2]) -> [f64; 2] {
+    pub(super) fn nearest(&self, point: [f64; 2]) -> [f64; 2] {
         let [l, t, r, b] = self.0;
         [point[0].clamp(l, r), point[1].clamp(t, b)]
     }

@@ -9,7 +9,7 @@ use crate::truth::Mask;
 use crate::truth::metrics::Measured;
 
 /// Paper, then the inks of agreement, of a missed line, of a spurious one.
-pub const PALETTE: [[u8; 3]; 4] = [[255, 255, 255], [26, 26, 26], [0, 90, 200], [213, 70, 0]];
+pub(crate) const PALETTE: [[u8; 3]; 4] = [[255, 255, 255], [26, 26, 26], [0, 90, 200], [213, 70, 0]];
 const AGREED: u8 = 1;
 const MISSED: u8 = 2;
 const SPURIOUS: u8 = 3;

@@ -37,7 +37,7 @@ pub struct Pyramid {
 }
 
 /// A pyramid in the making, from bands of its surface.
-pub struct PyramidBuilder(Pyramid);
+pub(crate) struct PyramidBuilder(Pyramid);
 
 #[derive(Debug, Clone)]
 struct Layer {
@@ -219,10 +219,10 @@ impl Pyramid {
 
 impl PyramidBuilder {
     /// Rows around a band that must be there.
-    pub const HALO: usize = 1;
+    pub(crate) const HALO: usize = 1;
 
     /// Of a DEM, nothing known yet.
-    pub fn new(dem: &Dem) -> Self {
+    pub(crate) fn new(dem: &Dem) -> Self {
         Self(Pyramid::unknown(dem))
     }
 
@@ -230,7 +230,7 @@ impl PyramidBuilder {
     ///
     /// # Errors
     /// [`Error::Limit`](crate::error::Error::Limit) where the band is not in memory.
-    pub fn take(&mut self, SurfaceBand { rows, surface }: &SurfaceBand<'_>) -> Result<()> {
+    pub(crate) fn take(&mut self, SurfaceBand { rows, surface }: &SurfaceBand<'_>) -> Result<()> {
         let (cells, level_1) = (self.0.samples.map(|samples| samples - 1), self.0.level_1());
         let (layers, samples) = (&mut self.0.layers, surface.dem().held()?);
         layers[0].bound(surface, samples, rows);
@@ -240,7 +240,7 @@ impl PyramidBuilder {
     }
 
     /// The pyramid, when all rows have been taken in.
-    pub fn finish(self) -> Pyramid {
+    pub(crate) fn finish(self) -> Pyramid {
         let Self(mut pyramid) = self;
         let level_1 = pyramid.level_1();
         for number in 1..pyramid.layers.len() {

@@ -12,6 +12,10 @@ use crate::surface::lattice::CELL_STEPS;
 use crate::surface::{Level, Patch};
 use crate::view::Camera;
 
+impl Terrain<'_> {}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
 impl Terrain<'_> {
     /// The least level at which no edge of a facet in a visible cell is longer than a pixel, 64 at most, the sides of
     /// cells taken as straight and divided evenly on the page; `None` where no cell is visible. A cell counts as visible

@@ -136,13 +136,6 @@ impl<'a> Judge<'a> {
         summary(distances)
     }
 
-    /// Distances of the pieces of another truth from this one, by length; `None` where it has none on the page.
-    pub fn offsets_of(&self, other: &Truth) -> Option<Offsets> {
-        let pieces: Vec<_> = other.on_page().collect();
-        let distances = pieces.par_iter().map(|piece| (self.distance(piece.middle()), piece.length()));
-        summary(distances.collect())
-    }
-
     /// Measures a mask of the same page against truth, and truth against the mask.
     pub fn measure<'m>(&'m self, mask: &'m Mask) -> Measured<'m> {
         let centres = RTree::bulk_load(mask.inked.iter().map(|p| p.centre().to_array()).collect());
@@ -158,6 +151,17 @@ impl<'a> Judge<'a> {
             to_ink: pieces.par_iter().map(to_ink).collect(),
             pieces,
         }
+    }
+}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
+impl<'a> Judge<'a> {
+    /// Distances of the pieces of another truth from this one, by length; `None` where it has none on the page.
+    pub fn offsets_of(&self, other: &Truth) -> Option<Offsets> {
+        let pieces: Vec<_> = other.on_page().collect();
+        let distances = pieces.par_iter().map(|piece| (self.distance(piece.middle()), piece.length()));
+        summary(distances.collect())
     }
 }
 
@@ -198,12 +202,6 @@ impl Measured<'_> {
         self.to_truth.iter().map(|distance| *distance <= WITHIN)
     }
 
-    /// The pixels of truth, drawn one pixel wide, that have no ink within 1 px.
-    pub fn missed(&self) -> Mask {
-        let missed = self.pieces.iter().zip(&self.to_ink).filter(|(_, distance)| **distance > WITHIN);
-        Mask::of_pieces(self.mask.size, missed.map(|(piece, _)| *piece))
-    }
-
     fn band(&self, band: usize) -> BandScore {
         let ends = &self.judge.bands;
         let holds = |distance: f64| ends.iter().filter(|end| distance > **end).count() == band;
@@ -233,6 +231,16 @@ impl Measured<'_> {
     fn lines(&self, holds: impl Fn(f64) -> bool) -> Vec<(f64, f64)> {
         let pieces = self.pieces.iter().zip(&self.to_ink).filter(|(p, _)| holds(p.distance));
         pieces.map(|(piece, distance)| (*distance, piece.length())).collect()
+    }
+}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
+impl Measured<'_> {
+    /// The pixels of truth, drawn one pixel wide, that have no ink within 1 px.
+    pub fn missed(&self) -> Mask {
+        let missed = self.pieces.iter().zip(&self.to_ink).filter(|(_, distance)| **distance > WITHIN);
+        Mask::of_pieces(self.mask.size, missed.map(|(piece, _)| *piece))
     }
 }
 

@@ -109,7 +109,7 @@ impl Layer {
 
 impl Box3 {
     /// The eight corners.
-    pub fn corners(&self) -> [DVec3; 8] {
+    pub(super) fn corners(&self) -> [DVec3; 8] {
         let pick = |bit: bool, low: f64, high: f64| if bit { high } else { low };
         [0, 1, 2, 3, 4, 5, 6, 7].map(|i: u8| {
             let (l, h) = (self.low, self.high);

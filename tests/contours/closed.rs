@@ -4,8 +4,9 @@
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
+use hachure::door::surface::Lattice;
 use hachure::line::Bound;
-use hachure::surface::{Lattice, Surface};
+use hachure::surface::Surface;
 use hachure::truth::Truth;
 use hachure::truth::metrics::Judge;
 use hachure::view::Camera;

@@ -5,12 +5,14 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3, Vec3};
+use hachure::door::gpu::uniforms::{Segment, Tally, code, seen};
+use hachure::door::line::link;
+use hachure::door::surface::lattice::CHUNK_FACETS;
+use hachure::door::surface::{Lattice, LatticePoint};
 use hachure::gpu::Gpu;
-use hachure::gpu::uniforms::{Segment, Tally, code, seen};
-use hachure::line::{Bound, Curve, link};
+use hachure::line::{Bound, Curve};
 use hachure::plan::{Border, Curves, Detail, Method, Plan, Thrift};
-use hachure::surface::lattice::CHUNK_FACETS;
-use hachure::surface::{Lattice, LatticePoint, Surface};
+use hachure::surface::Surface;
 use hachure::view::{Camera, Perspective};
 
 use super::twin::{Corners, Name, Piece, Twin};

@@ -5,11 +5,12 @@ use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use glam::DVec3;
-use hachure::gpu::uniforms::{Segment, code};
+use hachure::door::gpu::uniforms::{Segment, code};
+use hachure::door::plan::batches::BATCH_CHUNKS;
+use hachure::door::surface::Chunk;
 use hachure::line::Curve;
-use hachure::plan::batches::BATCH_CHUNKS;
 use hachure::plan::{Detail, Thrift};
-use hachure::surface::{Chunk, Surface};
+use hachure::surface::Surface;
 use hachure::view::Camera;
 
 use super::device::{Scene, each_frame, low, plan, scenes};

@@ -2,7 +2,7 @@
 //! and end once at each cusp that is seen.
 
 use glam::DVec2;
-use hachure::line::visible::chains;
+use hachure::door::line::visible::chains;
 use hachure::line::{Bound, Chain, Curve, Line};
 use hachure::plan::{Detail, Thrift};
 use hachure::truth::Truth;

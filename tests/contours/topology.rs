@@ -5,9 +5,11 @@ use std::collections::HashMap;
 
 use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
+use hachure::door::plan::detail;
+use hachure::door::surface::{Lattice, LatticePoint};
 use hachure::line::Bound;
-use hachure::plan::{Curves, Thrift, detail};
-use hachure::surface::{Lattice, LatticePoint, Surface};
+use hachure::plan::{Curves, Thrift};
+use hachure::surface::Surface;
 
 use super::twin::{Edge, Node, Piece, Twin, string_pieces};
 use crate::mixed::{Kind, lattice, variety};

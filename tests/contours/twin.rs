@@ -12,10 +12,11 @@ use std::hash::Hash;
 
 use glam::DVec3;
 use hachure::dem::Dem;
+use hachure::door::surface::lattice::{CELL_STEPS, CHUNK_FACETS, CHUNK_QUADS, EAST, NORTH, SOUTH, WEST};
+use hachure::door::surface::patch::Patch;
+use hachure::door::surface::{Chunk, Lattice, LatticePoint};
 use hachure::line::Bound;
-use hachure::surface::lattice::{CELL_STEPS, CHUNK_FACETS, CHUNK_QUADS, EAST, NORTH, SOUTH, WEST};
-use hachure::surface::patch::Patch;
-use hachure::surface::{Chunk, Lattice, LatticePoint, Surface};
+use hachure::surface::Surface;
 use rayon::prelude::*;
 
 use crate::mixed::exists;

@@ -6,10 +6,10 @@ use std::slice;
 
 use glam::DVec2;
 use hachure::dem::Dem;
+use hachure::door::surface::normals::gradients;
+use hachure::door::surface::rim::rim;
 use hachure::geo::{ReadOptions, read_all};
 use hachure::surface::Surface;
-use hachure::surface::normals::gradients;
-use hachure::surface::rim::rim;
 use hachure::view::{Fixed, choose};
 
 use super::{Raster, copy, cropped, folder, sized_vrt};

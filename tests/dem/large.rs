@@ -5,8 +5,8 @@ use std::time::Instant;
 
 use hachure::cache::Cache;
 use hachure::dem::fractal;
+use hachure::door::measure::memory::peak;
 use hachure::geo::{ReadOptions, read, write};
-use hachure::measure::memory::peak;
 use hachure::surface::Surface;
 
 use super::{Raster, folder, with_steps};
@@ -45,7 +45,7 @@ fn line_of(child: &str, start: &str) -> String {
 fn child_reads_korea() {
     let shared = shared_dems().unwrap();
     let read = |options: &ReadOptions| {
-        hachure::measure::memory::reset_peak();
+        hachure::door::measure::memory::reset_peak();
         let before = peak().unwrap();
         let start = Instant::now();
         let dem = read(shared.join("korea_srtm3_4400.tif"), options).unwrap();
@@ -98,7 +98,7 @@ fn child_reads_a_filed_dem() {
     let row = |r: usize| (0..5200).map(|c| ((c * 7 + r * 3) % 1000) as f32).collect();
     write(&path, [5200, 5200], fractal::CELL, row, &|_| ()).unwrap();
     let grown = |memory: u64| {
-        hachure::measure::memory::reset_peak();
+        hachure::door::measure::memory::reset_peak();
         let before = peak().unwrap();
         let surface = Surface::new(read(&path, &ReadOptions { memory, ..with_steps() }).unwrap());
         assert_eq!(surface.dem().survey(&|_| ()).unwrap().range, Some([0.0, 999.0]));
@@ -118,7 +118,7 @@ fn child_smooths_strips() {
     // Strips as wide as the file.
     let values = (0..9000 * 900).map(|i| ((i % 9000) / 7 + i / 9000 * 3) as i16).collect();
     let path = Raster::<i16>::new(9000, values).write("GTiff", &dir.path().join("strips.tif"));
-    hachure::measure::memory::reset_peak();
+    hachure::door::measure::memory::reset_peak();
     let before = peak().unwrap();
     let options = ReadOptions {
         memory: FILED_MIB << 20,

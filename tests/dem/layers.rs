@@ -6,8 +6,8 @@ use std::process::Command;
 
 use gdal::spatial_ref::{AxisMappingStrategy, CoordTransform, SpatialRef};
 use glam::{DVec2, DVec3};
-use hachure::cli::words::line;
 use hachure::dem::Dem;
+use hachure::door::cli::words::line;
 use hachure::geo::{Order, ReadOptions, read_all};
 use serde_json::Value;
 use tempfile::TempDir;

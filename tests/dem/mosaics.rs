@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use glam::DVec2;
-use hachure::cli::words::line;
 use hachure::dem::Dem;
+use hachure::door::cli::words::line;
 use hachure::geo::{ReadOptions, read_all};
 
 use super::{Raster, TRANSFORM, folder, hill};

@@ -3,8 +3,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use hachure::cli::words::{self, exit_code};
 use hachure::dem::Dem;
+use hachure::door::cli::words;
+use hachure::door::cli::words::exit_code;
 use hachure::geo::{ReadOptions, read};
 
 use super::archives::{Member, tile, zip};

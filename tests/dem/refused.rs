@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use gdal::Dataset;
-use hachure::cli::words::{self, exit_code, line};
-use hachure::dem::{LARGEST_SIDE, MAX_SAMPLES};
+use hachure::door::cli::words;
+use hachure::door::cli::words::{exit_code, line};
+use hachure::door::dem::{LARGEST_SIDE, MAX_SAMPLES};
 use hachure::geo::{ReadOptions, info, read};
 
 use super::{Raster, copy, cropped, folder, hill, read_all, sized_vrt, vrt};

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use gdal::spatial_ref::{AxisMappingStrategy, CoordTransform, SpatialRef};
 use glam::DVec2;
-use hachure::cli::words::line;
+use hachure::door::cli::words::line;
 use hachure::geo::{ReadOptions, read_all};
 
 use super::{Raster, cropped, folder};

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 use hachure::dem::Dem;
-use hachure::line::hachures::{Seen, hatched};
+use hachure::door::line::hachures::{Seen, hatched};
 
 use super::map::{Map, PX_PER_MM, lehmann};
 use crate::cli::{Place, stderr};

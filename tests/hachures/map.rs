@@ -4,11 +4,13 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3, Vec3};
 use hachure::dem::Dem;
+use hachure::door::line::Overhead;
+use hachure::door::surface::LatticePoint;
 use hachure::ink::{self, Drawing, HachureStyle, Sheet, Style, write_png};
-use hachure::line::{Chain, Land, Lines, Overhead, Recession};
+use hachure::line::{Chain, Land, Lines, Recession};
 use hachure::plan::{Hachures, Tone};
 use hachure::relief::{ChannelArea, FlatWater, Relief, Slopes};
-use hachure::surface::{LatticePoint, Surface};
+use hachure::surface::Surface;
 
 /// Pixels of pictures and of frames for each millimetre.
 pub const PX_PER_MM: f64 = 8.0;

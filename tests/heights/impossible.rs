@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use hachure::cli::words::line;
+use hachure::door::cli::words::line;
 use hachure::geo::{ReadOptions, read, read_all};
 
 use super::{Bands, SIDE, assumed, cured, doubt, folder, land, marked, one, same, with_steps};

@@ -7,8 +7,8 @@ use gdal::DriverManager;
 use gdal::raster::ColorInterpretation::{BlueBand, GreenBand, RedBand, Undefined};
 use gdal::raster::{Buffer, RasterCreationOptions};
 use gdal::spatial_ref::SpatialRef;
-use hachure::cli::values;
-use hachure::cli::words::line;
+use hachure::door::cli::values;
+use hachure::door::cli::words::line;
 use hachure::geo::{Encoding, ReadOptions, read};
 
 use super::{Bands, SIDE, assumed, cured, doubt, folder, land, marked, one, same, with_steps};

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use gdal::raster::ColorInterpretation::{AlphaBand, BlueBand, GrayIndex, GreenBand, PaletteIndex, RedBand};
-use hachure::cli::words::line;
+use hachure::door::cli::words::line;
 use hachure::geo::{Encoding, ReadOptions, read};
 
 use super::{Bands, FILED, SIDE, assumed, cured, doubt, folder, land, marked, one, same, with_steps};

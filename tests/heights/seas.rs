@@ -4,7 +4,7 @@ use std::io::{Write, stderr};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use hachure::cli::words::line;
+use hachure::door::cli::words::line;
 use hachure::geo::{ReadOptions, read};
 
 use super::{Bands, FILED, SIDE, assumed, folder, land, one, same, with_steps};

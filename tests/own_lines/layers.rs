@@ -3,8 +3,9 @@
 use std::fs;
 use std::path::Path;
 
-use hachure::cli::words::line;
-use hachure::geo::{own_lines, with_layer};
+use hachure::door::cli::words::line;
+use hachure::door::geo::with_layer;
+use hachure::geo::own_lines;
 use hachure::relief::{self, LineKind};
 
 use super::{collection, feature, ogr2ogr};

@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use clap::Parser;
-use hachure::cli::lines::LinesArguments;
-use hachure::cli::talk::{Lines, Talk, TalkArguments};
-use hachure::cli::words::line;
 use hachure::dem::Dem;
+use hachure::door::cli::lines::LinesArguments;
+use hachure::door::cli::talk::{Lines, Talk, TalkArguments};
+use hachure::door::cli::words::line;
 use hachure::geo::own_lines;
 use hachure::relief;
 use tempfile::TempDir;

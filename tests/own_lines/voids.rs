@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use glam::DVec2;
-use hachure::cli::words::line;
 use hachure::dem::Dem;
+use hachure::door::cli::words::line;
 use hachure::geo::{OwnLine, OwnLines};
 use hachure::relief::{self, SurfaceLine};
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use hachure::gpu::pass::parse;
+use hachure::door::gpu::pass::parse;
 use wgpu::naga;
 
 /// How a pass binds a storage buffer.

@@ -3,11 +3,11 @@
 
 use glam::DVec2;
 use hachure::dem::Dem;
+use hachure::door::gpu::uniforms::SceneUniform;
+use hachure::door::surface::lattice::CHUNK_FACETS;
+use hachure::door::surface::quadtree::NO_SLOT;
+use hachure::door::surface::{Lattice, LatticePoint};
 use hachure::gpu::Gpu;
-use hachure::gpu::uniforms::SceneUniform;
-use hachure::surface::lattice::CHUNK_FACETS;
-use hachure::surface::quadtree::NO_SLOT;
-use hachure::surface::{Lattice, LatticePoint};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
 use crate::common::gpu;

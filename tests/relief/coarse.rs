@@ -2,7 +2,8 @@
 
 use glam::DVec2;
 use hachure::dem::Dem;
-use hachure::relief::{ChannelArea, Relief, SurfaceLine, lowest_and_highest, on_samples};
+use hachure::door::relief::{lowest_and_highest, on_samples};
+use hachure::relief::{ChannelArea, Relief, SurfaceLine};
 
 const SIDE: usize = 4;
 const SIZE: [usize; 2] = [322, 401];

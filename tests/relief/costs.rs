@@ -31,7 +31,7 @@ fn a_million_samples_take_no_time() {
 mod memory {
     use std::process::Command;
 
-    use hachure::measure::memory::{peak, reset_peak};
+    use hachure::door::measure::memory::{peak, reset_peak};
 
     use super::*;
     use crate::tolerances::RELIEF_BYTES;

@@ -5,11 +5,11 @@ use std::collections::BinaryHeap;
 
 use glam::DVec2;
 use hachure::dem::Dem;
+use hachure::door::relief::channels::Channels;
+use hachure::door::relief::flow::Flow;
+use hachure::door::relief::frame::Frame;
 use hachure::error::Error;
 use hachure::geo::{ReadOptions, read};
-use hachure::relief::channels::Channels;
-use hachure::relief::flow::Flow;
-use hachure::relief::frame::Frame;
 use hachure::relief::{ChannelArea, Relief};
 
 use super::{dem, rough, sample};

@@ -3,9 +3,10 @@
 use std::cell::RefCell;
 
 use hachure::cache::{Cache, Hearing};
-use hachure::cli::words::told;
 use hachure::dem::Dem;
-use hachure::relief::{ChannelArea, FlowLines, SurfaceLine};
+use hachure::door::cli::words::told;
+use hachure::door::relief::FlowLines;
+use hachure::relief::{ChannelArea, SurfaceLine};
 use tempfile::TempDir;
 
 use super::rough;

@@ -1,8 +1,8 @@
 //! Orders of streams and the area from which water runs in beds, against ways of their own.
 
+use hachure::door::relief::channels::{Channels, NO_NODE};
+use hachure::door::relief::threshold::{Trial, found};
 use hachure::geo::{ReadOptions, read};
-use hachure::relief::channels::{Channels, NO_NODE};
-use hachure::relief::threshold::{Trial, found};
 use hachure::relief::{ChannelArea, Relief};
 
 const LEAST: u32 = 30;

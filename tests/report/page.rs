@@ -2,17 +2,17 @@
 
 use std::io::Cursor;
 
+use hachure::door::measure::figures::DrawnLevel;
+use hachure::door::report::results::Results;
+use hachure::door::report::{Picture, error_time_svg, report_html};
 use hachure::error::Error;
-use hachure::measure::figures::DrawnLevel;
-use hachure::report::results::Results;
-use hachure::report::{Picture, error_time_svg, report_html};
 use image::{GrayImage, ImageFormat, Luma};
 use serde_json::Value;
 
 use super::browser::{Browser, Visit};
 use super::{SIZE, sample, sample_with_floors};
-use hachure::measure::compare::Found;
-use hachure::report::lines::lines;
+use hachure::door::measure::compare::Found;
+use hachure::door::report::lines::lines;
 
 /// What is looked for in the browser.
 const PROBE: &str = include_str!("probe.js");

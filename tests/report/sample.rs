@@ -1,10 +1,10 @@
 //! Results of a comparison that never was: two scenes, every method, and all that is awkward to write down.
 
-use hachure::measure::figures::{
+use hachure::door::measure::figures::{
     AtDistance, Band, ChainFigures, Convergence, DrawnLevel, FloorFigures, LevelOffset, PassFigures, Place, Run,
     SequenceRun, TruthReport,
 };
-use hachure::report::results::{Machine, Results, SCHEMA, Scene, TruthSummary};
+use hachure::door::report::results::{Machine, Results, SCHEMA, Scene, TruthSummary};
 
 /// A name that HTML, CSV, SVG and the shell each have to quote.
 pub const AWKWARD: &str = "a<b & c, \"d's\"";

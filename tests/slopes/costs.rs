@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use glam::DVec2;
 use hachure::dem::{Dem, fractal};
-use hachure::relief::slope::SlopePoint;
+use hachure::door::relief::slope::SlopePoint;
 
 use super::Scene;
 use crate::tolerances::SLOPE_SECONDS;

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use hachure::dem::{Dem, Tiles, Tiling, Window};
+use hachure::door::relief::slope::Slopes;
 use hachure::error::{Error, Message, Result};
-use hachure::relief::slope::Slopes;
 use hachure::surface::Surface;
 
 use super::{RULES, Scene, blocks, sample};

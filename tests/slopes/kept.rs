@@ -5,7 +5,7 @@ use std::os::unix::fs::MetadataExt;
 use std::path::PathBuf;
 
 use hachure::cache::Cache;
-use hachure::relief::slope::{SlopeBlock, SlopeRules, Slopes};
+use hachure::door::relief::slope::{SlopeBlock, SlopeRules, Slopes};
 use xxhash_rust::xxh3::xxh3_64;
 
 use super::{RULES, Scene, blocks, sample};

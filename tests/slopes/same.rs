@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use hachure::relief::slope::SlopeBlock;
+use hachure::door::relief::slope::SlopeBlock;
 use rayon::ThreadPoolBuilder;
 
 use super::{Scene, blocks, lines, plane, sample};

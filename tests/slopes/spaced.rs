@@ -6,7 +6,7 @@ use glam::DVec2;
 use rstar::primitives::{GeomWithData, Line};
 use rstar::{PointDistance, RTree};
 
-use hachure::relief::slope::{SlopeBlock, SlopeLine, SlopePoint};
+use hachure::door::relief::slope::{SlopeBlock, SlopeLine, SlopePoint};
 
 use super::{CELL, Scene, land, lines, plane, real, share};
 use crate::scenes::Random;

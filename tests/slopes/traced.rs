@@ -1,7 +1,7 @@
 //! Lines run down the slope, and end where they must.
 
 use glam::DVec2;
-use hachure::relief::slope::SlopeLine;
+use hachure::door::relief::slope::SlopeLine;
 use hachure::relief::{LineKind, SurfaceLine, SurfacePoint};
 use hachure::surface::Surface;
 
@@ -107,7 +107,7 @@ fn lines_are_those_of_the_land_as_it_is() {
     let scene =
         |times: f64| Scene::bare("plain", land([60, 60], |at| times * 0.9 * RULES.min_slope.to_radians().tan() * at.x));
     let count = |scene: &Scene, exaggeration: f64| {
-        let slopes = hachure::relief::slope::Slopes::new(scene.surface.clone(), exaggeration, RULES, &[], None);
+        let slopes = hachure::door::relief::slope::Slopes::new(scene.surface.clone(), exaggeration, RULES, &[], None);
         let blocks = super::blocks(&slopes.expect("slopes"), &|_| ROOM * CELL);
         lines(&blocks).count()
     };

@@ -7,7 +7,8 @@
 use std::collections::BTreeMap;
 
 use glam::{DMat3, DVec2, DVec3};
-use hachure::surface::{LatticePoint, Level, Surface};
+use hachure::door::surface::LatticePoint;
+use hachure::surface::{Level, Surface};
 use hachure::truth::{Line, Piece};
 use hachure::view::Camera;
 

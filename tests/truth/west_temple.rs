@@ -6,8 +6,8 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use glam::DVec3;
+use hachure::door::measure::memory::peak;
 use hachure::geo::{ReadOptions, read};
-use hachure::measure::memory::peak;
 use hachure::plan::{Border, Method, Share};
 use hachure::surface::Surface;
 use hachure::truth::metrics::{Agreement, Judge};

@@ -5,8 +5,8 @@ use std::process::Command;
 use std::time::Instant;
 
 use glam::dvec2;
+use hachure::door::measure::memory::{peak, reset_peak};
 use hachure::ink::{Drawing, write_pdf, write_svg};
-use hachure::measure::memory::{peak, reset_peak};
 use rayon::ThreadPoolBuilder;
 
 use super::pictures::{pdf, svg};

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use glam::{DVec2, dvec2};
-use hachure::ink::outline::outline;
+use hachure::door::ink::outline::outline;
 use hachure::ink::{Stroke, StrokePoint};
 
 use super::samples::{closed, dot, even, ring, shares, spiral, tapered, widths, zigzag};

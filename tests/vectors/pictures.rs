@@ -94,7 +94,7 @@ pub struct Seen {
 
 /// What resvg and, if it is here, poppler see of a drawing.
 pub fn seen(drawing: &Drawing, px_per_mm: f64, poppler: Option<&Poppler>) -> Vec<Seen> {
-    let size = hachure::ink::png::size(&drawing.sheet, px_per_mm);
+    let size = hachure::door::ink::png::size(&drawing.sheet, px_per_mm);
     let picture = seen_in_svg(&svg(drawing), size);
     let by_resvg = Seen { who: "resvg", picture, darkness: RESVG_DARKNESS };
     let picture = poppler.map(|poppler| poppler.picture(&pdf(drawing), px_per_mm, size));

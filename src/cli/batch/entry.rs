@@ -29,7 +29,7 @@ const NONE: [&str; 9] =
 const AS_DRAWN: &str = "see `hachure draw --help`";
 
 /// A drawing of the file.
-pub struct Entry {
+pub(super) struct Entry {
     /// In words, for lines about it.
     pub called: String,
     /// As if typed.
@@ -37,7 +37,7 @@ pub struct Entry {
 }
 
 /// What the files of DEMs hold, as far as it is known.
-pub struct Contents<'a> {
+pub(super) struct Contents<'a> {
     /// So far.
     pub known: Vec<Content>,
     /// Where it is kept.
@@ -82,7 +82,7 @@ struct Source<'a> {
 ///
 /// # Errors
 /// [`Error::Input`] where it cannot be read, or what stands in it is no drawing: where, what, and what was meant.
-pub fn read(path: &Path) -> Result<Vec<Entry>> {
+pub(super) fn read(path: &Path) -> Result<Vec<Entry>> {
     let text = typed::text(path)?;
     let source = Source { path, text: &text, known: known() };
     let table = DeTable::parse(&text)
@@ -238,7 +238,7 @@ impl Source<'_> {
 ///
 /// # Errors
 /// [`Error::Input`].
-pub fn each_output_once(file: &Path, entries: &[Entry]) -> Result<()> {
+pub(super) fn each_output_once(file: &Path, entries: &[Entry]) -> Result<()> {
     let read = entries.iter().flat_map(|entry| &entry.draw.terrain.dems).map(PathBuf::as_path);
     let mut taken = Taken::inputs(read.chain([file]));
     // Of folders that are not there yet nothing is known but their names.
@@ -270,13 +270,13 @@ fn in_words(called: &str, error: &clap::Error) -> String {
 
 impl Entry {
     /// The names of all that its drawing and its mask are made of; of what cannot be made, why.
-    pub fn names(&self, contents: &mut Contents) -> [u128; 2] {
+    pub(super) fn names(&self, contents: &mut Contents) -> [u128; 2] {
         let names = contents.of(&self.draw).and_then(|dem| self.draw.names(&dem));
         names.unwrap_or_else(|error| [Naming::new().with("failed", words::line(&error)).name(); 2])
     }
 
     /// The job that makes it.
-    pub fn job(&self, number: u32, [drawing, of_mask]: [u128; 2]) -> Job {
+    pub(super) fn job(&self, number: u32, [drawing, of_mask]: [u128; 2]) -> Job {
         let (drawings, mask) = self.draw.outputs.files();
         let drawings = drawings.iter().map(|path| Made { path: path.clone(), name: drawing });
         let mask = mask.map(|path| Made { path: path.to_owned(), name: of_mask });

@@ -25,7 +25,7 @@ const MARK: &str = "{sheet}";
 /// The flags, as typed.
 #[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "Sheets")]
-pub struct SheetArguments {
+pub(super) struct SheetArguments {
     /// Make each drawing once for each sheet of a map, squares of this system of coordinates in which there is land of the DEM;
     /// names of outputs hold {sheet}, which becomes the sheet's south-western corner; sheets without any of --lines are drawn
     /// without. In a system that is turned against that
@@ -55,7 +55,7 @@ impl SheetArguments {
     ///
     /// # Errors
     /// [`Error::Setting`]; whatever keeps a DEM from being read.
-    pub fn sheets(&self, entries: Vec<Entry>, cache: &Cache, talk: &Talk) -> Result<Vec<Entry>> {
+    pub(super) fn sheets(&self, entries: Vec<Entry>, cache: &Cache, talk: &Talk) -> Result<Vec<Entry>> {
         let (Some(code), Some(side)) = (self.grid, self.sheet) else { return self.without_grid(entries) };
         if side <= 0.0 {
             return Err(Error::setting(Setting::Sheet, "a sheet of no length holds nothing", "give its side, as 10km"));

@@ -25,7 +25,7 @@ use crate::surface::Met;
 
 /// What is told of a pixel.
 #[derive(Serialize)]
-pub struct AtAnswer {
+pub(super) struct AtAnswer {
     version: &'static str,
     pixel: [u32; 2],
     size: [u32; 2],
@@ -75,7 +75,7 @@ struct Sky {
 ///
 /// # Errors
 /// Whatever went wrong; [`Error::Setting`] for a pixel beside the page.
-pub fn answer(
+pub(super) fn answer(
     arguments: &PickArguments,
     pixel: [u32; 2],
     reading: Reading,

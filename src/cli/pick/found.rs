@@ -12,7 +12,7 @@ use crate::render::{self, Illustration};
 use crate::surface::Met;
 
 /// How far about a pixel lines are told of, px.
-pub const REACH: f64 = 8.0;
+pub(super) const REACH: f64 = 8.0;
 /// A stroke may lie so far off its chain, px, beside what a hand strays.
 const OFF_CHAIN: f64 = 1.5;
 /// From this share of its weight on a line counts as whole.
@@ -21,7 +21,7 @@ const WHOLE: f64 = 0.99;
 const EDGE: f64 = 2.0;
 
 /// A page with its lines and its drawing, and the middle of the pixel that is asked about.
-pub struct Page<'a> {
+pub(super) struct Page<'a> {
     pub illustration: &'a Illustration,
     pub page: &'a render::Page,
     pub lines: &'a Lines,
@@ -32,7 +32,7 @@ pub struct Page<'a> {
 }
 
 /// A line about the pixel.
-pub struct Found {
+pub(super) struct Found {
     pub line: Line,
     pub id: Option<Id>,
     /// From the middle of the pixel to it.
@@ -48,7 +48,7 @@ pub struct Found {
 ///
 /// # Errors
 /// As [`Station::hides`].
-pub fn lines(page: &Page, station: &Station) -> Result<Vec<Found>> {
+pub(super) fn lines(page: &Page, station: &Station) -> Result<Vec<Found>> {
     let Page { illustration, lines, hidden, middle, .. } = page;
     let px_per_mm = page.drawn.sheet.placement(illustration.frame).px_per_mm;
     let stray = OFF_CHAIN + (illustration.style.wobble.reach + illustration.style.tolerance) * px_per_mm;
@@ -163,7 +163,12 @@ impl Found {
 ///
 /// # Errors
 /// As [`Station::located`].
-pub fn told(mut found: Vec<Found>, page: &Page, station: &Station, land: Option<&Met>) -> Result<Vec<LineAnswer>> {
+pub(super) fn told(
+    mut found: Vec<Found>,
+    page: &Page,
+    station: &Station,
+    land: Option<&Met>,
+) -> Result<Vec<LineAnswer>> {
     found.sort_by(|a, b| {
         let (a, b) = (a.rank(), b.rank());
         a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))

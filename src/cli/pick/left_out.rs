@@ -26,7 +26,7 @@ use crate::view::Perspective;
 ///
 /// # Errors
 /// As [`LandArguments::land`](crate::cli::land::LandArguments::land), [`rim`] and [`Gathered::at`].
-pub fn lines(
+pub(super) fn lines(
     arguments: &PickArguments,
     page: &Page,
     station: &Station,

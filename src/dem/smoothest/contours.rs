@@ -13,14 +13,14 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 /// Samples along a line in which changes are looked for.
-pub const REACH: usize = 28;
+pub(super) const REACH: usize = 28;
 /// Weight of a line that rises, or falls, to both sides.
 const SAME: f32 = 0.1;
 /// Columns and rows of a tile.
 const TILE: usize = 192;
 
 /// A surface within `half` of `heights`, guessed.
-pub fn between(heights: &[f32], half: &[f32], width: usize, parallel: bool) -> Vec<f32> {
+pub(super) fn between(heights: &[f32], half: &[f32], width: usize, parallel: bool) -> Vec<f32> {
     let mut guess = vec![f32::NAN; heights.len()];
     let task = |(at, rows): (usize, &mut [f32])| {
         for first in (0..width).step_by(TILE) {

@@ -169,7 +169,7 @@ pub(super) struct Way {
 
 impl Way {
     /// `None` where PROJ knows none, or one of the two is unknown.
-    pub fn between(from: &Crs, to: &Crs) -> Option<Self> {
+    pub(super) fn between(from: &Crs, to: &Crs) -> Option<Self> {
         let axes = [from.axes().transpose(), to.axes()];
         if from.as_defined() == to.as_defined() {
             return Some(Self { axes, transform: None });
@@ -180,7 +180,7 @@ impl Way {
     }
 
     /// Carries all places over; NaN where there is no such place.
-    pub fn carry(&self, places: &mut [DVec2]) {
+    pub(super) fn carry(&self, places: &mut [DVec2]) {
         let [back, on] = self.axes;
         places.iter_mut().for_each(|place| *place = back * *place);
         if let Some(transform) = &self.transform {
@@ -195,7 +195,7 @@ impl Way {
     }
 
     /// One place, `None` where there is no such place.
-    pub fn place(&self, place: DVec2) -> Option<DVec2> {
+    pub(super) fn place(&self, place: DVec2) -> Option<DVec2> {
         let mut places = [place];
         self.carry(&mut places);
         places[0].is_finite().then_some(places[0])

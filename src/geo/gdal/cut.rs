@@ -21,7 +21,7 @@ pub(super) struct Cut {
 
 impl Cut {
     /// Makes the samples of `raster` outside void.
-    pub fn cut(&self, raster: &mut Raster) {
+    pub(super) fn cut(&self, raster: &mut Raster) {
         let grid = &raster.grid;
         let bands = raster.metres.par_chunks_mut(grid.columns * ROWS).enumerate();
         bands.for_each(|(band, metres)| {

@@ -25,12 +25,12 @@ pub(super) struct Ground(Vec<DMat2>);
 
 impl Ground {
     /// Of the middle, first, and the corners of a window; `None` for degrees, and where no place is on the globe.
-    pub fn of(grid: &Grid, window: Window) -> Option<Self> {
+    pub(super) fn of(grid: &Grid, window: Window) -> Option<Self> {
         Self::at(&grid.crs, &places(grid, window))
     }
 
     /// Of places in `crs`.
-    pub fn at(crs: &Crs, places: &[DVec2]) -> Option<Self> {
+    pub(super) fn at(crs: &Crs, places: &[DVec2]) -> Option<Self> {
         let unit = crs.metres_per_unit()?;
         let globe = crs.geographic()?;
         let (way, radii) = (Way::between(crs, &globe)?, globe.radii()?);
@@ -46,30 +46,30 @@ impl Ground {
     }
 
     /// Least and greatest scale: metres on the map a metre on the ground.
-    pub fn scale(&self) -> [f64; 2] {
+    pub(super) fn scale(&self) -> [f64; 2] {
         let scales = self.0.iter().map(scales);
         scales.fold([f64::INFINITY, 0.0], |[least, greatest], [low, high]| [least.min(low), greatest.max(high)])
     }
 
     /// How far east and north are from square on the map, at most: the cosine of the angle between them.
-    pub fn shear(&self) -> f64 {
+    pub(super) fn shear(&self) -> f64 {
         let cosine = |m: &DMat2| m.x_axis.dot(m.y_axis).abs() / (m.x_axis.length() * m.y_axis.length());
         self.0.iter().map(cosine).fold(0.0, f64::max)
     }
 
     /// By which share metres are off at most, along any direction.
-    pub fn off(&self) -> f64 {
+    pub(super) fn off(&self) -> f64 {
         let [least, greatest] = self.scale();
         (1.0 - least).max(greatest - 1.0).max(self.shear())
     }
 
     /// Whether that is more than a drawing should have.
-    pub fn is_off(&self) -> bool {
+    pub(super) fn is_off(&self) -> bool {
         self.off() > TRUE_SCALE
     }
 
     /// What becomes of slopes that are drawn in metres of the map, in words.
-    pub fn slopes(&self) -> &'static str {
+    pub(super) fn slopes(&self) -> &'static str {
         let [least, greatest] = self.scale();
         match (least > 1.0 - TRUE_SCALE, greatest < 1.0 + TRUE_SCALE) {
             (true, false) => "too flat",
@@ -79,7 +79,7 @@ impl Ground {
     }
 
     /// Scale and shear, in words.
-    pub fn words(&self) -> String {
+    pub(super) fn words(&self) -> String {
         let [least, greatest] = self.scale().map(|scale| format!("{scale:.3}"));
         let scale = if least == greatest { least } else { format!("{least} to {greatest}") };
         format!("scale {scale}, shear {:.1} degrees", self.shear().min(1.0).asin().to_degrees())

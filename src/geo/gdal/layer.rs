@@ -70,7 +70,7 @@ pub(super) struct Placed {
 impl Layer {
     /// Of `files`, at least one, each with its lie to the first's grid, north up, and their numbers among all that are named.
     /// `several`: whether messages name them.
-    pub fn of(files: Vec<(Placed, Lie)>, numbers: Vec<usize>, cell: f64, several: bool) -> Option<Self> {
+    pub(super) fn of(files: Vec<(Placed, Lie)>, numbers: Vec<usize>, cell: f64, several: bool) -> Option<Self> {
         let (first, _) = files.first()?;
         let (base, format) = (first.grid.north_up(), first.format.clone());
         let lies = files.iter().map(|(placed, lie)| lie.bounds(&placed.grid));
@@ -84,45 +84,45 @@ impl Layer {
     }
 
     /// The first file, for messages.
-    pub fn path(&self) -> &Path {
+    pub(super) fn path(&self) -> &Path {
         self.sources[0].handles.path()
     }
 
     /// Whether several threads gain by reading at once.
-    pub fn is_parallel(&self) -> bool {
+    pub(super) fn is_parallel(&self) -> bool {
         self.sources.iter().all(|placed| placed.parallel)
     }
 
     /// The tiles in which a window is best read: about those of the first file.
-    pub fn tiling(&self, window: Window) -> Tiling {
+    pub(super) fn tiling(&self, window: Window) -> Tiling {
         let Placed { first, stored, .. } = &self.sources[0];
         Tiling::of(*stored, [0, 1].map(|i| window.first[i] as i64 - first[i]), window.size)
     }
 
     /// Its files by their names alone, in a few words.
-    pub fn name(&self) -> String {
+    pub(super) fn name(&self) -> String {
         let path = self.path();
         and_more(&shown(path.file_name().map_or(path, Path::new)), self.numbers.len())
     }
 
     /// Numbers of its files among all that are named.
-    pub fn numbers(&self) -> &[usize] {
+    pub(super) fn numbers(&self) -> &[usize] {
         &self.numbers
     }
 
     /// Every file on the disk that it is made of.
-    pub fn files(&self) -> impl Iterator<Item = &Path> {
+    pub(super) fn files(&self) -> impl Iterator<Item = &Path> {
         self.sources.iter().flat_map(|placed| placed.handles.listed().paths())
     }
 
     /// The error where one of its files is another than when it was opened: a look at each, none inside.
-    pub fn check(&self) -> Result<()> {
+    pub(super) fn check(&self) -> Result<()> {
         self.sources.iter().try_for_each(|placed| placed.handles.check())
     }
 
     /// Takes what tells one state of the files from any other, and how they are read and laid, into a hash; `None` where a
     /// part is not on the disk.
-    pub fn hash(&self, hash: &mut Xxh3) -> Option<()> {
+    pub(super) fn hash(&self, hash: &mut Xxh3) -> Option<()> {
         hash.update(format!("{:?}", self.grid).as_bytes());
         for Placed { handles, elevation, first, flip, grid, .. } in &self.sources {
             hash.update(format!("{elevation:?} {first:?} {flip:?} {grid:?}\n").as_bytes());
@@ -132,7 +132,7 @@ impl Layer {
     }
 
     /// Reads the samples of `window`, with a tally of the files' numbers. `progress` hears the share done.
-    pub fn read(&self, window: Window, progress: &dyn Fn(f64)) -> Result<(Raster, Tallies)> {
+    pub(super) fn read(&self, window: Window, progress: &dyn Fn(f64)) -> Result<(Raster, Tallies)> {
         let mut raster = Raster::void(self.grid.part(window))?;
         let mut tallies = Tallies::new();
         for (i, placed) in self.sources.iter().enumerate() {
@@ -148,7 +148,7 @@ impl Layer {
     }
 
     /// Reads the samples of `window` that the file at this place has, as if it were alone.
-    pub fn read_of(&self, place: usize, window: Window) -> Result<(Raster, Tally)> {
+    pub(super) fn read_of(&self, place: usize, window: Window) -> Result<(Raster, Tally)> {
         let (mut raster, placed) = (Raster::void(self.grid.part(window))?, &self.sources[place]);
         let mut tally = Tally::new(&placed.elevation);
         placed.read(window, &mut raster, &mut tally, &|_| ())?;
@@ -157,7 +157,7 @@ impl Layer {
 
     /// Whether the files' numbers may be multiples of a step, by their type and, where that leaves it open, by the first
     /// samples of each in `window`.
-    pub fn may_have_steps(&self, window: Window) -> Result<bool> {
+    pub(super) fn may_have_steps(&self, window: Window) -> Result<bool> {
         if self.sources.iter().any(|placed| placed.elevation.is_whole()) {
             return Ok(true);
         }
@@ -172,7 +172,7 @@ impl Layer {
     }
 
     /// The places of the files that have samples in `window`, or voids.
-    pub fn meeting(&self, window: Window) -> impl Iterator<Item = usize> {
+    pub(super) fn meeting(&self, window: Window) -> impl Iterator<Item = usize> {
         (0..self.sources.len()).filter(move |place| self.shared(*place, window).samples() > 0)
     }
 
@@ -187,7 +187,7 @@ impl Layer {
     }
 
     /// The files of which numbers are tallied, each with its rules and its tally.
-    pub fn tallied<'a>(&'a self, tallies: &'a Tallies) -> Vec<Tallied<'a>> {
+    pub(super) fn tallied<'a>(&'a self, tallies: &'a Tallies) -> Vec<Tallied<'a>> {
         let of = |(i, tally): (&usize, &'a Tally)| {
             let placed = self.sources.get(*i)?;
             Some(Tallied { path: placed.handles.path(), elevation: &placed.elevation, tally })
@@ -196,17 +196,17 @@ impl Layer {
     }
 
     /// How many files it is made of.
-    pub fn count(&self) -> usize {
+    pub(super) fn count(&self) -> usize {
         self.sources.len()
     }
 
     /// Whether messages name files, for there are several.
-    pub fn is_of_several(&self) -> bool {
+    pub(super) fn is_of_several(&self) -> bool {
         self.several
     }
 
     /// The grid of the first file.
-    pub fn first_grid(&self) -> &Grid {
+    pub(super) fn first_grid(&self) -> &Grid {
         &self.sources[0].grid
     }
 }
@@ -214,7 +214,7 @@ impl Layer {
 impl Placed {
     /// Opens a file and checks all that can be checked without reading samples. `alone`: whether it is the only one. `like`: a system
     /// whose axes are turned to east and north; others of its definition are turned as they are.
-    pub fn open(
+    pub(super) fn open(
         path: &Path,
         options: &ReadOptions,
         alone: bool,
@@ -243,7 +243,7 @@ impl Placed {
     }
 
     /// The file as it was named.
-    pub fn path(&self) -> &Path {
+    pub(super) fn path(&self) -> &Path {
         self.handles.path()
     }
 

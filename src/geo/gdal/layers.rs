@@ -43,7 +43,7 @@ struct Group {
 
 impl Layers {
     /// Opens `paths`, at least one, and checks all that can be checked without reading samples.
-    pub fn open(paths: &[PathBuf], options: &ReadOptions, history: &mut History) -> Result<Self> {
+    pub(super) fn open(paths: &[PathBuf], options: &ReadOptions, history: &mut History) -> Result<Self> {
         let chosen = options.cell_of.as_deref().map(|path| number_of(path, paths)).transpose()?;
         let mut opening = Opening::default();
         let mut groups: Vec<Group> = Vec::new();
@@ -99,27 +99,27 @@ impl Layers {
     }
 
     /// From the bottom to the top.
-    pub fn all(&self) -> &[Layer] {
+    pub(super) fn all(&self) -> &[Layer] {
         &self.all
     }
 
     /// The one with the first file.
-    pub fn first(&self) -> &Layer {
+    pub(super) fn first(&self) -> &Layer {
         &self.all[self.first]
     }
 
     /// The one whose grid was asked for.
-    pub fn chosen(&self) -> Option<&Layer> {
+    pub(super) fn chosen(&self) -> Option<&Layer> {
         Some(&self.all[self.chosen?])
     }
 
     /// What it was opened from, in a few words.
-    pub fn label(&self) -> String {
+    pub(super) fn label(&self) -> String {
         and_more(&shown(self.first().path()), self.all.iter().map(|layer| layer.numbers().len()).sum())
     }
 
     /// The crop in the units of `grid`: the smallest rectangle around it where these are not those of the first file.
-    pub fn crop_on(&self, grid: &Grid, crop: Option<[f64; 4]>) -> Result<Option<[f64; 4]>> {
+    pub(super) fn crop_on(&self, grid: &Grid, crop: Option<[f64; 4]>) -> Result<Option<[f64; 4]>> {
         let own = &self.first().grid;
         let Some(crop) = crop::on(own, crop)? else { return Ok(None) };
         if own.crs == grid.crs {
@@ -132,13 +132,13 @@ impl Layers {
     }
 
     /// The samples of each layer that `grid` needs, `None` where they do not meet, with whether they fall on its own.
-    pub fn needed(&self, grid: &Grid) -> Vec<Option<(Window, bool)>> {
+    pub(super) fn needed(&self, grid: &Grid) -> Vec<Option<(Window, bool)>> {
         self.all.iter().map(|layer| needed(&layer.grid, grid)).collect()
     }
 
     /// What is to be read of each layer for `target`, from the bottom to the top; of those that do not meet it
     /// nothing. `keep_steps`: heights stay as the files have them.
-    pub fn into_parts(mut self, target: &Target, keep_steps: bool) -> Vec<Part> {
+    pub(super) fn into_parts(mut self, target: &Target, keep_steps: bool) -> Vec<Part> {
         if self.all.len() == 1 {
             return self.all.pop().map(|layer| Part::new(layer, target.window, keep_steps)).into_iter().collect();
         }

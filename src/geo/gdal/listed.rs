@@ -107,7 +107,7 @@ impl State {
 
 impl Listed {
     /// Of an open dataset, and of the `rasters` that an inspection found: it and those that VRTs name, as GDAL calls them.
-    pub fn new(dataset: &Dataset, rasters: &[(PathBuf, Place)], folders: &mut Folders) -> Self {
+    pub(super) fn new(dataset: &Dataset, rasters: &[(PathBuf, Place)], folders: &mut Folders) -> Self {
         let mut files: BTreeSet<PathBuf> = vsi::files_of(dataset).iter().filter_map(on_disk).collect();
         // The first raster is the dataset; its parts are opened for their lists alone.
         for (name, _) in rasters.iter().skip(1).filter(|(_, place)| !matches!(place, Place::Remote)) {
@@ -129,12 +129,12 @@ impl Listed {
     }
 
     /// Their paths.
-    pub fn paths(&self) -> impl Iterator<Item = &Path> {
+    pub(super) fn paths(&self) -> impl Iterator<Item = &Path> {
         self.files.keys().map(PathBuf::as_path)
     }
 
     /// The first of them that is another than when it was opened, or gone: a look at each, none inside.
-    pub fn changed(&self) -> Option<&Path> {
+    pub(super) fn changed(&self) -> Option<&Path> {
         let changed = |(file, then): &(&PathBuf, &Option<State>)| match (then, State::now(file)) {
             (Some(then), Some(now)) => then.is_of_others(&now),
             (then, now) => then.is_some() != now.is_some(),
@@ -144,7 +144,7 @@ impl Listed {
 
     /// Takes what tells their state from any other into a hash: real path, size, times and both ends of each. `None` where a
     /// part is not on the disk or cannot be read.
-    pub fn hash(&self, hash: &mut Xxh3) -> Option<()> {
+    pub(super) fn hash(&self, hash: &mut Xxh3) -> Option<()> {
         if self.remote {
             return None;
         }

@@ -11,7 +11,7 @@ use crate::error::{Error, Result, Setting, without_end};
 use crate::message;
 
 /// Farthest that GDAL fills from a sample with data, in samples: its own default.
-pub const FILL_REACH: u32 = 100;
+pub(super) const FILL_REACH: u32 = 100;
 /// Farthest, in cells of the finer of two grids, that the warper's quick way of placing samples may miss the exact one.
 const WARP_CELLS: f64 = 0.01;
 /// From this many samples a sample on, nothing is smoothed when warping; from its inverse on, samples are enlarged.
@@ -29,7 +29,7 @@ pub(super) struct Raster {
 
 impl Raster {
     /// All void.
-    pub fn void(grid: Grid) -> Result<Self> {
+    pub(super) fn void(grid: Grid) -> Result<Self> {
         let samples = grid.columns * grid.rows;
         let mut metres = Vec::new();
         without_end(|| metres.try_reserve_exact(samples)).map_err(|e| out_of_memory(&grid, &e.to_string()))?;
@@ -38,13 +38,13 @@ impl Raster {
     }
 
     /// How many samples are void.
-    pub fn voids(&self) -> usize {
+    pub(super) fn voids(&self) -> usize {
         self.metres.iter().filter(|height| height.is_nan()).count()
     }
 
     /// Lays `from` over what is here, by cubic convolution in the systems and grids of both; voids of `from` cover
     /// nothing. `progress` hears the share done.
-    pub fn lay(&mut self, from: &Self, progress: &dyn Fn(f64)) -> Result<()> {
+    pub(super) fn lay(&mut self, from: &Self, progress: &dyn Fn(f64)) -> Result<()> {
         let threads = "NUM_THREADS=ALL_CPUS";
         // GDAL's own estimate takes turned grids for smaller ones and blurs them.
         let density = density(&from.grid, &self.grid);
@@ -65,7 +65,7 @@ impl Raster {
     }
 
     /// Fills voids up to [`FILL_REACH`] samples from data, by inverse distance weighting. `progress` hears the share done.
-    pub fn fill(&mut self, progress: &dyn Fn(f64)) -> Result<()> {
+    pub(super) fn fill(&mut self, progress: &dyn Fn(f64)) -> Result<()> {
         let filled = Lent::writing(&mut self.metres, &self.grid).and_then(|mut onto| onto.fill(FILL_REACH, progress));
         filled.map_err(|words| out_of_memory(&self.grid, &words))
     }

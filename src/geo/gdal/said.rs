@@ -29,7 +29,7 @@ pub(super) struct Said<'a> {
 
 impl<'a> Said<'a> {
     /// Of the band of `source`.
-    pub fn of(source: &'a Source) -> Self {
+    pub(super) fn of(source: &'a Source) -> Self {
         let mut said = Self { own: (&source.dataset, source.band), others: Vec::new() };
         let mut vrt = source.rasters.first().map(|(name, _)| name.clone());
         while let Some(name) = vrt.filter(|name| said.others.len() < DEPTH && xml::is_vrt(name)) {
@@ -45,12 +45,12 @@ impl<'a> Said<'a> {
     }
 
     /// What is said under that name, by the nearest that says it; empty where nobody does.
-    pub fn attribute(&self, name: &str) -> String {
+    pub(super) fn attribute(&self, name: &str) -> String {
         self.bands().find_map(|(dataset, band)| attribute(dataset, &band, name)).unwrap_or_default()
     }
 
     /// What the band and its variable are called.
-    pub fn names(&self) -> Vec<String> {
+    pub(super) fn names(&self) -> Vec<String> {
         let of = |(dataset, band): (&Dataset, RasterBand)| {
             [band.description().ok(), band.metadata_item("NETCDF_VARNAME", ""), variable(dataset, &band)]
         };

@@ -40,7 +40,7 @@ pub(super) struct Smoothed {
 
 impl Smoothing {
     /// Makes the heights of a window of `part` the smoothest within their steps; the window's halo is part of it.
-    pub fn smooth(&self, part: &Part, heights: &mut [f32], window: Window, parallel: bool) -> Result<()> {
+    pub(super) fn smooth(&self, part: &Part, heights: &mut [f32], window: Window, parallel: bool) -> Result<()> {
         let mut half = match self.steps.common_half() {
             Some(half) => vec![half; heights.len()],
             None => part.halves(&self.steps, window)?,

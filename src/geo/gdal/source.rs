@@ -57,7 +57,7 @@ impl Source {
     /// Opens `path` for the elevations in `band`, counted from 1. Fails when it is missing, no file, empty, no raster of
     /// a format on the list, or no grid of real numbers; and, without `allow_remote`, when it or anything it names lies
     /// on a network or, for a VRT, outside its folder.
-    pub fn open(path: &Path, band: usize, allow_remote: bool) -> Result<Self> {
+    pub(super) fn open(path: &Path, band: usize, allow_remote: bool) -> Result<Self> {
         formats::restrict(allow_remote);
         let Connection { name, place, exact, member } = connection(path, allow_remote)?;
         let vrt::Inspected { is_vrt, rasters } = vrt::inspect(path, &name, &place, allow_remote)?;
@@ -76,7 +76,7 @@ impl Source {
     }
 
     /// The band of elevations.
-    pub fn band(&self) -> Result<RasterBand<'_>> {
+    pub(super) fn band(&self) -> Result<RasterBand<'_>> {
         self.dataset.rasterband(self.band).map_err(|_| {
             let count = self.dataset.raster_count();
             let bands = if count == 1 { "1 band".to_owned() } else { format!("{count} bands") };
@@ -86,13 +86,13 @@ impl Source {
     }
 
     /// An error about this file.
-    pub fn error(&self, what: impl Into<Message>, remedy: impl Into<Message>) -> Error {
+    pub(super) fn error(&self, what: impl Into<Message>, remedy: impl Into<Message>) -> Error {
         Error::input(&self.path, what, remedy)
     }
 
     /// The error for samples that cannot be read, with GDAL's words where it has any: it says once, not twice, that a
     /// part of a mosaic is missing.
-    pub fn unreadable(&self, words: Option<&str>) -> Error {
+    pub(super) fn unreadable(&self, words: Option<&str>) -> Error {
         if let Some(words) = words.filter(|words| lacks_memory(words)) {
             return Error::limit(
                 format!("{}: not enough memory to read it ({})", shown(&self.path), one_line(words, &self.path)),

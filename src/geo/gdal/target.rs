@@ -66,7 +66,7 @@ struct Asked<'a> {
 impl Target {
     /// For the grid of the files; `path` is the first, for messages; `crop` is in the coordinates of `files`, and `typed` the
     /// system in which another would be typed. Fails when too little is left.
-    pub fn of(
+    pub(super) fn of(
         files: &Grid,
         path: &Path,
         crop: Option<[f64; 4]>,
@@ -104,7 +104,7 @@ impl Target {
     }
 
     /// Cell size in metres at which no more than `fit` samples are left.
-    pub fn metres_to_fit(&self, fit: u64) -> f64 {
+    pub(super) fn metres_to_fit(&self, fit: u64) -> f64 {
         let cell = self.grid.cell() * self.grid.crs.metres_per_unit().unwrap_or(1.0);
         let samples = self.grid.columns as f64 * self.grid.rows as f64;
         // A percent more, for rows and columns are whole.

@@ -48,7 +48,7 @@ struct Line {
 ///
 /// # Errors
 /// [`Error::Input`] where the file cannot be read, or there is no way in it, or several are.
-pub fn track(path: &Path, allow_remote: bool) -> Result<Track> {
+pub(crate) fn track(path: &Path, allow_remote: bool) -> Result<Track> {
     // Of GPX heights stand in attributes otherwise. Every GDAL that the bindings know has the option.
     let _ = config::set_thread_local_config_option("GPX_ELE_AS_25D", "YES");
     let wrong = |what: Message, remedy: Message| Error::input(path, what, remedy);

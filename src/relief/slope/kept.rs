@@ -35,7 +35,7 @@ const LEAST: usize = 200;
 
 /// Where the lines of a DEM are kept.
 #[derive(Debug)]
-pub struct Store {
+pub(super) struct Store {
     cache: Cache,
     /// Of all that lines depend on.
     hash: u128,
@@ -79,7 +79,7 @@ impl Store {
     ///
     /// # Errors
     /// Those of reading the samples.
-    pub fn new(cache: &Cache, dem: &Dem, exaggeration: f64, land: &Land) -> Result<Option<Self>> {
+    pub(super) fn new(cache: &Cache, dem: &Dem, exaggeration: f64, land: &Land) -> Result<Option<Self>> {
         if cache.folder().is_none() {
             return Ok(None);
         }
@@ -95,7 +95,7 @@ impl Store {
     ///
     /// # Errors
     /// None of its own.
-    pub fn blocks(
+    pub(super) fn blocks(
         &self,
         wanted: &[BlockAt],
         make: impl FnOnce() -> Vec<Arc<SlopeBlock>>,

@@ -24,7 +24,7 @@ const SHORTEST: f64 = 0.5;
 
 /// Makes lines of a level.
 #[derive(Debug)]
-pub struct Tracer<'a> {
+pub(super) struct Tracer<'a> {
     walker: Walker<'a>,
     spacing: f64,
     reach: f64,
@@ -44,7 +44,7 @@ enum Step {
 
 impl<'a> Tracer<'a> {
     /// Of lines of a level.
-    pub fn new(walker: Walker<'a>, blocks: &Blocks, level: u32) -> Self {
+    pub(super) fn new(walker: Walker<'a>, blocks: &Blocks, level: u32) -> Self {
         let between = blocks.point_step(level);
         let steps = (between / (STEP * blocks.unit)).ceil();
         Self {
@@ -59,7 +59,7 @@ impl<'a> Tracer<'a> {
     }
 
     /// The line through a seed among others; none where it may not begin or gets too short.
-    pub fn line(&mut self, others: &Neighbours, seed: DVec2) -> Option<Vec<SlopePoint>> {
+    pub(super) fn line(&mut self, others: &Neighbours, seed: DVec2) -> Option<Vec<SlopePoint>> {
         if !others.leave(seed, self.spacing as f32) || !self.walker.land.may_slope(seed) {
             return None;
         }

@@ -63,7 +63,7 @@ impl Judge<'_> {
     }
 
     /// Share of truth's length within 1 px of a chain.
-    pub fn recalled(&self, chains: &[Vec<DVec2>]) -> f64 {
+    pub(crate) fn recalled(&self, chains: &[Vec<DVec2>]) -> f64 {
         let segment = |[a, b]: [DVec2; 2]| Segment::new(a.to_array(), b.to_array());
         let lines = RTree::bulk_load(chains.iter().flat_map(|chain| sides(chain)).map(segment).collect());
         let to_chain = |piece: &&Piece| {

@@ -69,7 +69,7 @@ struct Part {
 
 impl Curve {
     /// Metres over ground.
-    pub fn length(&self) -> f64 {
+    pub(super) fn length(&self) -> f64 {
         match self {
             Self::Spline(spline) => spline.length,
             Self::Circle { radius, .. } => TAU * radius,
@@ -77,7 +77,7 @@ impl Curve {
     }
 
     /// Whether it ends where it begins.
-    pub fn is_closed(&self) -> bool {
+    pub(super) fn is_closed(&self) -> bool {
         match self {
             Self::Spline(spline) => spline.closed,
             Self::Circle { .. } => true,
@@ -85,7 +85,7 @@ impl Curve {
     }
 
     /// The place so many metres from its start.
-    pub fn place(&self, metres: f64) -> DVec2 {
+    pub(super) fn place(&self, metres: f64) -> DVec2 {
         match self {
             Self::Spline(spline) => spline.place(metres),
             Self::Circle { centre, radius } => {
@@ -98,7 +98,7 @@ impl Curve {
 
 impl Spline {
     /// Through points, at least two, none where the one before it is; a closed one goes on from the last to the first.
-    pub fn new(points: &[DVec2], closed: bool) -> Self {
+    pub(super) fn new(points: &[DVec2], closed: bool) -> Self {
         let count = points.len();
         let point = |i: isize| match closed {
             true => points[i.rem_euclid(count as isize) as usize],
@@ -146,7 +146,7 @@ impl Spline {
 
     /// Directions in the map along the way, radians clockwise from the y axis, not leaping at a full turn: (metres, radians),
     /// and how far a closed way turns in all.
-    pub fn headings(&self) -> (Vec<(f64, f64)>, f64) {
+    pub(super) fn headings(&self) -> (Vec<(f64, f64)>, f64) {
         let mut nodes: Vec<(f64, f64)> = Vec::new();
         let mut on = |metres: f64, slope: DVec2| {
             let heading = slope.x.atan2(slope.y);
