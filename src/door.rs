@@ -1,10 +1,10 @@
 //! What this crate's own binary and tests look into beside what users need: none of it is promised to anybody.
 
 pub mod cache {
-    pub use crate::cache::Key;
-    pub use crate::cache::Kind;
-    pub use crate::cache::entry::Kept;
-    pub use crate::cache::entry::Sheet;
+    pub use crate::cache::CacheKey;
+    pub use crate::cache::CacheKind;
+    pub use crate::cache::entry::KeptEntry;
+    pub use crate::cache::entry::NewEntry;
 }
 
 pub mod cli {
@@ -19,7 +19,7 @@ pub mod cli {
         pub use crate::cli::info::*;
     }
     pub mod jobs {
-        pub use crate::cli::jobs::Share;
+        pub use crate::cli::jobs::JobShare;
     }
     pub mod lines {
         pub use crate::cli::lines::LinesArguments;
@@ -37,7 +37,7 @@ pub mod cli {
         pub use crate::cli::serve::run;
     }
     pub mod talk {
-        pub use crate::cli::talk::{Lines, Talk, TalkArguments};
+        pub use crate::cli::talk::{LinesTo, Talk, TalkArguments};
     }
     pub mod threads {
         pub use crate::cli::threads::*;
@@ -52,7 +52,7 @@ pub mod cli {
         pub use crate::cli::words::*;
     }
     pub mod work {
-        pub use crate::cli::work::Work;
+        pub use crate::cli::work::JobWork;
     }
 }
 
@@ -98,8 +98,8 @@ pub mod gpu {
     pub mod pass {
         pub use crate::gpu::pass::{parse, reflect};
     }
-    pub mod pool {
-        pub use crate::gpu::pool::Pool;
+    pub mod slot_cache {
+        pub use crate::gpu::slot_cache::SlotCache;
     }
     pub mod shaders {
         pub use crate::gpu::shaders::{OWN_CONSTANTS, STRIP_FACETS, source};
@@ -120,7 +120,7 @@ pub mod gpu {
 pub mod ink {
     pub use crate::ink::unstroked::unstroked;
     pub mod drawing {
-        pub use crate::ink::drawing::{Form, Layer, Pen};
+        pub use crate::ink::drawing::{Layer, Pen, StrokeForm};
     }
     pub mod outline {
         pub use crate::ink::outline::outline;
@@ -141,13 +141,13 @@ pub mod job {
     pub use crate::job::Frames;
     pub use crate::job::Inks;
     pub use crate::job::Job;
-    pub use crate::job::Made;
+    pub use crate::job::JobFile;
     pub use crate::job::Manifest;
     pub use crate::job::Merged;
     pub use crate::job::Pattern;
     pub use crate::job::Shard;
     pub mod manifest {
-        pub use crate::job::manifest::Sequence;
+        pub use crate::job::manifest::SequenceKey;
     }
     pub mod name {
         pub use crate::job::name::Naming;
@@ -169,7 +169,7 @@ pub mod line {
     pub use crate::line::link::link;
     pub use crate::line::one_pixel::one_pixel_wide;
     pub use crate::line::overhead::Overhead;
-    pub use crate::line::way::Way;
+    pub use crate::line::way::LandWay;
     pub mod detail {
         pub use crate::line::detail::From;
     }
@@ -177,7 +177,7 @@ pub mod line {
         pub use crate::line::ends::*;
     }
     pub mod hachures {
-        pub use crate::line::hachures::{Seen, hatched};
+        pub use crate::line::hachures::{Viewer, hatched};
     }
     pub mod identity {
         pub use crate::line::identity::{Held, key, names};
@@ -200,25 +200,25 @@ pub mod measure {
         pub use crate::measure::chains::drawn_recall;
     }
     pub mod compare {
-        pub use crate::measure::compare::{Comparison, Found, Hearing, LEAST_TRUTH_LEVEL, Shown};
+        pub use crate::measure::compare::{CompareObserver, Comparison, Finding, LEAST_TRUTH_LEVEL, ShownPicture};
     }
     pub mod cost {
         pub use crate::measure::cost::{PassCost, Quantities, Traffic};
     }
     pub mod curves {
-        pub use crate::measure::curves::Curves;
+        pub use crate::measure::curves::MeasuredCurves;
     }
     pub mod depth_draw {
         pub use crate::measure::depth_draw::*;
     }
     pub mod figures {
         pub use crate::measure::figures::{
-            AtDistance, Band, ChainFigures, Convergence, DrawnLevel, FloorFigures, LevelOffset, PassFigures, Place,
-            Run, SequenceRun, TruthReport,
+            AtDistance, ChainFigures, Convergence, DepthBand, DrawnLevel, FloorFigures, LevelOffset, PassFigures,
+            PlaceOffsets, Run, SequenceRun, TruthReport,
         };
     }
     pub mod kept {
-        pub use crate::measure::kept::{Seen, ids_kept};
+        pub use crate::measure::kept::{SeenChains, ids_kept};
     }
     pub mod memory {
         pub use crate::measure::memory::{peak, reset_peak};
@@ -235,7 +235,7 @@ pub mod plan {
     pub use crate::plan::batches::batches;
     pub use crate::plan::frame::Frame;
     pub use crate::plan::passes::PassName;
-    pub use crate::plan::pieces::Piece;
+    pub use crate::plan::pieces::PagePiece;
     pub use crate::plan::pieces::Pieces;
     pub use crate::plan::registry::Yields;
     pub mod batches {
@@ -245,13 +245,13 @@ pub mod plan {
         pub use crate::plan::detail::*;
     }
     pub mod frame {
-        pub use crate::plan::frame::Kept;
+        pub use crate::plan::frame::KeptLattice;
     }
     pub mod passes {
         pub use crate::plan::passes::passes;
     }
     pub mod registry {
-        pub use crate::plan::registry::{Look, Marker};
+        pub use crate::plan::registry::{Marker, PlotLook};
     }
     pub mod pieces {
         pub use crate::plan::pieces::{HALO, LARGEST_PAGE, LARGEST_PIECE, LONGEST_PIECE, Rectangle};
@@ -270,13 +270,13 @@ pub mod relief {
         pub use crate::relief::flow::Flow;
     }
     pub mod frame {
-        pub use crate::relief::frame::Frame;
+        pub use crate::relief::frame::FramedGrid;
     }
     pub mod slope {
         pub use crate::relief::slope::{Need, SlopeBlock, SlopeLine, SlopePoint, SlopeRules, Slopes};
     }
     pub mod threshold {
-        pub use crate::relief::threshold::{Trial, found};
+        pub use crate::relief::threshold::{AreaTrial, found};
     }
 }
 
@@ -293,7 +293,7 @@ pub mod report {
         pub use crate::report::pictures::of_shown;
     }
     pub mod results {
-        pub use crate::report::results::{Machine, Results, SCHEMA, Scene, TruthSummary};
+        pub use crate::report::results::{ComparedScene, Machine, Results, SCHEMA, TruthSummary};
     }
 }
 

@@ -121,6 +121,34 @@
 //! | [`report`] | comparisons as JSON, CSV, a plot and a page to read |
 //! | [`cli`] | flags as typed become options checked |
 
+//!
+//! # Words
+//!
+//! Names are those of the field, where it has one. What it calls otherwise, or what this crate has of its own:
+//!
+//! | word | means |
+//! |---|---|
+//! | sample, cell | a height of the grid; the square between four of them |
+//! | patch | a cubic PN triangle (Vlachos et al. 2001), half a cell |
+//! | facet | a flat triangle that is drawn, on the integer lattice |
+//! | chunk | 16 x 16 quads of facets with one level of detail: what others call a cluster or tile of the mesh |
+//! | batch, slot | chunks that are drawn at once; the place of one in the device's buffers |
+//! | toward, away | front and back facing |
+//! | rim, border | the edge of the DEM and of its voids; the pass that draws it |
+//! | mask, ink | the pixels that bear lines; one of them with its kind, depth and place |
+//! | walk | going over the lattice between the points that two pixels show |
+//! | seam | where chunks of different levels meet, made crack-free |
+//! | sight | visibility of a line, as against that of a pixel |
+//! | laid | draped on the facets that are drawn |
+//! | curve, chain, stroke | a line on the surface; a visible run of one on the page; what a pen draws of it |
+//! | economy, recession | leaving out lines that crowd or hardly part near from far; fading with distance |
+//! | pops | what changes on the page between frames beyond what the camera moves |
+//! | bare | of land: without hachures, since strokes would stand too close |
+//! | frustum, culling | what a page sees, as seen on the map; leaving out what lies beyond it or cannot change the picture |
+//! | slot cache | what frames leave on the device for later ones |
+//! | yardstick | work that no choice of ours changes, by which times are told |
+//! | the door | what the binary and the tests look into and nobody else: `hachure::door` |
+
 #![deny(missing_docs)]
 #![warn(unreachable_pub)]
 // Those who read the code follow such links, or `cargo doc --document-private-items`.

@@ -20,7 +20,7 @@ use hachure::door::measure::{DepthDraw, depth_draw};
 use hachure::error::{Error, Result};
 use hachure::geo::read;
 use hachure::gpu::{AdapterChoice, Gpu, Int64};
-use hachure::plan::{Border, Method, Plan, Share};
+use hachure::plan::{Border, Method, Plan, SharedVertices};
 use hachure::render::Renderer;
 use hachure::surface::{Level, Surface};
 use hachure::view::Camera;
@@ -48,8 +48,8 @@ struct Row {
 const ROWS: [Row; 5] = [
     row("toward-away", Method::TowardAway { wide: false }, Int64::IfPresent, [Some(1.0), Some(0.6)]),
     row("walk", Method::Walk, Int64::IfPresent, [Some(1.4), Some(0.9)]),
-    row("adjacency-edge", Method::Adjacency { share: Share::Edge }, Int64::IfPresent, [None; 2]),
-    row("adjacency-corner", Method::Adjacency { share: Share::Corner }, Int64::IfPresent, [None; 2]),
+    row("adjacency-edge", Method::Adjacency { share: SharedVertices::Edge }, Int64::IfPresent, [None; 2]),
+    row("adjacency-corner", Method::Adjacency { share: SharedVertices::Corner }, Int64::IfPresent, [None; 2]),
     row("walk-u32", Method::Walk, Int64::Never, [None; 2]),
 ];
 

@@ -11,7 +11,7 @@ use glam::{DVec2, DVec3};
 use hachure::line::Kind;
 use hachure::plan::{Border, Method, Plan};
 use hachure::surface::Surface;
-use hachure::truth::{Inked, Mask, Piece, Truth};
+use hachure::truth::{Inked, Mask, Truth, TruthPiece};
 use hachure::view::Camera;
 
 use crate::closed_forms::GAUSSIAN;
@@ -86,7 +86,7 @@ fn rim(form: &Form, shape: &Shape, camera: &Camera, part: Part) -> Truth {
     let eye = about_middle(camera.eye);
     let place = |g: DVec2| DVec2::new(g.x, -g.y) * form.cell + DVec2::new(-form.half(), form.half());
     let grid = |p: DVec2| (p - DVec2::new(-form.half(), form.half())) * DVec2::new(1.0, -1.0) / form.cell;
-    let mut seen: Vec<Piece> = Vec::new();
+    let mut seen: Vec<TruthPiece> = Vec::new();
     for corners in shape.rims {
         for (i, &a) in corners.iter().enumerate() {
             let (a, b) = (DVec2::from(a), DVec2::from(corners[(i + 1) % corners.len()]));

@@ -9,9 +9,9 @@ use std::time::{Duration, Instant, SystemTime};
 
 use gdal::raster::Buffer;
 use gdal::{DriverManager, Metadata};
-use hachure::cache::{Cache, Hearing};
+use hachure::cache::{Cache, CacheObserver};
 use hachure::dem::Dem;
-use hachure::door::cache::{Kept, Key, Kind, Sheet};
+use hachure::door::cache::{CacheKey, CacheKind, KeptEntry, NewEntry};
 use hachure::door::cli::words::told;
 use hachure::geo::{ReadOptions, read};
 use tempfile::TempDir;
@@ -94,9 +94,9 @@ impl Place {
 }
 
 /// What is kept of something by number.
-fn key(number: u128) -> Key {
-    Key {
-        kind: Kind { name: "truth", format: 7, words: ["a number", "a kept number"] },
+fn key(number: u128) -> CacheKey {
+    CacheKey {
+        kind: CacheKind { name: "truth", format: 7, words: ["a number", "a kept number"] },
         hash: number,
         of: format!("number {number}"),
     }
@@ -105,13 +105,13 @@ fn key(number: u128) -> Key {
 /// Gets `number` with 1000 bytes of it, and what was warned of; `made` counts how often they are made.
 fn get(cache: &Cache, number: u128, made: &AtomicUsize, slow: Duration) -> (Vec<u8>, Vec<String>) {
     let warnings = std::cell::RefCell::new(Vec::new());
-    let hearing = Hearing { warn: &|message| warnings.borrow_mut().push(told(message)), progress: &|_| () };
-    let recall = |mut kept: Kept| {
+    let hearing = CacheObserver { warn: &|message| warnings.borrow_mut().push(told(message)), progress: &|_| () };
+    let recall = |mut kept: KeptEntry| {
         let mut bytes = vec![0; kept.bytes as usize];
         std::io::Read::read_exact(&mut kept.file, &mut bytes)?;
         Ok(bytes)
     };
-    let make = |sheet: Option<Sheet>, _: &dyn Fn(f64)| {
+    let make = |sheet: Option<NewEntry>, _: &dyn Fn(f64)| {
         made.fetch_add(1, Ordering::Relaxed);
         thread::sleep(slow);
         let bytes = vec![number as u8; 1000];

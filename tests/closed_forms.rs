@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use hachure::line::Kind;
-use hachure::plan::{Border, Method, Share};
+use hachure::plan::{Border, Method, SharedVertices};
 use hachure::surface::Surface;
 use hachure::truth::Truth;
 use hachure::truth::metrics::Judge;
@@ -246,7 +246,7 @@ fn adjacency_finds_the_line_and_floods_beside_it() {
     let surface = Arc::new(Surface::new(coarse.dem(|_, _| true)));
     let camera = look(from_middle(CASES[0].eyes[0]), from_middle(CASES[0].target), 60.0, PAGE);
     let (truth, _) = coarse.contours(&camera);
-    let [edge, corner] = [Share::Edge, Share::Corner].map(|share| {
+    let [edge, corner] = [SharedVertices::Edge, SharedVertices::Corner].map(|share| {
         let s = score(&draw_mask(&surface, &camera, level(1), Method::Adjacency { share }, Border::Off), &truth);
         report(&CASES[0], &format!("adjacency {share:?}"), &s);
         s

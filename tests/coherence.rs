@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use hachure::cache::Cache;
-use hachure::door::measure::compare::Hearing;
+use hachure::door::measure::compare::CompareObserver;
 use hachure::door::measure::{Comparison, Sequence};
 use hachure::door::report::lines::lines;
 use hachure::error::Result;
@@ -66,7 +66,7 @@ fn run(value: &dyn Fn(&str) -> Option<String>) -> Result<()> {
     };
     let gpu = Arc::new(Gpu::open(&AdapterChoice::Best, Int64::IfPresent)?);
     let (step, frames) = (number("step", 1.0), number("frames", 20.0) as u32);
-    let hearing = Hearing {
+    let hearing = CompareObserver {
         stage: &|_, _| (),
         warn: &|_| (),
         found: &|found| {

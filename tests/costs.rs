@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
 use hachure::door::measure::cost::{PassCost, Quantities};
 use hachure::door::plan::batches::BATCH_CHUNKS;
-use hachure::door::plan::frame::Kept;
+use hachure::door::plan::frame::KeptLattice;
 use hachure::door::plan::passes::passes;
 use hachure::door::plan::{Frame, batches};
 use hachure::plan::{Border, Detail, Method, Plan};
@@ -32,7 +32,7 @@ fn from_south(surface: &Surface) -> Camera {
 fn frame(n: u32, int64: bool) -> Frame {
     let surface = flat();
     let plan = Plan::new(level(n), Method::Walk, Border::On);
-    Frame::new(&plan, &surface, &from_south(&surface), int64, &mut Kept::default()).expect("a frame")
+    Frame::new(&plan, &surface, &from_south(&surface), int64, &mut KeptLattice::default()).expect("a frame")
 }
 
 /// The same with more chunks than one batch holds.

@@ -8,7 +8,7 @@ use hachure::door::line::crowded;
 use hachure::error::Error;
 use hachure::ink::plot::Journey;
 use hachure::ink::style::Weight;
-use hachure::ink::{Colour, Drawing, Form, Layer, Pen, Sheet, Stroke, StrokePoint, Style, draw, write_png};
+use hachure::ink::{Colour, Drawing, Layer, Pen, Sheet, Stroke, StrokeForm, StrokePoint, Style, draw, write_png};
 use hachure::line::{Chain, ChainPoint, InkRaster, Kind, Line, Lines, Marks, Pixel, Recession};
 use hachure::view::{Camera, Perspective};
 
@@ -116,7 +116,8 @@ fn jumps_thicken_lines() {
 /// The page of one layer in black on white, gray values by row and column.
 fn page(width: u32, height: u32, pen: f64, strokes: Vec<Stroke>) -> image::GrayImage {
     let pen = Pen { width: pen, colour: Colour([0; 3]), opacity: 1.0 };
-    let layers = vec![Layer { name: "1 ink".into(), pen, form: Form::Outlines, found: Journey::default(), strokes }];
+    let layers =
+        vec![Layer { name: "1 ink".into(), pen, form: StrokeForm::Outlines, found: Journey::default(), strokes }];
     let sheet = Sheet { size: DVec2::new(width.into(), height.into()), margin: 0.0 };
     let mut file = Vec::new();
     write_png(&Drawing { sheet, paper: Colour([255; 3]), layers, seal: None }, 1.0, &mut file).unwrap();

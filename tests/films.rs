@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use glam::DVec2;
-use hachure::door::ink::drawing::{Form, Layer, Pen};
+use hachure::door::ink::drawing::{Layer, Pen, StrokeForm};
 use hachure::door::job::{Film, Inks};
 use hachure::ink::plot::Journey;
 use hachure::ink::{Colour, Drawing, Sheet, Stroke, StrokePoint, write_png};
@@ -26,7 +26,7 @@ fn pictures(folder: &Path, count: u32) -> Vec<PathBuf> {
     let layer = |colour, stroke| Layer {
         name: "1 a".to_owned(),
         pen: Pen { width: 1.3, colour, opacity: 1.0 },
-        form: Form::Outlines,
+        form: StrokeForm::Outlines,
         found: Journey::default(),
         strokes: vec![stroke],
     };

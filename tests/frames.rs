@@ -10,7 +10,7 @@ use hachure::door::surface::lattice::CHUNK_VERTICES;
 use hachure::error::Result;
 use hachure::gpu::Gpu;
 use hachure::line::InkRaster;
-use hachure::plan::{Border, Method, Plan, Share};
+use hachure::plan::{Border, Method, Plan, SharedVertices};
 use hachure::render::{Drawn, FrameTime, Page, Renderer};
 use hachure::surface::{Level, Surface};
 use hachure::truth::Mask;
@@ -39,7 +39,7 @@ pub const METHODS: [(&str, Method); Method::ALL.len() - 1] = {
 };
 
 /// The method of tests that look at facets: its raster keeps depth and ID.
-pub const BY_ID: Method = Method::Adjacency { share: Share::Edge };
+pub const BY_ID: Method = Method::Adjacency { share: SharedVertices::Edge };
 
 /// A renderer that draws one plan.
 pub struct Planned {

@@ -9,8 +9,8 @@ use std::fs;
 
 use glam::DVec2;
 use hachure::dem::Dem;
-use hachure::door::line::Way;
-use hachure::door::line::hachures::{Seen, hatched};
+use hachure::door::line::LandWay;
+use hachure::door::line::hachures::{Viewer, hatched};
 use hachure::geo::{ReadOptions, read};
 use hachure::ink::HachureStyle;
 use hachure::line::Chain;
@@ -107,8 +107,8 @@ fn shadow_begins_where_light_is_less_than_on_level_land() {
 /// The places of a map's lines and how strongly each is shown, lines never cut.
 fn shown(map: &Map, black_at: f64) -> FxHashMap<[u64; 2], f32> {
     let look = Hachures { black_at, length: 1e9, ..map.look };
-    let ways = hatched(map.slopes(), &look, Seen::Above(&map.overhead)).expect("lines").ways;
-    let places = |way: &Way| {
+    let ways = hatched(map.slopes(), &look, Viewer::Above(&map.overhead)).expect("lines").ways;
+    let places = |way: &LandWay| {
         way.points.iter().map(|point| (point.at.to_array().map(f64::to_bits), point.weight)).collect::<Vec<_>>()
     };
     ways.iter().flat_map(places).collect()

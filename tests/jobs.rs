@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
 use hachure::cache::Cache;
-use hachure::door::job::manifest::Sequence;
+use hachure::door::job::manifest::SequenceKey;
 use hachure::door::job::name::Naming;
-use hachure::door::job::{Frames, Job, Made, Manifest, Merged, Pattern, Shard};
+use hachure::door::job::{Frames, Job, JobFile, Manifest, Merged, Pattern, Shard};
 use hachure::ink::Seal;
 
 #[test]
@@ -117,7 +117,7 @@ fn made(folder: &Path, number: u32) -> Job {
     let name = Naming::new().with("number", number.to_le_bytes()).name();
     let seal = Seal { job: name, adapter: "none".to_owned() };
     fs::write(&path, format!("<svg><metadata>{seal}</metadata>{}</svg>\n", " ".repeat(100))).expect("a file");
-    Job { number, called: format!("number {number}"), files: vec![Made { path, name }] }
+    Job { number, called: format!("number {number}"), files: vec![JobFile { path, name }] }
 }
 
 #[test]
@@ -126,7 +126,7 @@ fn a_job_is_done_where_its_files_are_whole_and_of_its_name() {
     let job = made(folder.path(), 3);
     let path = &job.files[0].path;
     assert!(job.is_done());
-    let other = Job { files: vec![Made { name: job.files[0].name + 1, path: path.clone() }], ..job.clone() };
+    let other = Job { files: vec![JobFile { name: job.files[0].name + 1, path: path.clone() }], ..job.clone() };
     assert!(!other.is_done(), "of another name");
     let text = fs::read_to_string(path).expect("its text");
     for (broken, what) in [
@@ -142,8 +142,8 @@ fn a_job_is_done_where_its_files_are_whole_and_of_its_name() {
     assert!(!job.is_done(), "gone");
 }
 
-fn sequence(count: u32, job: u128) -> Sequence {
-    Sequence {
+fn sequence(count: u32, job: u128) -> SequenceKey {
+    SequenceKey {
         of: format!("{count} numbers"),
         sequence: u128::from(count) << 100,
         job,
@@ -190,7 +190,7 @@ fn a_folder_takes_one_sequence() {
     assert!(Manifest::refuse_others(folder, &sequence(10, 2)).is_ok(), "another look of the same is drawn over");
     let said = Manifest::refuse_others(folder, &sequence(12, 1)).expect_err("another sequence").to_string();
     assert!(said.contains("it is the manifest of 10 numbers, this is 12 numbers; give another folder"), "{said}");
-    let list = |count| Sequence { fps: None, ..sequence(count, 1) };
+    let list = |count| SequenceKey { fps: None, ..sequence(count, 1) };
     assert!(Manifest::refuse_others(folder, &list(12)).is_ok(), "lists of drawings stand beside others");
     for count in [4, 5] {
         Manifest::new(&list(count), Shard::WHOLE, None, &[], folder).write(folder).expect("a manifest");

@@ -3,7 +3,7 @@
 use glam::DVec2;
 use hachure::line::{InkRaster, Kind};
 use hachure::truth::metrics::Judge;
-use hachure::truth::{Inked, Line, Mask, Piece, Truth};
+use hachure::truth::{Inked, Mask, Truth, TruthLine, TruthPiece};
 
 use crate::scenes::level;
 
@@ -45,13 +45,13 @@ pub fn score(mask: &Mask, truth: &Truth) -> Score {
 }
 
 /// A truth of these pieces, which no level was looked at for.
-pub fn truth(size: [u32; 2], pieces: Vec<Piece>) -> Truth {
+pub fn truth(size: [u32; 2], pieces: Vec<TruthPiece>) -> Truth {
     Truth { level: level(1), size, pieces, facets: 0, rays: 0 }
 }
 
 /// A piece of contour, `distance` metres along the view axis.
-pub fn piece(ends: [DVec2; 2], distance: f64) -> Piece {
-    Piece { ends, distance, line: Line::Contour }
+pub fn piece(ends: [DVec2; 2], distance: f64) -> TruthPiece {
+    TruthPiece { ends, distance, line: TruthLine::Contour }
 }
 
 /// All ink of a picture whose near plane lies `near` metres before the eye.

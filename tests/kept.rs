@@ -1,7 +1,7 @@
 //! Ids of chains from one frame to the next: known by construction.
 
 use glam::DVec3;
-use hachure::door::measure::kept::{Seen, ids_kept};
+use hachure::door::measure::kept::{SeenChains, ids_kept};
 use hachure::line::{Chain, ChainPoint, Id, Line};
 use hachure::view::{Camera, Perspective};
 
@@ -59,7 +59,7 @@ fn kept(first: &[Level], next: &[Level]) -> Option<f64> {
     let [here, there] =
         [(first, 0.0), (next, 1.0)].map(|(lines, on)| lines.iter().map(|l| l.seen(on)).collect::<Vec<_>>());
     let cameras = [0.0, 1.0].map(camera);
-    ids_kept(Seen { camera: &cameras[0], chains: &here }, Seen { camera: &cameras[1], chains: &there })
+    ids_kept(SeenChains { camera: &cameras[0], chains: &here }, SeenChains { camera: &cameras[1], chains: &there })
 }
 
 #[track_caller]
@@ -136,7 +136,7 @@ fn chains_without_names_have_no_share() {
     let mut first = vec![line.seen(0.0), Level::new(2, 80.0).seen(0.0)];
     let next = [line.seen(1.0)];
     let share = |first: &[Chain]| {
-        ids_kept(Seen { camera: &cameras[0], chains: first }, Seen { camera: &cameras[1], chains: &next })
+        ids_kept(SeenChains { camera: &cameras[0], chains: first }, SeenChains { camera: &cameras[1], chains: &next })
     };
     near(share(&first), 0.5);
     first[0].id = None;

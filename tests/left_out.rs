@@ -5,10 +5,10 @@ use std::collections::{BTreeMap, HashSet};
 use std::sync::Arc;
 
 use glam::DVec3;
-use hachure::door::plan::frame::Kept;
+use hachure::door::plan::frame::KeptLattice;
 use hachure::door::plan::{Frame, PassName, detail};
 use hachure::door::surface::Tile;
-use hachure::plan::{Border, Curves, Detail, Method, Plan, Thrift};
+use hachure::plan::{Border, Culling, Curves, Detail, Method, Plan};
 use hachure::surface::Surface;
 use hachure::view::Camera;
 
@@ -43,14 +43,14 @@ fn anywhere(surface: &Surface, random: &mut Random) -> Camera {
 
 /// Compares frames of one scene; returns how many pixels were inked in all.
 fn compare(surface: &Arc<Surface>, detail: Detail, method: Method, frames: usize, seed: u64) -> usize {
-    let make = |thrift| Planned::new(gpu(), surface, Plan { thrift, ..Plan::new(detail, method, Border::On) });
-    let (mut thrifty, mut whole) = (make(Thrift::LeaveOut), make(Thrift::Nothing));
+    let make = |culling| Planned::new(gpu(), surface, Plan { culling, ..Plan::new(detail, method, Border::On) });
+    let (mut culls, mut whole) = (make(Culling::On), make(Culling::Off));
     let mut random = Random::new(seed);
     let mut inked = 0;
     for _ in 0..frames {
         let camera = anywhere(surface, &mut random);
         let expected = whole.bytes(&camera);
-        assert!(thrifty.bytes(&camera) == expected, "{method:?}, {detail:?}: {camera:?} differs");
+        assert!(culls.bytes(&camera) == expected, "{method:?}, {detail:?}: {camera:?} differs");
         inked += expected.chunks_exact(8).filter(|p| p[0] & 2 != 0).count();
     }
     inked
@@ -65,16 +65,16 @@ fn what_is_left_out_changes_no_curve() {
     let [west, south, east, north] = surface.dem().extent();
     let [low, _] = surface.dem().range().expect("land").map(f64::from);
     for detail in [Detail::Uniform(level(2)), Detail::Uniform(level(8))] {
-        let plan = |thrift| Plan { thrift, curves: Curves::On, ..Plan::new(detail, Method::Walk, Border::On) };
-        let frames = [Thrift::LeaveOut, Thrift::Nothing].map(|thrift| Planned::new(gpu(), &surface, plan(thrift)));
-        let [mut thrifty, mut whole] = frames;
+        let plan = |culling| Plan { culling, curves: Curves::On, ..Plan::new(detail, Method::Walk, Border::On) };
+        let frames = [Culling::On, Culling::Off].map(|culling| Planned::new(gpu(), &surface, plan(culling)));
+        let [mut culls, mut whole] = frames;
         let (mut random, mut left_out, mut points) = (Random::new(5), 0, 0);
         for _ in 0..6 {
             let (x, y) = (random.between(west, east), random.between(south, north));
             let eye = DVec3::new(x, y, low + random.between(20.0, 60.0));
             let azimuth = random.between(0.0, 360.0);
             let camera = Camera { eye, azimuth, altitude: -5.0, fov: 60.0, width: 256, height: 160 };
-            let curves = [&mut thrifty, &mut whole].map(|renderer| {
+            let curves = [&mut culls, &mut whole].map(|renderer| {
                 renderer.draw(&camera).expect("a frame");
                 renderer.curves().expect("curves")
             });
@@ -84,7 +84,7 @@ fn what_is_left_out_changes_no_curve() {
                 let words: Vec<u32> = renderer.values("turning", renderer.lattice().chunks().len());
                 words.iter().filter(|word| **word & DRAWN != 0).count()
             };
-            left_out += drawn(&whole) - drawn(&thrifty);
+            left_out += drawn(&whole) - drawn(&culls);
         }
         println!("{detail:?}: {points} points of curves, {left_out} chunks left out");
         assert!(points > 400 && left_out > 50, "{points} points, {left_out} chunks left out");
@@ -150,11 +150,11 @@ fn what_is_left_out_of_views_of_real_terrain_changes_no_bit() {
         let dem = hachure::geo::read(dems.join(name), &Default::default()).expect(name);
         let surface = Arc::new(Surface::new(dem));
         let camera = Camera { eye, azimuth, altitude, fov: 60.0, width: 640, height: 360 };
-        let [thrifty, whole] = [Thrift::LeaveOut, Thrift::Nothing].map(|thrift| {
-            let plan = Plan { thrift, ..Plan::default() };
+        let [culls, whole] = [Culling::On, Culling::Off].map(|culling| {
+            let plan = Plan { culling, ..Plan::default() };
             Planned::new(gpu(), &surface, plan).bytes(&camera)
         });
-        assert!(thrifty == whole, "{name} differs");
+        assert!(culls == whole, "{name} differs");
         assert!(whole.chunks_exact(8).filter(|p| p[0] & 2 != 0).count() > 500, "{name}: too little ink");
     }
 }
@@ -163,7 +163,7 @@ fn what_is_left_out_of_views_of_real_terrain_changes_no_bit() {
 fn another_frame_is_noticed() {
     let surface = Arc::new(Surface::new(rough(60, 50, 3.0, 5.0, false)));
     let plan = Plan::new(level(1), Method::Walk, Border::On);
-    let page = |thrift, camera| Planned::new(gpu(), &surface, Plan { thrift, ..plan }).bytes(camera);
+    let page = |culling, camera| Planned::new(gpu(), &surface, Plan { culling, ..plan }).bytes(camera);
     let [west, south, _, _] = surface.dem().extent();
     let camera = Camera {
         eye: DVec3::new(west, south, 400.0),
@@ -172,7 +172,7 @@ fn another_frame_is_noticed() {
         ..anywhere(&surface, &mut Random::new(5))
     };
     let moved = Camera { azimuth: camera.azimuth + 0.1, ..camera };
-    assert!(page(Thrift::LeaveOut, &moved) != page(Thrift::Nothing, &camera));
+    assert!(page(Culling::On, &moved) != page(Culling::Off, &camera));
 }
 
 /// What a frame does without, by rule and in the order of telling.
@@ -187,7 +187,7 @@ fn expected(frame: &Frame, surface: &Surface) -> Vec<&'static str> {
         ("fine facets", is_adaptive),
         ("rasterizing", (frame.seen as usize) < chunks.len()),
         ("samples", is_adaptive && tiles.len() < all_tiles),
-        ("chunks", !is_adaptive && plan.thrift == Thrift::LeaveOut && beside),
+        ("chunks", !is_adaptive && plan.culling == Culling::On && beside),
         ("seam pass", chunks.iter().all(|chunk| chunk.coarser == 0)),
         ("border pass", plan.border == Border::Off),
         ("void tests", dem.voids() == 0),
@@ -203,11 +203,12 @@ fn frames_say_what_they_do_without() {
     let (mut frames, mut told) = (0, BTreeMap::<&str, usize>::new());
     for (surface, (name, method)) in scenes.iter().flat_map(|surface| METHODS.map(|method| (surface, method))) {
         for (detail, int64) in details.into_iter().flat_map(|detail| [(detail, true), (detail, false)]) {
-            for thrift in [Thrift::LeaveOut, Thrift::Nothing] {
+            for culling in [Culling::On, Culling::Off] {
                 for border in [Border::On, Border::Off] {
-                    let plan = Plan { thrift, ..Plan::new(detail, method, border) };
+                    let plan = Plan { culling, ..Plan::new(detail, method, border) };
                     let camera = anywhere(surface, &mut random);
-                    let frame = Frame::new(&plan, surface, &camera, int64, &mut Kept::default()).expect("a frame");
+                    let frame =
+                        Frame::new(&plan, surface, &camera, int64, &mut KeptLattice::default()).expect("a frame");
                     let left_out = frame.left_out(surface).expect("words");
                     let whats: Vec<_> = left_out.iter().map(|left_out| left_out.what).collect();
                     assert_eq!(whats, expected(&frame, surface), "{name}, {plan:?}, {camera:?}");

@@ -5,11 +5,11 @@ use std::fmt::Debug;
 use std::hash::Hash;
 
 use hachure::door::plan::Yields;
-use hachure::door::plan::registry::{Look, Marker};
-use hachure::plan::{Entry, Method};
+use hachure::door::plan::registry::{Marker, PlotLook};
+use hachure::plan::{Method, MethodEntry};
 
 /// What is wrong with these entries.
-fn faults(entries: &[Entry]) -> Vec<String> {
+fn faults(entries: &[MethodEntry]) -> Vec<String> {
     let mut faults = Vec::new();
     for entry in entries {
         let texts = [("name", entry.name), ("family", entry.family), ("brief", entry.brief), ("rule", entry.rule)];
@@ -39,7 +39,7 @@ fn twice<T: Copy + Debug + Eq + Hash>(what: &str, values: impl Iterator<Item = T
     values.find(|value| !seen.insert(*value)).map(|value| format!("two have the {what} {value:?}"))
 }
 
-fn registry() -> Vec<Entry> {
+fn registry() -> Vec<MethodEntry> {
     Method::ALL.map(|method| *method.entry()).to_vec()
 }
 
@@ -55,7 +55,7 @@ fn every_method_is_complete_and_unlike_the_others() {
 }
 
 /// Spoils an entry.
-type Spoil = fn(&mut Entry);
+type Spoil = fn(&mut MethodEntry);
 
 #[test]
 fn an_entry_that_lacks_something_is_noticed() {
@@ -65,9 +65,9 @@ fn an_entry_that_lacks_something_is_noticed() {
         ("no pass", |entry| entry.passes = &[]),
         ("not one plain method", |entry| entry.family = "flood"),
         ("the name \"toward-away\"", |entry| entry.name = "toward-away"),
-        ("the colour [26, 26, 26]", |entry| entry.look = Look { colour: [26, 26, 26], ..entry.look }),
-        ("the dash None", |entry| entry.look = Look { dash: None, ..entry.look }),
-        ("the marker Disc", |entry| entry.look = Look { marker: Marker::Disc, ..entry.look }),
+        ("the colour [26, 26, 26]", |entry| entry.look = PlotLook { colour: [26, 26, 26], ..entry.look }),
+        ("the dash None", |entry| entry.look = PlotLook { dash: None, ..entry.look }),
+        ("the marker Disc", |entry| entry.look = PlotLook { marker: Marker::Disc, ..entry.look }),
     ];
     for (fault, spoil) in spoils {
         let mut entries = registry();

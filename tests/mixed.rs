@@ -4,7 +4,7 @@ use glam::DVec2;
 use hachure::dem::Dem;
 use hachure::door::surface::Lattice;
 use hachure::door::surface::lattice::{CELL_STEPS, CHUNK_QUADS, NORTH, Role, SOUTH, WEST};
-use hachure::door::surface::quadtree::{Growth, NO_SLOT};
+use hachure::door::surface::quadtree::{NO_SLOT, Splits};
 use hachure::door::surface::{Chunk, LatticePoint};
 
 use crate::scenes::{Random, hashed};
@@ -32,7 +32,7 @@ pub struct Chance<'a> {
     pub kind: Kind,
 }
 
-impl Growth for Chance<'_> {
+impl Splits for Chance<'_> {
     fn splits(&mut self, corner: [u32; 2], size: u32) -> bool {
         let step = size / CHUNK_QUADS;
         step > CELL_STEPS && !may_be_coarse(self.dem, corner, step)

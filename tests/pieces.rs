@@ -6,10 +6,10 @@ use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
 use hachure::door::cli::words::line;
 use hachure::door::plan::pieces::{HALO, LARGEST_PAGE, LARGEST_PIECE, LONGEST_PIECE, Rectangle};
-use hachure::door::plan::{Frame, Piece, Pieces};
+use hachure::door::plan::{Frame, PagePiece, Pieces};
 use hachure::gpu::Gpu;
 use hachure::line::{Marks, Pixel};
-use hachure::plan::{Border, Detail, Method, Plan, Share};
+use hachure::plan::{Border, Detail, Method, Plan, SharedVertices};
 use hachure::surface::Surface;
 use hachure::view::Camera;
 
@@ -20,7 +20,7 @@ use crate::scenes::{self, gpu, gpu_without_int64, level, look, over, rough};
 const PAGE: [u32; 2] = [197, 131];
 
 /// The page as packed for readback, put together from pieces of at most `side` pixels, each changed by `cut` before.
-fn page_in(gpu: &Arc<Gpu>, scene: &Scene<'_>, side: [u32; 2], cut: impl Fn(Piece) -> Piece) -> Vec<Pixel> {
+fn page_in(gpu: &Arc<Gpu>, scene: &Scene<'_>, side: [u32; 2], cut: impl Fn(PagePiece) -> PagePiece) -> Vec<Pixel> {
     let plan = Plan::new(level(scene.level), scene.method, Border::On);
     let pieces = Pieces::new([scene.camera.width, scene.camera.height], side);
     let mut renderer = Planned::new(gpu, scene.surface, plan);
@@ -130,7 +130,7 @@ fn pieces_change_no_bit_without_int64_and_of_real_terrain() {
 /// A rectangle of a page as packed for readback.
 fn rectangle(frame: &Frame, renderer: &mut Planned, origin: [u32; 2], size: [u32; 2]) -> Vec<Pixel> {
     let drawn = Rectangle { origin, size };
-    renderer.draw_piece(frame, Piece { kept: drawn, drawn }).expect("a piece").raster.pixels
+    renderer.draw_piece(frame, PagePiece { kept: drawn, drawn }).expect("a piece").raster.pixels
 }
 
 #[test]
@@ -192,7 +192,7 @@ fn the_ink_of_pieces_is_that_of_one_piece() {
     let surface = Arc::new(Surface::new(rough(60, 50, 2.0, 4.0, true)));
     let camera = views(&surface)[0];
     // Adjacency floods: there ink encloses pixels of the cover, also across pieces.
-    for (n, method) in [(4, Method::Walk), (4, Method::Adjacency { share: Share::Edge })] {
+    for (n, method) in [(4, Method::Walk), (4, Method::Adjacency { share: SharedVertices::Edge })] {
         let mut renderer = Planned::new(gpu(), &surface, Plan::new(level(n), method, Border::On));
         let whole = renderer.draw(&camera).unwrap();
         let marks = Marks::from(&whole.raster);
@@ -212,19 +212,19 @@ fn a_piece_without_its_halo_is_noticed() {
     for (name, method) in METHODS {
         let scene = Scene { surface: &surface, camera: views(&surface)[0], level: 4, method };
         let whole = page_in(gpu(), &scene, PAGE, |piece| piece);
-        let bare = page_in(gpu(), &scene, [61, 47], |piece| Piece { drawn: piece.kept, ..piece });
+        let bare = page_in(gpu(), &scene, [61, 47], |piece| PagePiece { drawn: piece.kept, ..piece });
         assert!(different(&whole, &bare) > 0, "{name}: pieces without a halo");
     }
     let scene = Scene { surface: &surface, camera: views(&surface)[1], level: 1, method: Method::Walk };
     let whole = page_in(gpu(), &scene, PAGE, |piece| piece);
     // One pixel of halo is what the pixels of a piece themselves need.
-    let narrow = |piece: Piece| {
+    let narrow = |piece: PagePiece| {
         let grown = |axis: usize| {
             let low = piece.kept.origin[axis].saturating_sub(1);
             (low, PAGE[axis].min(piece.kept.origin[axis] + piece.kept.size[axis] + 1) - low)
         };
         let [(x, width), (y, height)] = [grown(0), grown(1)];
-        Piece { drawn: Rectangle { origin: [x, y], size: [width, height] }, ..piece }
+        PagePiece { drawn: Rectangle { origin: [x, y], size: [width, height] }, ..piece }
     };
     assert_eq!(different(&whole, &page_in(gpu(), &scene, [61, 47], narrow)), 0);
 }
@@ -234,7 +234,7 @@ fn pieces_cover_the_page_once() {
     for (page, side) in [([197, 131], [61, 47]), ([1, 1], [5, 5]), ([40_000, 8], [2048, 2048]), ([5, 9], [1, 1])] {
         let pieces = Pieces::new(page, side);
         let mut area = 0;
-        for Piece { kept, drawn } in pieces.iter() {
+        for PagePiece { kept, drawn } in pieces.iter() {
             area += kept.size[0] * kept.size[1];
             for axis in 0..2 {
                 let end = kept.origin[axis] + kept.size[axis];

@@ -10,7 +10,7 @@ use checks::{faults, length, open, ring, short, travel, twice, uncovered};
 use glam::{DVec2, DVec3};
 use hachure::ink::plot::{Journey, planned};
 use hachure::ink::style::Plot;
-use hachure::ink::{Drawing, Form, Sheet, Stroke, StrokePoint, Style, draw};
+use hachure::ink::{Drawing, Sheet, Stroke, StrokeForm, StrokePoint, Style, draw};
 use hachure::line::{Id, Kind, Lines, Marks};
 use hachure::view::{Camera, Perspective};
 use made::{curves, scattered, tangle};
@@ -348,13 +348,13 @@ fn layers_know_the_way_of_the_pen_before_and_after() {
     assert_eq!(drawing.layers.len(), 2);
     for layer in &drawing.layers {
         let planned = Journey::through(&layer.strokes);
-        assert_eq!(layer.form, Form::CentreLines);
+        assert_eq!(layer.form, StrokeForm::CentreLines);
         assert_eq!((layer.found.strokes, planned.strokes), (40, 40));
         assert!((layer.found.drawn - planned.drawn).abs() < 0.05 * planned.drawn, "{:?}, {planned:?}", layer.found);
         assert!(planned.travel < 0.8 * layer.found.travel, "{:?}, {planned:?}", layer.found);
     }
     // What no pen follows stays as it is found.
     for layer in &rows(&Style::default()).layers {
-        assert_eq!((layer.form, Journey::through(&layer.strokes)), (Form::Outlines, layer.found));
+        assert_eq!((layer.form, Journey::through(&layer.strokes)), (StrokeForm::Outlines, layer.found));
     }
 }

@@ -5,7 +5,7 @@ use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use glam::DVec3;
-use hachure::door::gpu::pool::Pool;
+use hachure::door::gpu::slot_cache::SlotCache;
 use hachure::door::surface::lattice::CHUNK_VERTICES;
 use hachure::door::surface::tile::TILE_SAMPLES;
 use hachure::door::surface::{Chunk, Tile};
@@ -26,7 +26,7 @@ fn tile(number: u32) -> Tile {
 #[test]
 fn tiles_keep_their_places_and_the_oldest_go_first() {
     let capacity = 12;
-    let mut pool = Pool::new(capacity);
+    let mut pool = SlotCache::new(capacity);
     let mut random = Random::new(3);
     // Of each tile its place and when it was asked for last.
     let mut held: HashMap<u32, (u32, u32)> = HashMap::new();
@@ -69,10 +69,10 @@ fn tiles_keep_their_places_and_the_oldest_go_first() {
 #[test]
 fn more_tiles_than_places_are_refused() {
     let all: Vec<Tile> = (0..5).map(tile).collect();
-    assert!(Pool::new(5).place(&all).is_some());
-    assert_eq!(Pool::new(4).place(&all), None);
+    assert!(SlotCache::new(5).place(&all).is_some());
+    assert_eq!(SlotCache::new(4).place(&all), None);
     // Nothing has changed then, and growing moves nothing.
-    let mut pool = Pool::new(4);
+    let mut pool = SlotCache::new(4);
     let before = pool.place(&all[..3]).expect("three of four");
     assert_eq!(pool.place(&all), None);
     let again = pool.place(&all[..3]).expect("three of four");
@@ -80,7 +80,10 @@ fn more_tiles_than_places_are_refused() {
     pool.grow(5);
     let grown = pool.place(&all).expect("five of five");
     assert!(grown.places[..3] == before.places && grown.missing.len() == 2, "{grown:?} after {before:?}");
-    assert!(Pool::new(4).place(&[all[0], all[1], all[0], all[1], all[2], all[3]]).is_some(), "four different ones");
+    assert!(
+        SlotCache::new(4).place(&[all[0], all[1], all[0], all[1], all[2], all[3]]).is_some(),
+        "four different ones"
+    );
 }
 
 #[test]

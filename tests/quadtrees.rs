@@ -9,7 +9,7 @@ use hachure::door::plan::detail;
 use hachure::door::surface::lattice::{CELL_STEPS, CHUNK_FACETS, CHUNK_QUADS};
 use hachure::door::surface::quadtree::NO_SLOT;
 use hachure::door::surface::{Lattice, LatticePoint};
-use hachure::plan::{Curves, Thrift};
+use hachure::plan::{Culling, Curves};
 use hachure::surface::Surface;
 use hachure::view::Camera;
 
@@ -204,7 +204,7 @@ fn lattices_of_frames_are_conforming_meshes_of_the_land() {
         for error_px in [0.5, 3.0, 20.0] {
             let camera = above(&surface, &mut random);
             let (lattice, _) =
-                detail::adaptive(&surface, &camera, error_px, Thrift::Nothing, Curves::Off).expect("few chunks");
+                detail::adaptive(&surface, &camera, error_px, Culling::Off, Curves::Off).expect("few chunks");
             check(surface.dem(), &lattice, &format!("scene {i}, {error_px} px, {camera:?}"));
             levels[0] = levels[0].max(variety(&lattice)[0]);
             levels[1] += variety(&lattice)[1];

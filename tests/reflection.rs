@@ -124,7 +124,7 @@ fn shared_structs() -> Vec<(&'static str, Layout)> {
         ("Scene", layout!(SceneUniform: cell, samples, roots, root_size, near)),
         (
             "Camera",
-            layout!(CameraUniform: right, up, forward, eye_cell, eye_offset, eye_height, centre, focal, chunks, size, wedge, origin, seen, fresh),
+            layout!(CameraUniform: right, up, forward, eye_cell, eye_offset, eye_height, centre, focal, chunks, size, frustum, origin, seen, fresh),
         ),
         ("Batch", layout!(BatchUniform: first_slot, part_slot, round, passing)),
         ("Counts", layout!(Counts: longest_walk, orphans, cut_short)),

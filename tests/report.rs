@@ -4,7 +4,7 @@ mod browser;
 mod page;
 mod sample;
 
-use hachure::door::measure::compare::Found;
+use hachure::door::measure::compare::Finding;
 use hachure::door::report::lines::lines;
 use hachure::door::report::results::Results;
 use hachure::door::report::{error_time_svg, write_csv};
@@ -164,7 +164,7 @@ fn a_run_is_told_with_its_chains() {
     let results = sample();
     let said = |method: &str| {
         let run = results.runs.iter().find(|run| run.method == method).expect("a run");
-        lines(&Found::Run(run))[0].clone()
+        lines(&Finding::Run(run))[0].clone()
     };
     let chains =
         "  214 chains, 3721 px: 0.057 px from truth, 95 % within 0.110; P 0.8317 R 0.9044 (economy removes 6.4 %)";
@@ -173,7 +173,7 @@ fn a_run_is_told_with_its_chains() {
     assert!(said("toward-away")[1].ends_with(traced), "{:?}", said("toward-away"));
     assert_eq!(said("adjacency")[1], "  0 chains, 0 px: P 0.0339 R 0.9722; 11.2 % under 6 px");
     let truth = &results.scenes[0].truth;
-    let said = lines(&Found::Truth("here", truth, None))[0].clone();
+    let said = lines(&Finding::Truth("here", truth, None))[0].clone();
     assert!(
         said[0].starts_with("here truth at level 32: 3785 px of line (0 of border), 8.8 % of its chains under 6 px, F")
     );

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use hachure::door::plan::batches::BATCH_CHUNKS;
-use hachure::plan::{Border, Detail, Method, Plan, Thrift};
+use hachure::plan::{Border, Culling, Detail, Method, Plan};
 use hachure::surface::Surface;
 use hachure::view::Camera;
 
@@ -74,11 +74,11 @@ fn walks_meet_the_same_where_vertices_stay_and_where_they_are_found_again() {
     let [west, south, east, north] = surface.dem().extent();
     let middle = DVec3::new(west + east, south + north, 0.0) / 2.0;
     let camera = look(middle + DVec3::new(-300.0, -700.0, 160.0), middle, 15.0, PAGE);
-    let make = |thrift| {
-        let plan = Plan { thrift, ..Plan::new(Detail::Adaptive { error_px: 0.002 }, Method::Walk, Border::Off) };
+    let make = |culling| {
+        let plan = Plan { culling, ..Plan::new(Detail::Adaptive { error_px: 0.002 }, Method::Walk, Border::Off) };
         Planned::new(gpu(), &surface, plan)
     };
-    let [mut few, mut all] = [Thrift::LeaveOut, Thrift::Nothing].map(make);
+    let [mut few, mut all] = [Culling::On, Culling::Off].map(make);
     let frames = [&mut few, &mut all].map(|renderer| renderer.draw(&camera).expect("a frame"));
     let chunks = [&few, &all].map(|renderer| renderer.lattice().chunks().len());
     let inked = frames[0].inked();

@@ -8,7 +8,7 @@ use glam::DVec3;
 use hachure::door::plan::batches;
 use hachure::door::surface::lattice::{CHUNK_QUADS, CHUNK_SIDE, CHUNK_VERTICES};
 use hachure::door::surface::{Chunk, LatticePoint};
-use hachure::plan::{Border, Detail, Plan, Thrift};
+use hachure::plan::{Border, Culling, Detail, Plan};
 use hachure::surface::Surface;
 use hachure::view::Camera;
 
@@ -22,8 +22,8 @@ use crate::scenes::{Random, aimed, over, rough};
 
 const PAGE: [u32; 2] = [360, 240];
 
-fn renderer(surface: &Arc<Surface>, error_px: f64, thrift: Thrift) -> Planned {
-    let plan = Plan { thrift, ..Plan::new(Detail::Adaptive { error_px }, BY_ID, Border::Off) };
+fn renderer(surface: &Arc<Surface>, error_px: f64, culling: Culling) -> Planned {
+    let plan = Plan { culling, ..Plan::new(Detail::Adaptive { error_px }, BY_ID, Border::Off) };
     Planned::new(gpu(), surface, plan)
 }
 
@@ -82,7 +82,7 @@ fn unlike(chunks: &[Chunk], screens: &[[i32; 4]]) -> [usize; 2] {
 fn a_vertex_unlike_its_neighbours_is_noticed() {
     let surface = &scenes()[0];
     let camera = eyes(surface, &mut Random::new(5), PAGE)[0];
-    let mut shot: Shot = renderer(surface, 1.0, Thrift::Nothing).shoot(&camera);
+    let mut shot: Shot = renderer(surface, 1.0, Culling::Off).shoot(&camera);
     let chunks = shot.lattice.chunks();
     assert_eq!(unlike(chunks, &shot.screens)[1], 0);
     let slot = chunks.iter().position(|chunk| chunk.coarser != 0).expect("a seam");
@@ -100,7 +100,7 @@ fn frames_of_several_levels_have_one_vertex_a_place_and_no_pinhole() {
     for (seed, surface) in (1..).zip(scenes()) {
         let mut random = Random::new(seed + 50);
         for error_px in [0.6, 8.0] {
-            let mut renderer = renderer(&surface, error_px, Thrift::LeaveOut);
+            let mut renderer = renderer(&surface, error_px, Culling::On);
             for camera in eyes(&surface, &mut random, PAGE) {
                 let shot = renderer.shoot(&camera);
                 let what = format!("scene {seed}, {error_px} px, {camera:?}");
@@ -126,7 +126,7 @@ fn frames_of_several_levels_have_one_vertex_a_place_and_no_pinhole() {
 fn the_last_of_several_batches_has_one_vertex_a_place() {
     let surface = Arc::new(Surface::new(rough(90, 75, 1.0, 0.5, false)));
     // Of chunks that are left out the buffer would keep what earlier batches have written.
-    let mut renderer = renderer(&surface, 0.0005, Thrift::Nothing);
+    let mut renderer = renderer(&surface, 0.0005, Culling::Off);
     let (mut compared, mut seams) = (0, 0);
     let cameras = [7, 8, 9].map(|seed| eyes(&surface, &mut Random::new(seed), PAGE)).concat();
     for camera in cameras {
@@ -152,7 +152,7 @@ fn coverage_of_several_levels_is_the_hardwares() {
         for (azimuth, altitude, error_px) in [(20.0, -35.0, 1.0), (140.0, -8.0, 2.0)] {
             let size = [1024, 512];
             let camera = coverage::from_outside(&surface, azimuth, altitude, 1.1, size);
-            let shot = renderer(&surface, error_px, Thrift::LeaveOut).shoot(&camera);
+            let shot = renderer(&surface, error_px, Culling::On).shoot(&camera);
             coverage::check_shot(&format!("scene {seed}, {error_px} px"), &shot, size);
             seams += variety(&shot.lattice)[1];
         }

@@ -9,7 +9,7 @@ use hachure::dem::Dem;
 use hachure::door::plan::detail;
 use hachure::door::surface::lattice::CHUNK_FACETS;
 use hachure::door::surface::{Chunk, Lattice, LatticePoint};
-use hachure::plan::{Border, Curves, Detail, Plan, Thrift};
+use hachure::plan::{Border, Culling, Curves, Detail, Plan};
 use hachure::surface::Surface;
 use hachure::view::Camera;
 
@@ -130,14 +130,14 @@ fn check(eyes: usize) {
     let (mut all_seen, mut all_hidden) = (0, 0);
     for (seed, (dem, error_px)) in (1..).zip(scenes) {
         let surface = Arc::new(Surface::new(dem));
-        let plan = Plan { thrift: Thrift::Nothing, ..Plan::new(Detail::Uniform(level(4)), BY_ID, Border::Off) };
+        let plan = Plan { culling: Culling::Off, ..Plan::new(Detail::Uniform(level(4)), BY_ID, Border::Off) };
         let mut renderer = Planned::new(gpu(), &surface, plan);
         let mut random = Random::new(seed);
         for _ in 0..eyes {
             let camera = eye(&surface, &mut random);
             let seen = winners(&mut renderer, &camera);
             let (lattice, _) =
-                detail::adaptive(&surface, &camera, error_px, Thrift::Nothing, Curves::Off).expect("few chunks");
+                detail::adaptive(&surface, &camera, error_px, Culling::Off, Curves::Off).expect("few chunks");
             let [wrong, hidden] = coarse(&surface, &lattice, &camera, error_px, &seen);
             assert_eq!(wrong, 0, "scene {seed}: of {} facets seen, {camera:?}", seen.len());
             all_seen += seen.len();
@@ -162,10 +162,10 @@ fn what_is_seen_is_fine_from_many_eyes() {
 #[test]
 fn what_another_eye_sees_is_coarse() {
     let surface = Arc::new(Surface::new(rough(150, 130, 1.0, 2.0, false)));
-    let plan = Plan { thrift: Thrift::Nothing, ..Plan::new(Detail::Uniform(level(4)), BY_ID, Border::Off) };
+    let plan = Plan { culling: Culling::Off, ..Plan::new(Detail::Uniform(level(4)), BY_ID, Border::Off) };
     let mut renderer = Planned::new(gpu(), &surface, plan);
     let camera = aimed(over(&surface, 20.0, 60.0, 3.0), 90.0, 0.0, PAGE);
-    let (lattice, _) = detail::adaptive(&surface, &camera, ERROR_PX, Thrift::Nothing, Curves::Off).expect("few chunks");
+    let (lattice, _) = detail::adaptive(&surface, &camera, ERROR_PX, Culling::Off, Curves::Off).expect("few chunks");
     let higher = Camera { eye: camera.eye + DVec3::Z * 200.0, altitude: -10.0, ..camera };
     assert!(
         coarse(&surface, &lattice, &camera, ERROR_PX, &winners(&mut renderer, &higher))[0] > 0,

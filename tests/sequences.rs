@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 use hachure::cache::Cache;
 use hachure::door::line::economised;
-use hachure::door::measure::compare::{Hearing, LEAST_TRUTH_LEVEL};
+use hachure::door::measure::compare::{CompareObserver, LEAST_TRUTH_LEVEL};
 use hachure::door::measure::figures::SequenceRun;
 use hachure::door::measure::popped::{Looked, Popped};
 use hachure::door::measure::{Comparison, Sequence};
@@ -16,7 +16,7 @@ use hachure::ink::{Sheet, Style, draw};
 use hachure::line::{Chain, ChainPoint, Id, Line, Lines, Recession};
 use hachure::plan::{Border, Detail, Method};
 use hachure::surface::{Level, Surface};
-use hachure::truth::{Inked, Mask, Piece, Terrain};
+use hachure::truth::{Inked, Mask, Terrain, TruthPiece};
 use hachure::view::{Camera, Fixed, Perspective, choose};
 
 use crate::common::gpu;
@@ -60,12 +60,13 @@ impl Level40 {
         Chain { id: Some(Id(self.row as u64)), points: (0..=120).map(point).collect(), closed: false }
     }
 
-    fn pieces(self, camera: &Camera) -> Vec<Piece> {
+    fn pieces(self, camera: &Camera) -> Vec<TruthPiece> {
         let perspective = Perspective::new(camera, 1.0);
         let [from, to] = [40.0, 160.0].map(|column| perspective.project(self.world(column)).0);
         let distance = perspective.distance(self.world(0.0));
         let place = |i: u32| from.lerp(to, f64::from(i) / 1000.0);
-        let piece = |i| Piece { ends: [place(i), place(i + 1)], distance, line: hachure::truth::Line::Contour };
+        let piece =
+            |i| TruthPiece { ends: [place(i), place(i + 1)], distance, line: hachure::truth::TruthLine::Contour };
         (0..1000).map(piece).collect()
     }
 }
@@ -74,7 +75,7 @@ impl Level40 {
 fn frame(metres_on: f64, drawn: &[Level40], true_ones: &[Level40]) -> (Looked, Looked) {
     let camera = camera(metres_on);
     let chains: Vec<Chain> = drawn.iter().map(|line| line.chain(&camera)).collect();
-    let pieces: Vec<Piece> = true_ones.iter().flat_map(|line| line.pieces(&camera)).collect();
+    let pieces: Vec<TruthPiece> = true_ones.iter().flat_map(|line| line.pieces(&camera)).collect();
     (looked(&camera, chains), Looked::of_truth(&camera, &truth(PAGE, pieces)))
 }
 
@@ -147,7 +148,7 @@ fn worst_leap(mut weigh: impl FnMut(&Chain) -> Chain) -> f64 {
     let mut frames = (0..=20).map(|k| {
         let (camera, lines) = (camera(0.05 * f64::from(k)), lines(k));
         let chains = lines.iter().map(|line| weigh(&line.chain(&camera))).collect();
-        let pieces: Vec<Piece> = lines.iter().flat_map(|line| line.pieces(&camera)).collect();
+        let pieces: Vec<TruthPiece> = lines.iter().flat_map(|line| line.pieces(&camera)).collect();
         (looked(&camera, chains), Looked::of_truth(&camera, &truth(PAGE, pieces)))
     });
     let mut last = frames.next().expect("a frame");
@@ -201,7 +202,7 @@ fn follow(surface: &Arc<Surface>, methods: &[Method], cameras: &[Camera], truth:
         truth_level: Some(truth),
         cache: Cache::none(),
     };
-    let hearing = Hearing { stage: &|_, _| (), warn: &|_| (), found: &|_| Ok(()) };
+    let hearing = CompareObserver { stage: &|_, _| (), warn: &|_| (), found: &|_| Ok(()) };
     let sequence = Sequence { name: "flight", step_m: 1.0, cameras };
     comparison.sequence(gpu(), surface, &Terrain::new(surface), sequence, &hearing)
 }

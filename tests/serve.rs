@@ -9,11 +9,11 @@ use std::time::{Duration, Instant};
 
 use clap::Parser;
 use hachure::door::cli::Arguments;
-use hachure::door::cli::jobs::Share;
+use hachure::door::cli::jobs::JobShare;
 use hachure::door::cli::progress::Progress;
 use hachure::door::cli::talk::Talk;
-use hachure::door::cli::work::Work;
-use hachure::door::job::manifest::Sequence;
+use hachure::door::cli::work::JobWork;
+use hachure::door::job::manifest::SequenceKey;
 use hachure::door::job::serve;
 use hachure::door::job::serve::{LONGEST, Refusal};
 use hachure::door::job::{Frames, Job, Shard};
@@ -263,10 +263,10 @@ fn a_lost_device_ends_the_process_and_leaves_the_rest_unanswered() {
     let folder = tempfile::tempdir().expect("a folder");
     let all = Frames::first(5);
     let job = |n: &u32| Job { number: *n, called: format!("frame {n}"), files: Vec::new() };
-    let sequence = Sequence { of: "nothing".to_owned(), sequence: 1, job: 2, count: 5, fps: None, inks: None };
-    let work = Work {
+    let sequence = SequenceKey { of: "nothing".to_owned(), sequence: 1, job: 2, count: 5, fps: None, inks: None };
+    let work = JobWork {
         sequence,
-        share: Share { part: None, shard: Shard::WHOLE, frames: all.clone() },
+        share: JobShare { part: None, shard: Shard::WHOLE, frames: all.clone() },
         called: "frames",
         jobs: all.numbers().iter().map(job).collect(),
         folder: folder.path().to_owned(),
@@ -276,7 +276,7 @@ fn a_lost_device_ends_the_process_and_leaves_the_rest_unanswered() {
     let asked: String = (0..5).map(|n| format!("{{\"id\": {n}, \"frames\": {n}}}\n")).collect();
     let answers = |lost_at: u32| {
         let (mut said, begun) = (Vec::new(), Cell::new(0));
-        let make = |work: &Work, _: &Progress, _: &Talk| {
+        let make = |work: &JobWork, _: &Progress, _: &Talk| {
             begun.set(begun.get() + 1);
             match work.jobs[0].number {
                 // One that fails by itself is answered, and that is all.

@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
 use hachure::geo::{ReadOptions, read};
 use hachure::line::Kind;
-use hachure::plan::{Border, Method, Share};
+use hachure::plan::{Border, Method, SharedVertices};
 use hachure::surface::Surface;
 use hachure::view::Camera;
 
@@ -33,8 +33,8 @@ fn west_temple_has_the_published_ink() {
     let runs = [
         (Method::TowardAway { wide: false }, 4, 3_821),
         (Method::Walk, 4, 4_215),
-        (Method::Adjacency { share: Share::Edge }, 4, 244_975),
-        (Method::Adjacency { share: Share::Corner }, 1, 4_571),
+        (Method::Adjacency { share: SharedVertices::Edge }, 4, 244_975),
+        (Method::Adjacency { share: SharedVertices::Corner }, 1, 4_571),
     ];
     let near = |ink: usize, published: u32| (ink as f64 / f64::from(published) - 1.0).abs() <= COUNT_SHARE;
     for (method, n, published) in runs {
@@ -43,7 +43,7 @@ fn west_temple_has_the_published_ink() {
         assert!(near(ink, published), "{method:?} at level {n}: {ink} px, published {published}");
     }
     // Negative control: another level of corner adjacency floods.
-    let method = Method::Adjacency { share: Share::Corner };
+    let method = Method::Adjacency { share: SharedVertices::Corner };
     assert!(!near(count_ink(&draw(&surface, &camera, level(2), method, Border::Off).raster), 4_571));
 }
 

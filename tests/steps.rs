@@ -15,7 +15,7 @@ use hachure::cache::Cache;
 use hachure::dem::Dem;
 use hachure::door::geo::Reading;
 use hachure::error::Error;
-use hachure::geo::{Info, ReadOptions, Stage, info, read, read_all};
+use hachure::geo::{Info, ReadOptions, ReadStage, info, read, read_all};
 use hachure::plan::{Border, Detail, Method, Plan};
 use hachure::surface::Surface;
 use tempfile::TempDir;
@@ -196,7 +196,7 @@ fn what_is_found_and_smoothed_is_kept() {
         let options = ReadOptions { cache: cache.clone(), ..options(memory) };
         let heard = |stage, _| {
             let (look, smooth) = stages.get();
-            stages.set((look || stage == Stage::Look, smooth || stage == Stage::Smooth));
+            stages.set((look || stage == ReadStage::Look, smooth || stage == ReadStage::Smooth));
         };
         let dem = read_all(&[path.to_owned()], &options, &heard).expect("a DEM");
         (stages.get(), bits(&dem))

@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 use hachure::door::line::ends;
 use hachure::error::Error;
 use hachure::ink::style::{Dashes, Plot, Weight, Wobble};
-use hachure::ink::{Drawing, Form, Pen, Sheet, Stroke, Style, draw};
+use hachure::ink::{Drawing, Pen, Sheet, Stroke, StrokeForm, Style, draw};
 use hachure::line::{Chain, ChainPoint, Id, Line, Lines, Recession};
 
 /// A sheet of 200 x 100 mm without margins, and its frame of 2 pixels a millimetre.
@@ -88,7 +88,7 @@ fn free_ends_taper_and_others_do_not() {
     let inner = stroke(1).points.iter().filter(|point| (50.01..149.99).contains(&point.place.x));
     assert!(inner.clone().count() > 90 && inner.clone().all(|point| point.width > 0.999));
     assert!(widths(1)[..20].is_sorted(), "{:?}", &widths(1)[..20]);
-    assert_eq!(drawing.layers[0].form, Form::Outlines);
+    assert_eq!(drawing.layers[0].form, StrokeForm::Outlines);
     // However short the taper, there are few points more; and a line without length is no number.
     let style = Style { weight: Weight { taper: 1e-9, ..even().weight }, ..even() };
     let drawing = drawn(vec![plain(1, [40, 160], 50.0)], &style, &[]);
@@ -102,7 +102,7 @@ fn free_ends_taper_and_others_do_not() {
     let ring = Chain { id: None, points: ring.map(|at| point(at.to_array(), 1000.0, 1.0)).collect(), closed: true };
     let drawing = drawn(vec![ring], &style, &[]);
     assert!(drawing.layers[0].strokes[0].closed);
-    assert_eq!(drawing.layers[0].form, Form::CentreLines, "all of one width");
+    assert_eq!(drawing.layers[0].form, StrokeForm::CentreLines, "all of one width");
 }
 
 #[test]
@@ -153,7 +153,7 @@ fn varying_widths_become_a_layer_a_pen() {
     let thinning = || level(1, [10, 190], 50.0, |x| (1000.0, (1.2 - x / 160.0).clamp(0.05, 1.0) as f32));
     let drawing = drawn(vec![thinning()], &pens(&[0.3, 1.0]), &[]);
     assert_eq!(names(&drawing), ["1 silhouette 0.3 mm", "2 silhouette 1 mm"]);
-    assert!(drawing.layers.iter().all(|layer| layer.form == Form::CentreLines && layer.strokes.len() == 1));
+    assert!(drawing.layers.iter().all(|layer| layer.form == StrokeForm::CentreLines && layer.strokes.len() == 1));
     assert_eq!(drawing.layers.iter().map(|layer| layer.pen.width).collect::<Vec<_>>(), [0.3, 1.0]);
     let found: Vec<[f64; 2]> = drawing.layers.iter().map(|layer| extent(&layer.strokes[0])).collect();
     // Half-way between two pens, and at half the finest.

@@ -8,18 +8,18 @@ use std::time::Instant;
 
 use glam::{DVec2, DVec3};
 use hachure::cache::Cache;
-use hachure::door::measure::compare::{Comparison, Found, Hearing, LEAST_TRUTH_LEVEL, Shown};
-use hachure::door::measure::curves::Curves;
+use hachure::door::measure::compare::{CompareObserver, Comparison, Finding, LEAST_TRUTH_LEVEL, ShownPicture};
+use hachure::door::measure::curves::MeasuredCurves;
 use hachure::door::measure::figures::{DrawnLevel, PassFigures, Run};
 use hachure::door::measure::trial::{Draws, Trial};
 use hachure::door::report::pictures::of_shown;
 use hachure::error::Result;
 use hachure::gpu::{AdapterChoice, Gpu, Int64};
 use hachure::line::{Chain, ChainPoint, Line};
-use hachure::plan::{Border, Method, Share};
+use hachure::plan::{Border, Method, SharedVertices};
 use hachure::surface::{Level, Surface};
 use hachure::truth::metrics::Judge;
-use hachure::truth::{Mask, Piece, Terrain, Truth};
+use hachure::truth::{Mask, Terrain, Truth, TruthPiece};
 use hachure::view::{Camera, Perspective};
 
 use crate::scenes::{level, look, rough};
@@ -36,7 +36,7 @@ struct Levels<'a> {
 }
 
 impl Draws for Levels<'_> {
-    type Yield = Curves;
+    type Yield = MeasuredCurves;
 
     fn time_of_frame(&mut self, camera: &Camera) -> Result<f64> {
         let start = Instant::now();
@@ -44,10 +44,10 @@ impl Draws for Levels<'_> {
         Ok(start.elapsed().as_secs_f64() * 1e3)
     }
 
-    fn yielded(&mut self) -> Result<Curves> {
+    fn yielded(&mut self) -> Result<MeasuredCurves> {
         let (truth, perspective) = self.last.clone().expect("a frame");
         let chains = truth.on_page().map(|piece| chain(piece, &perspective)).collect();
-        Ok(Curves::new(chains, &perspective))
+        Ok(MeasuredCurves::new(chains, &perspective))
     }
 
     fn passes(&mut self, camera: &Camera) -> Result<Vec<PassFigures>> {
@@ -64,7 +64,7 @@ impl Draws for Levels<'_> {
 }
 
 /// A piece of truth as a chain without a name.
-fn chain(piece: &Piece, perspective: &Perspective) -> Chain {
+fn chain(piece: &TruthPiece, perspective: &Perspective) -> Chain {
     let depth = NEAR / piece.distance;
     let point = |place: DVec2| {
         let world = perspective.unproject(place, depth);
@@ -106,7 +106,7 @@ fn try_level(terrain: &Terrain<'_>, camera: &Camera, of: Level, judge: &Judge<'_
         judge,
         truth_pop: 0.0,
         found: &|found| {
-            if let Found::Picture(name, shown @ Shown::Mask(_)) = found {
+            if let Finding::Picture(name, shown @ ShownPicture::Mask(_)) = found {
                 *mask.borrow_mut() = of_shown(name.to_owned(), shown)?.png;
             }
             Ok(())
@@ -149,7 +149,7 @@ fn curves_are_judged_as_ink_is() {
     let last = terrain.truth(&moved(&camera, 2.0), level(4));
     assert_eq!(run.facets, last.facets, "facets are those of the last frame");
     let place = run.place.as_ref().expect("curves have places");
-    let middles: Vec<DVec2> = half.on_page().map(Piece::middle).collect();
+    let middles: Vec<DVec2> = half.on_page().map(TruthPiece::middle).collect();
     near(Some(place.p95_px), judge.offsets(&middles).expect("places").p95);
     assert_eq!((run.mask_hashes.len(), run.passes.len()), (2, 1));
     let picture = image::load_from_memory(&png).expect("a PNG").to_luma8();
@@ -174,11 +174,11 @@ fn compiled(gpu: &Arc<Gpu>, methods: &[Method]) -> Vec<usize> {
         cache: Cache::none(),
     };
     let (before, compiled) = (Cell::new(gpu.compiled()), RefCell::new(Vec::new()));
-    let hearing = Hearing {
+    let hearing = CompareObserver {
         stage: &|_, _| (),
         warn: &|_| (),
         found: &|found| {
-            if let Found::Run(_) = found {
+            if let Finding::Run(_) = found {
                 compiled.borrow_mut().push(gpu.compiled() - before.replace(gpu.compiled()));
             }
             Ok(())
@@ -192,7 +192,7 @@ fn compiled(gpu: &Arc<Gpu>, methods: &[Method]) -> Vec<usize> {
 #[test]
 fn every_run_compiles_its_passes_whichever_ran_before() {
     let gpu = Arc::new(Gpu::open(&AdapterChoice::Best, Int64::IfPresent).expect("an adapter"));
-    let [walk, adjacency] = [Method::Walk, Method::Adjacency { share: Share::Edge }];
+    let [walk, adjacency] = [Method::Walk, Method::Adjacency { share: SharedVertices::Edge }];
     let alone = [walk, adjacency].map(|method| compiled(&gpu, &[method])[0]);
     assert!(alone.iter().all(|passes| *passes > 5), "{alone:?}");
     assert_eq!(compiled(&gpu, &[walk, adjacency]), alone);

@@ -12,7 +12,7 @@ mod west_temple;
 
 use glam::DVec3;
 use hachure::surface::Surface;
-use hachure::truth::{Line, Terrain, Truth};
+use hachure::truth::{Terrain, Truth, TruthLine};
 use rayon::ThreadPoolBuilder;
 
 pub use self::metrics::straight;
@@ -46,10 +46,13 @@ fn cells_without_a_line_are_passed_over() {
     let camera = look(from_middle(DVec3::new(0.0, -1000.0, 140.0)), from_middle(DVec3::Z * 150.0), 60.0, [384, 288]);
     for n in [2, 8] {
         let truth = Terrain::new(&surface).truth(&camera, level(n));
-        let border = truth.pieces.iter().filter(|piece| piece.line == Line::Border).count();
+        let border = truth.pieces.iter().filter(|piece| piece.line == TruthLine::Border).count();
         let bare = truth.clone().without_border().pieces;
         assert!(border > 0 && bare.len() == truth.pieces.len() - border, "level {n}: {border} pieces of border lines");
-        assert!(bare.iter().all(|piece| piece.line == Line::Contour), "level {n}: border lines without the border");
+        assert!(
+            bare.iter().all(|piece| piece.line == TruthLine::Contour),
+            "level {n}: border lines without the border"
+        );
         let share = truth.facets as f64 / (surface.patches() * u64::from(n * n)) as f64;
         println!("level {n}: facets looked at: {:.1} %, {} rays", 100.0 * share, truth.rays);
         assert!(share < 0.05, "level {n}: {:.1} % of the facets were looked at one by one", 100.0 * share);

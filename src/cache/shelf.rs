@@ -18,7 +18,7 @@ const LEFT_BEHIND: Duration = Duration::from_secs(60);
 
 /// A file of the cache.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Shown {
+pub struct ShelfEntry {
     /// Its name in the folder.
     pub name: String,
     /// What it is: its name up to the first dash.
@@ -75,12 +75,12 @@ impl Cache {
     }
 
     /// The files that are artefacts by their names, what they were made of left out.
-    fn files(&self) -> impl Iterator<Item = (PathBuf, Shown)> {
+    fn files(&self) -> impl Iterator<Item = (PathBuf, ShelfEntry)> {
         self.names().filter_map(|(path, name)| {
             let kind = kind_of(&name)?;
             let found = fs::symlink_metadata(&path).ok().filter(fs::Metadata::is_file)?;
             let used = found.modified().unwrap_or(SystemTime::UNIX_EPOCH);
-            Some((path, Shown { name, kind, bytes: found.len(), used, of: None }))
+            Some((path, ShelfEntry { name, kind, bytes: found.len(), used, of: None }))
         })
     }
 
@@ -94,9 +94,9 @@ impl Cache {
 #[doc(hidden)]
 impl Cache {
     /// Its files, the one used last first.
-    pub fn list(&self) -> Vec<Shown> {
-        let mut files: Vec<Shown> =
-            self.files().map(|(path, shown)| Shown { of: entry::made_of(&path), ..shown }).collect();
+    pub fn list(&self) -> Vec<ShelfEntry> {
+        let mut files: Vec<ShelfEntry> =
+            self.files().map(|(path, shown)| ShelfEntry { of: entry::made_of(&path), ..shown }).collect();
         files.sort_by(|a, b| b.used.cmp(&a.used).then_with(|| a.name.cmp(&b.name)));
         files
     }

@@ -9,7 +9,7 @@ use super::talk::Talk;
 use super::terrain::{TerrainArguments, warn_of_survey};
 use super::values;
 use super::words::told;
-use crate::cache::{Cache, Cleared, SIZE, Shown};
+use crate::cache::{Cache, Cleared, SIZE, ShelfEntry};
 use crate::error::{Error, Result, shown};
 use crate::surface::Surface;
 
@@ -103,7 +103,7 @@ pub(crate) fn run(arguments: &CacheCommand, talk: &Talk) -> Result<()> {
 }
 
 /// Name, kind, size, last use and what it is of.
-fn line(Shown { name, kind, bytes, used, of }: &Shown, now: SystemTime) -> String {
+fn line(ShelfEntry { name, kind, bytes, used, of }: &ShelfEntry, now: SystemTime) -> String {
     let seconds = now.duration_since(*used).map_or(0, |age| age.as_secs());
     let (number, unit) = match seconds {
         0..120 => (seconds, "s"),

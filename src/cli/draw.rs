@@ -92,7 +92,7 @@ pub(crate) struct DrawArguments {
 }
 
 /// A DEM on a device, and its page as seen from somewhere.
-struct Drawn<'a> {
+struct DrawnPage<'a> {
     renderer: &'a mut Renderer,
     view: &'a View,
     page: Page,
@@ -133,7 +133,7 @@ pub(crate) fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     renderer.set_land(land.clone());
     let page = renderer.page(&illustration.plan, &view.camera, |share| talk.progress("drawing", 0.3 + 0.3 * share))?;
     cache.discard_damaged(surface.dem(), &|message| talk.warn(&told(message)));
-    let mut drawn = Drawn { renderer: &mut renderer, view: &view, page };
+    let mut drawn = DrawnPage { renderer: &mut renderer, view: &view, page };
     let (lines, drawing) = illustration.drawing(&drawn.page)?;
     let stroked = Stroked { illustration: &illustration, lines: &lines, drawing: &drawing };
     let report = outputs.want_report().then(|| arguments.report(&mut drawn, stroked, talk)).transpose()?;
@@ -152,7 +152,7 @@ pub(crate) fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     outputs.publish()?;
     journey::tell(&drawing, &illustration.style.plot, talk)?;
     arguments.tell(&drawn, started, talk)?;
-    let Drawn { page, .. } = drawn;
+    let DrawnPage { page, .. } = drawn;
     if drawing.layers.is_empty() && page.marks.inked() > 0 {
         talk.warn("nothing is drawn: the style leaves no stroke of the lines; give it finer pens, or --min-gap 0 --min-jump 0");
     }
@@ -249,11 +249,11 @@ impl DrawArguments {
     }
 
     /// Times more frames and says what was done.
-    fn report(&self, drawn: &mut Drawn, stroked: Stroked, talk: &Talk) -> Result<Report> {
+    fn report(&self, drawn: &mut DrawnPage, stroked: Stroked, talk: &Talk) -> Result<Report> {
         talk.progress("timing more frames", 0.6);
         let Stroked { illustration, lines, drawing } = stroked;
         let flat_earth = drawn.flat_earth();
-        let Drawn { renderer, view, page } = drawn;
+        let DrawnPage { renderer, view, page } = drawn;
         let Frame { plan, camera, pieces, .. } = &page.frame;
         let (gpu, surface) = (renderer.gpu().clone(), renderer.surface().clone());
         let pieces = pieces.iter().len();
@@ -287,8 +287,8 @@ impl DrawArguments {
     }
 
     /// The last line: what was drawn, and how long it took.
-    fn tell(&self, drawn: &Drawn, started: Instant, talk: &Talk) -> Result<()> {
-        let Drawn { renderer, view, page, .. } = drawn;
+    fn tell(&self, drawn: &DrawnPage, started: Instant, talk: &Talk) -> Result<()> {
+        let DrawnPage { renderer, view, page, .. } = drawn;
         drawn.flat_earth().map_or(Ok(()), |flat_earth| talk.say(&flat_earth.words()))?;
         talk.say(&format!(
             "{}: {} facets, {} of {} pixels inked, {:.2} s",
@@ -301,7 +301,7 @@ impl DrawArguments {
     }
 }
 
-impl Drawn<'_> {
+impl DrawnPage<'_> {
     /// Where the DEM lies on Earth.
     fn flat_earth(&self) -> Option<FlatEarth> {
         let Self { renderer, view, page, .. } = self;

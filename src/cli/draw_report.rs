@@ -11,7 +11,7 @@ use crate::dem::Dem;
 use crate::ink::plot::Journey;
 use crate::ink::style::Plot;
 use crate::ink::unstroked::Unstroked;
-use crate::ink::{Drawing, Form, Layer, Sheet};
+use crate::ink::{Drawing, Layer, Sheet, StrokeForm};
 use crate::line::{Chain, Strays};
 use crate::measure::figures::DrawnLevel;
 use crate::plan::left_out::LeftOut;
@@ -130,7 +130,7 @@ impl LayerReport {
             name: layer.name.clone(),
             pen_mm: layer.pen.width,
             strokes: layer.strokes.len(),
-            plot: (layer.form == Form::CentreLines).then(|| plot(layer)),
+            plot: (layer.form == StrokeForm::CentreLines).then(|| plot(layer)),
         };
         drawing.layers.iter().map(of).collect()
     }

@@ -10,7 +10,7 @@ use super::viewpoint::SIZE;
 use crate::error::{Error, Result, Setting};
 use crate::ink::Style;
 use crate::plan::detail::ERROR_PX;
-use crate::plan::{Border, Curves, Detail, LandLines, Method, Plan, Share};
+use crate::plan::{Border, Curves, Detail, LandLines, Method, Plan, SharedVertices};
 use crate::relief::LandWanted;
 use crate::render::Illustration;
 
@@ -39,7 +39,7 @@ pub(crate) struct DrawingArguments {
         long, value_parser = choices::share(), help_heading = "Method",
         help = format!("adjacency only: what neighbouring facets share [default: {}]", choices::default_share())
     )]
-    share: Option<Share>,
+    share: Option<SharedVertices>,
     /// Whether to draw the visible border of the DEM and of its voids
     #[arg(long, value_parser = choices::border(), default_value = choices::default_border(), help_heading = "Method")]
     border: Border,

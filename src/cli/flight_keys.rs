@@ -65,12 +65,12 @@ struct File {
     crs: Option<Spanned<String>>,
     north: Option<North>,
     #[serde(default)]
-    key: Vec<Spanned<Entry>>,
+    key: Vec<Spanned<KeyEntry>>,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Entry {
+struct KeyEntry {
     place: Option<Vec<Coordinate>>,
     lonlat: Option<Vec<Coordinate>>,
     look: Option<Vec<f64>>,
@@ -138,7 +138,7 @@ pub(super) fn read(path: &Path) -> Result<Keys> {
     Ok(Keys { crs: crs.transpose()?, north: file.north, keys })
 }
 
-impl Entry {
+impl KeyEntry {
     fn key(self) -> std::result::Result<Key, String> {
         let joined = |parts: Vec<Coordinate>| parts.into_iter().map(Coordinate::text).collect::<Vec<_>>().join(",");
         let (place, lonlat) = match (self.place, self.lonlat) {

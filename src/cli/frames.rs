@@ -7,7 +7,7 @@ use super::work;
 use crate::error::{Error, Result, Setting, shown};
 use crate::files::{Output, Taken};
 use crate::ink::{self, Seal};
-use crate::job::{Job, Made, Pattern};
+use crate::job::{Job, JobFile, Pattern};
 use crate::message;
 use crate::render::{Illustration, Page};
 
@@ -82,8 +82,8 @@ impl FrameFiles {
 
     /// The job of a frame whose drawing and whose mask are made of what have these names.
     pub(crate) fn job(&self, number: u32, [drawing, mask]: [u128; 2]) -> Job {
-        let drawings = self.drawings.iter().map(|(_, pattern)| Made { path: pattern.path(number), name: drawing });
-        let mask = self.mask.iter().map(|pattern| Made { path: pattern.path(number), name: mask });
+        let drawings = self.drawings.iter().map(|(_, pattern)| JobFile { path: pattern.path(number), name: drawing });
+        let mask = self.mask.iter().map(|pattern| JobFile { path: pattern.path(number), name: mask });
         Job { number, called: format!("frame {number}"), files: drawings.chain(mask).collect() }
     }
 
@@ -92,10 +92,10 @@ impl FrameFiles {
     /// # Errors
     /// [`Error::Output`]; as [`Illustration::drawing`].
     pub(crate) fn write(&self, job: &Job, page: &Page, illustration: &Illustration, adapter: &str) -> Result<()> {
-        let seal = |made: &Made| Seal { job: made.name, adapter: adapter.to_owned() };
+        let seal = |made: &JobFile| Seal { job: made.name, adapter: adapter.to_owned() };
         let formats = self.drawings.iter().map(|(format, _)| Some(*format)).chain([None]);
         // Another process may have made them meanwhile.
-        let missing: Vec<(Option<Format>, &Made)> =
+        let missing: Vec<(Option<Format>, &JobFile)> =
             formats.zip(&job.files).filter(|(_, made)| !made.is_there()).collect();
         let mut outputs = missing.iter().map(|(_, made)| work::create(&made.path)).collect::<Result<Vec<_>>>()?;
         let of_drawing = missing.iter().find(|(format, _)| format.is_some());

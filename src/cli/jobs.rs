@@ -3,7 +3,7 @@
 use std::env;
 
 use super::choices;
-use super::progress::Form;
+use super::progress::ProgressForm;
 use crate::error::{Error, Result, Setting};
 use crate::job::{Frames, Shard};
 use crate::message;
@@ -32,12 +32,12 @@ pub(crate) struct JobArguments {
     pub serve: bool,
     /// How progress is shown: a bar on a terminal, lines for programs on standard output, or none
     #[arg(long, value_parser = choices::progress(), default_value = choices::default_progress())]
-    pub progress: Form,
+    pub progress: ProgressForm,
 }
 
 /// Which jobs a process has to do.
 #[derive(Debug, Clone)]
-pub struct Share {
+pub struct JobShare {
     /// The jobs of which it has a share, where those are not all.
     pub part: Option<Frames>,
     /// Which share.
@@ -49,14 +49,14 @@ pub struct Share {
 impl JobArguments {
     /// Whether standard output holds something else than lines on the work.
     pub(crate) fn fills_stdout(&self) -> bool {
-        self.list || self.serve || matches!(self.progress, Form::Json | Form::OpenJd)
+        self.list || self.serve || matches!(self.progress, ProgressForm::Json | ProgressForm::OpenJd)
     }
 
     /// Which of `count` jobs are to be done; they are called `frames` or `drawings`.
     ///
     /// # Errors
     /// [`Error::Setting`] for jobs beyond the last, and where the environment names no shard.
-    pub(crate) fn share(&self, count: u32, called: &str) -> Result<Share> {
+    pub(crate) fn share(&self, count: u32, called: &str) -> Result<JobShare> {
         let all = self.frames.clone().unwrap_or_else(|| Frames::first(count));
         check(&all, count, called)?;
         let from_env = || {
@@ -69,7 +69,7 @@ impl JobArguments {
             None if self.shard_from_env => from_env()?,
             None => Shard::WHOLE,
         };
-        Ok(Share { part: self.frames.clone(), shard, frames: shard.of(&all) })
+        Ok(JobShare { part: self.frames.clone(), shard, frames: shard.of(&all) })
     }
 }
 

@@ -7,7 +7,7 @@ use super::lines::LinesArguments;
 use super::talk::Talk;
 use super::values::number;
 use super::words::told;
-use crate::cache::{Cache, Hearing};
+use crate::cache::{Cache, CacheObserver};
 use crate::error::{Error, Message, Result, Setting};
 use crate::ink::Style;
 use crate::line::Land;
@@ -111,7 +111,8 @@ impl LandArguments {
         let known = Crease::ALL.into_iter().filter(|crease| wanted.slopes.is_some() || wanted.creases.contains(crease));
         let (known, asked): (Vec<Crease>, Vec<FlowLines>) = known.filter_map(|c| Some((c, found(&c)?))).unzip();
         let warn = |message: &Message| talk.warn(&told(message));
-        let hearing = Hearing { warn: &warn, progress: &|done| talk.progress("looking for creases", 0.2 + 0.1 * done) };
+        let hearing =
+            CacheObserver { warn: &warn, progress: &|done| talk.progress("looking for creases", 0.2 + 0.1 * done) };
         let mut found = match asked[..] {
             // Nothing is looked at for lines of the user's own.
             [] => Vec::new(),

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use super::film;
-use super::progress::{Form, Progress};
+use super::progress::{Progress, ProgressForm};
 use super::talk::Talk;
 use crate::error::{Error, Result, Setting, shown};
 use crate::files::Taken;
@@ -86,6 +86,6 @@ fn make(video: &Path, all: &[Merged], folder: &Path, talk: &Talk) -> Result<()> 
     };
     let pictures: Vec<PathBuf> = pictures.iter().map(|path| folder.join(path)).collect();
     let film = film::of(video, fps, Taken::inputs(pictures.iter().map(PathBuf::as_path)), &pictures)?;
-    let progress = Progress::start(talk, Form::Bar, 0);
+    let progress = Progress::start(talk, ProgressForm::Bar, 0);
     film::make(&film, &pictures, inks, &progress, talk)
 }

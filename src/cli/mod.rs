@@ -54,7 +54,7 @@ pub(crate) mod work;
 use clap::{Parser, Subcommand};
 
 use crate::error::Result;
-use talk::{Lines, Talk, TalkArguments};
+use talk::{LinesTo, Talk, TalkArguments};
 
 /// The end of `hachure --help`.
 const EXAMPLES: &str = "\
@@ -104,12 +104,12 @@ impl Arguments {
     /// How the program talks to its user, as asked.
     pub fn talk(&self) -> Talk {
         let lines = match &self.command {
-            Command::Draw(arguments) if arguments.fill_stdout() => Lines::Stderr,
-            Command::Batch(arguments) if arguments.jobs().fills_stdout() => Lines::Stderr,
-            Command::Fly(arguments) if arguments.jobs().fills_stdout() => Lines::Stderr,
+            Command::Draw(arguments) if arguments.fill_stdout() => LinesTo::Stderr,
+            Command::Batch(arguments) if arguments.jobs().fills_stdout() => LinesTo::Stderr,
+            Command::Fly(arguments) if arguments.jobs().fills_stdout() => LinesTo::Stderr,
             // Standard output holds the answer alone.
-            Command::Pick(_) => Lines::Stderr,
-            _ => Lines::Stdout,
+            Command::Pick(_) => LinesTo::Stderr,
+            _ => LinesTo::Stdout,
         };
         Talk::new(&self.talk, lines)
     }

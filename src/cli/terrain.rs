@@ -8,7 +8,7 @@ use super::words::told;
 use crate::cache::Cache;
 use crate::dem::Dem;
 use crate::error::{Error, Result, Setting, shown};
-use crate::geo::{ElevationUnit, Encoding, Nodata, Order, ReadOptions, Reading, Stage};
+use crate::geo::{ElevationUnit, Encoding, Nodata, Order, ReadOptions, ReadStage, Reading};
 use crate::job::Content;
 use crate::job::name::Naming;
 
@@ -190,12 +190,12 @@ pub(crate) fn warn_of_survey(dem: &Dem, talk: &Talk) -> Result<()> {
 }
 
 /// A stage of reading, for its progress bar.
-pub(crate) fn words(stage: Stage) -> &'static str {
+pub(crate) fn words(stage: ReadStage) -> &'static str {
     match stage {
-        Stage::Read => "reading the DEM",
-        Stage::Warp => "warping it to metres",
-        Stage::Fill => "filling voids",
-        Stage::Look => "looking for steps",
-        Stage::Smooth => "smoothing heights, once for this file",
+        ReadStage::Read => "reading the DEM",
+        ReadStage::Warp => "warping it to metres",
+        ReadStage::Fill => "filling voids",
+        ReadStage::Look => "looking for steps",
+        ReadStage::Smooth => "smoothing heights, once for this file",
     }
 }

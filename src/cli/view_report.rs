@@ -21,7 +21,7 @@ pub(crate) struct ViewReport {
     fov: f64,
     size: [u32; 2],
     projection: &'static str,
-    page: Page,
+    page: PageReport,
     /// Name and number of the CRS whose coordinates, times `axes` and `metres_per_unit`, are the world's.
     crs: String,
     crs_wkt: String,
@@ -36,7 +36,7 @@ pub(crate) struct ViewReport {
 
 /// The numbers of the projection: unit vectors of the world, and pixels.
 #[derive(Serialize)]
-struct Page {
+struct PageReport {
     right: [f64; 3],
     up: [f64; 3],
     forward: [f64; 3],
@@ -70,7 +70,7 @@ impl ViewReport {
             size: [camera.width, camera.height],
             projection: "central: with d = world - eye the place on the page, px from its top left corner, \
                          is centre + focal / (d . forward) * (d . right, -(d . up))",
-            page: Page {
+            page: PageReport {
                 right,
                 up,
                 forward,

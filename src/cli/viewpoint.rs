@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use super::choices;
 use super::norths::Norths;
 use super::talk::Talk;
-use super::values::{self, Height, LookAt, Size, Standpoint};
+use super::values::{self, GivenHeight, LookAt, Size, Standpoint};
 use super::words::flag;
 use crate::dem::{Crs, Dem, Georeference, North, Whereabouts};
 use crate::error::{Error, Result, Setting};
@@ -240,7 +240,7 @@ impl ViewArguments {
     fn towards(&self, surface: &Surface, level: Level, look_at: LookAt) -> Result<DVec3> {
         let crs = self.crs()?;
         let place = world(surface.dem(), crs.as_ref(), look_at.place, Setting::LookAt)?;
-        let height = look_at.height.map_or(Height::AboveGround(0.0), Height::Absolute);
+        let height = look_at.height.map_or(GivenHeight::AboveGround(0.0), GivenHeight::Absolute);
         above(surface, level, place, height, Setting::LookAt)
     }
 }
@@ -367,10 +367,16 @@ fn rounded(place: DVec2, decimals: i32) -> DVec2 {
 }
 
 /// A map place at a height.
-pub(super) fn above(surface: &Surface, level: Level, place: DVec2, height: Height, setting: Setting) -> Result<DVec3> {
+pub(super) fn above(
+    surface: &Surface,
+    level: Level,
+    place: DVec2,
+    height: GivenHeight,
+    setting: Setting,
+) -> Result<DVec3> {
     match height {
-        Height::Absolute(z) => Ok(place.extend(z)),
-        Height::AboveGround(h) => match surface.height_below(place, level) {
+        GivenHeight::Absolute(z) => Ok(place.extend(z)),
+        GivenHeight::AboveGround(h) => match surface.height_below(place, level) {
             Some(ground) => Ok(place.extend(to_millimetre(ground, h))),
             None => Err(no_ground(surface, place, setting)),
         },

@@ -27,12 +27,12 @@ pub(crate) struct NamedView {
 
 #[derive(Deserialize)]
 struct File {
-    views: Vec<Entry>,
+    views: Vec<ViewEntry>,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Entry {
+struct ViewEntry {
     name: String,
     dem: PathBuf,
     eye: Option<[Coordinate; 3]>,
@@ -72,7 +72,7 @@ pub(crate) fn read(path: &Path, fov: f64, size: Size) -> Result<Vec<NamedView>> 
     }
 }
 
-impl Entry {
+impl ViewEntry {
     fn view(self, fov: f64, size: Size) -> std::result::Result<NamedView, String> {
         let place = |of: Option<[Coordinate; 3]>, parse: fn(&str) -> std::result::Result<Standpoint, String>| {
             of.map(|parts| parse(&parts.map(|part| part.text()).join(","))).transpose()

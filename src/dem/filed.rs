@@ -27,7 +27,7 @@ pub(super) struct Filed {
     /// Bytes of memory that all work with the samples may take.
     budget: usize,
     stamp: OnceLock<Option<u128>>,
-    kept: Mutex<Kept>,
+    kept: Mutex<KeptTiles>,
     overviews: OnceLock<Overviews>,
     failure: OnceLock<Error>,
     /// How many samples were read from the files.
@@ -35,12 +35,12 @@ pub(super) struct Filed {
 }
 
 /// Exaggerated metres of a tile, NaN at voids, once they are read.
-type Tile = Arc<Mutex<Option<Arc<[f32]>>>>;
+type TileHeights = Arc<Mutex<Option<Arc<[f32]>>>>;
 
 /// Tiles by their spacing and first samples, each with the number of the request that came last, and the bytes of all.
 #[derive(Default)]
-struct Kept {
-    tiles: HashMap<(usize, [usize; 2]), (Tile, u64, usize)>,
+struct KeptTiles {
+    tiles: HashMap<(usize, [usize; 2]), (TileHeights, u64, usize)>,
     requests: u64,
     bytes: usize,
 }
@@ -176,16 +176,16 @@ impl Filed {
     }
 }
 
-impl Kept {
+impl KeptTiles {
     /// The tile of a window, new ones in the place of old ones beyond `budget` bytes.
-    fn tile(&mut self, spacing: usize, window: Window, budget: usize) -> Tile {
+    fn tile(&mut self, spacing: usize, window: Window, budget: usize) -> TileHeights {
         self.requests += 1;
         let place = (spacing, window.first);
         if let Some((tile, request, _)) = self.tiles.get_mut(&place) {
             *request = self.requests;
             return tile.clone();
         }
-        let (tile, bytes) = (Tile::default(), window.samples() as usize * size_of::<f32>());
+        let (tile, bytes) = (TileHeights::default(), window.samples() as usize * size_of::<f32>());
         while self.bytes + bytes > budget {
             let oldest = self.tiles.iter().min_by_key(|(_, (_, request, _))| *request).map(|(place, _)| *place);
             // The last one stays, however large: whoever asks sample by sample would read it for each.
@@ -220,14 +220,14 @@ mod tests {
     #[test]
     fn the_tile_asked_for_longest_ago_makes_room() {
         let tile = |c: usize| Window { first: [c, 0], size: [100, 10] };
-        let mut kept = Kept::default();
+        let mut kept = KeptTiles::default();
         let tiles: Vec<_> = (0..3).map(|c| kept.tile(1, tile(c), 12_000)).collect();
         assert!(Arc::ptr_eq(&tiles[0], &kept.tile(1, tile(0), 12_000)), "all three fit");
         let _ = kept.tile(1, tile(3), 12_000);
         assert_eq!(kept.bytes, 12_000);
         assert!(Arc::ptr_eq(&tiles[0], &kept.tile(1, tile(0), 12_000)), "asked for since");
         assert!(!Arc::ptr_eq(&tiles[1], &kept.tile(1, tile(1), 12_000)), "gone");
-        let mut one = Kept::default();
+        let mut one = KeptTiles::default();
         let last = [0, 1].map(|c| one.tile(1, tile(c), 3_999));
         assert!(Arc::ptr_eq(&last[1], &one.tile(1, tile(1), 3_999)), "the last one, though larger than the budget");
         assert_eq!((one.bytes, one.tiles.len()), (4_000, 1), "but no other");

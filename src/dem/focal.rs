@@ -17,7 +17,7 @@ use super::stored::{Found, Stored, bytes_of, key};
 use super::tiles::Tiles;
 use super::tiling::{Tiling, copy};
 use super::window::Window;
-use crate::cache::{Cache, Hearing, Sheet};
+use crate::cache::{Cache, CacheObserver, NewEntry};
 use crate::error::{Error, Message, Result, Setting};
 use crate::message;
 
@@ -87,7 +87,7 @@ impl<F: Focal> Worked<F> {
         let Some(stamp) = folder.and_then(|_| self.stamp()) else { return Ok(self) };
         let tiles = self.tiling().tiles(self.whole());
         // What is damaged is made anew; where nothing can be kept, those who keep more tell so.
-        let hearing = Hearing { warn: &|_| (), progress };
+        let hearing = CacheObserver { warn: &|_| (), progress };
         let stored = cache.get(
             &key(stamp, of),
             hearing,
@@ -103,7 +103,7 @@ impl<F: Focal> Worked<F> {
     }
 
     /// Works on all `tiles` and keeps what comes of it; `None` where it cannot be kept.
-    fn make(&self, mut sheet: Sheet, tiles: &[Window], progress: &dyn Fn(f64)) -> Result<Option<Stored>> {
+    fn make(&self, mut sheet: NewEntry, tiles: &[Window], progress: &dyn Fn(f64)) -> Result<Option<Stored>> {
         let mut hashes = Vec::with_capacity(tiles.len());
         for run in self.runs(tiles) {
             let width = run.iter().map(|tile| tile.size[0]).sum();

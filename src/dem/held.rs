@@ -1,6 +1,6 @@
 //! How large a DEM may be, and what is said where its samples would have to be in memory.
 
-use crate::error::{Error, Message, Part, Setting};
+use crate::error::{Error, Message, MessagePart, Setting};
 use crate::message;
 
 /// Most samples of a DEM held in memory: 128 MiB of heights, the largest buffer that every GPU binds.
@@ -42,6 +42,6 @@ pub(super) fn to_fill([columns, rows]: [usize; 2], is_filed: bool) -> Message {
 }
 
 /// So much memory, as one sets it.
-pub(crate) fn mebibytes(memory: u64) -> Part {
+pub(crate) fn mebibytes(memory: u64) -> MessagePart {
     Setting::Memory.at(format!("{memory}MiB"))
 }

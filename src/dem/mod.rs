@@ -39,7 +39,7 @@ pub(crate) use held::{LARGEST_SIDE, MAX_SAMPLES, held_bytes, mebibytes, not_held
 pub use history::History;
 pub(crate) use north::convergence_in_words;
 pub use north::{Bearings, North};
-pub(crate) use overviews::{Entry, OverviewBuilder, Overviews};
+pub(crate) use overviews::{OverviewBuilder, OverviewEntry, Overviews};
 pub(crate) use samples::Samples;
 pub(crate) use survey::{Survey, SurveyBuilder};
 pub use systems::{Crs, Transform, Unit};

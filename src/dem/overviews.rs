@@ -33,14 +33,14 @@ pub(crate) struct Overviews {
     path: PathBuf,
     file: Mutex<File>,
     grid: Blocks,
-    index: Vec<Entry>,
+    index: Vec<OverviewEntry>,
     damaged: AtomicBool,
 }
 
 /// Where a block lies in the file, and the hash of its bytes.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
-pub(crate) struct Entry {
+pub(crate) struct OverviewEntry {
     offset: u64,
     hash: u64,
 }
@@ -52,7 +52,7 @@ pub(crate) struct OverviewBuilder {
     rows: [Vec<f32>; SPACINGS.len()],
     /// Of each spacing how many blocks are made.
     made: [usize; SPACINGS.len()],
-    index: Vec<Entry>,
+    index: Vec<OverviewEntry>,
     end: u64,
 }
 
@@ -77,7 +77,7 @@ impl Blocks {
 
 impl Overviews {
     /// Of a DEM, from blocks in the file at `path`; `None` where there are not as many as it has.
-    pub(crate) fn new(dem: &Dem, path: &Path, file: File, index: Vec<Entry>) -> Option<Self> {
+    pub(crate) fn new(dem: &Dem, path: &Path, file: File, index: Vec<OverviewEntry>) -> Option<Self> {
         let (grid, damaged) = (Blocks { samples: [dem.columns(), dem.rows()] }, AtomicBool::new(false));
         let whole = index.len() == grid.before(SPACINGS.len());
         whole.then(|| Self { path: path.to_owned(), file: Mutex::new(file), grid, index, damaged })
@@ -106,7 +106,7 @@ impl Overviews {
         let k = SPACINGS.iter().position(|known| *known == spacing).ok_or(io::ErrorKind::NotFound)?;
         let [x, y] = block.first.map(|at| at / SIDE);
         let place = self.grid.before(k) + y * self.grid.size(k)[0].div_ceil(SIDE) + x;
-        let Entry { offset, hash } = *self.index.get(place).ok_or(io::ErrorKind::NotFound)?;
+        let OverviewEntry { offset, hash } = *self.index.get(place).ok_or(io::ErrorKind::NotFound)?;
         let mut samples = vec![0.0_f32; block.samples() as usize];
         let bytes: &mut [u8] = bytemuck::cast_slice_mut(&mut samples);
         let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
@@ -125,7 +125,7 @@ impl OverviewBuilder {
     /// Of a DEM, nothing made yet. Its blocks will be the first in their file.
     pub(crate) fn new(dem: &Dem) -> Self {
         let grid = Blocks { samples: [dem.columns(), dem.rows()] };
-        let index = vec![Entry::zeroed(); grid.before(SPACINGS.len())];
+        let index = vec![OverviewEntry::zeroed(); grid.before(SPACINGS.len())];
         Self { grid, rows: Default::default(), made: [0; SPACINGS.len()], index, end: 0 }
     }
 
@@ -147,7 +147,7 @@ impl OverviewBuilder {
     }
 
     /// Where the blocks lie, when all rows have been taken.
-    pub(crate) fn into_index(self) -> Vec<Entry> {
+    pub(crate) fn into_index(self) -> Vec<OverviewEntry> {
         self.index
     }
 
@@ -159,7 +159,7 @@ impl OverviewBuilder {
             let block: Vec<f32> = rows.chunks_exact(width).flat_map(|row| &row[first..end]).copied().collect();
             let bytes: &[u8] = bytemuck::cast_slice(&block);
             write(bytes);
-            self.index[self.grid.before(k) + self.made[k]] = Entry { offset: self.end, hash: xxh3_64(bytes) };
+            self.index[self.grid.before(k) + self.made[k]] = OverviewEntry { offset: self.end, hash: xxh3_64(bytes) };
             self.made[k] += 1;
             self.end += bytes.len() as u64;
         }

@@ -14,7 +14,7 @@ pub(super) struct Places {
 }
 
 /// One that is taken, until it is dropped. Whoever has it must wait for nobody who may wait for one.
-pub(super) struct Place<'a>(&'a Places);
+pub(super) struct Permit<'a>(&'a Places);
 
 impl Places {
     /// So many, one at least.
@@ -24,10 +24,10 @@ impl Places {
     }
 
     /// One of them; waits until there is one.
-    pub(super) fn take(&self) -> Place<'_> {
+    pub(super) fn take(&self) -> Permit<'_> {
         let none = |free: &mut usize| *free == 0;
         *self.freed.wait_while(self.free(), none).unwrap_or_else(PoisonError::into_inner) -= 1;
-        Place(self)
+        Permit(self)
     }
 
     /// How much work is best given to all cores together: some for each, unless they lack places.
@@ -45,7 +45,7 @@ impl Places {
     }
 }
 
-impl Drop for Place<'_> {
+impl Drop for Permit<'_> {
     fn drop(&mut self) {
         *self.0.free() += 1;
         self.0.freed.notify_one();

@@ -6,7 +6,7 @@ mod message;
 use std::io;
 use std::path::{Path, PathBuf};
 
-pub use message::{Form, Message, Part, Setting};
+pub use message::{Message, MessagePart, Setting, SettingForm};
 
 /// `Result` with this crate's [`Error`].
 pub type Result<T> = std::result::Result<T, Error>;

@@ -17,17 +17,17 @@ use crate::error::{Error, Result, Setting, shown};
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(crate) enum Identity {
     /// A file that is there, links followed.
-    File(Node),
+    File(FileNode),
     /// A file that would be made: its folder and its name there.
-    New(Node, OsString),
+    New(FileNode, OsString),
 }
 
 /// A file or folder as the system tells it from all others.
 #[cfg(unix)]
-pub(crate) type Node = (u64, u64);
+pub(crate) type FileNode = (u64, u64);
 /// A file or folder as the system tells it from all others.
 #[cfg(not(unix))]
-pub type Node = PathBuf;
+pub type FileNode = PathBuf;
 
 impl Identity {
     /// Of the file called `path`, be it there or not; `None` where not even its folder is.
@@ -59,13 +59,13 @@ impl Identity {
 }
 
 #[cfg(unix)]
-fn node(path: &Path) -> io::Result<Node> {
+fn node(path: &Path) -> io::Result<FileNode> {
     use std::os::unix::fs::MetadataExt;
     fs::metadata(path).map(|found| (found.dev(), found.ino()))
 }
 
 #[cfg(not(unix))]
-fn node(path: &Path) -> io::Result<Node> {
+fn node(path: &Path) -> io::Result<FileNode> {
     fs::canonicalize(path)
 }
 

@@ -2,7 +2,7 @@
 //!
 //! GDAL and PROJ are known in `gdal/` alone, behind the traits of [`dem`](crate::dem): [`Tiles`](crate::dem::Tiles) and
 //! [`Transform`](crate::dem::Transform). A build without the feature `gdal` has the same names and reads nothing: each
-//! says so. Of vectors the way of a flight is read, see [`track`], and
+//! says so. Of vectors the way of a flight is read, see `track`, and
 //! lines of the user's own, see [`own_lines`]; lines of a drawing are written, see [`write_lines`].
 
 mod elevation_unit;
@@ -25,7 +25,7 @@ pub use info::{Info, info};
 pub use mapped::{MapFormat, MapLine};
 pub use nodata::Nodata;
 pub use own::{OwnLayer, OwnLine, OwnLines};
-pub use read::{Order, ReadOptions, Stage, read, read_all};
+pub use read::{Order, ReadOptions, ReadStage, read, read_all};
 pub(crate) use track::{Track, with_layer};
 #[cfg(not(feature = "gdal"))]
 pub(crate) use without::{Reading, track};

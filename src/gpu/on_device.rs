@@ -10,7 +10,7 @@ use super::shaders::{self, Amounts};
 use super::stages::Stages;
 use crate::error::Result;
 use crate::plan::passes::{Over, PlannedPass};
-use crate::plan::{Batch, Frame, Piece};
+use crate::plan::{Batch, Frame, PagePiece};
 
 /// Scene, page and passes on a device.
 #[derive(Clone, Copy)]
@@ -76,7 +76,7 @@ impl<'a> OnDevice<'a> {
     pub fn dispatch(
         self,
         frame: &Frame,
-        piece: Piece,
+        piece: PagePiece,
         planned: &PlannedPass,
         [batch, round]: [u32; 2],
     ) -> Result<Option<Dispatch<'a>>> {

@@ -13,13 +13,13 @@ use super::uniforms::BatchUniform;
 use crate::error::{Error, Result};
 use crate::plan::batches::PART_CHUNKS;
 use crate::plan::passes::{Often, PlannedPass, passes};
-use crate::plan::{Batch, Curves, Frame, Method, PassName, Plan, Thrift, Visibility};
+use crate::plan::{Batch, Culling, Curves, Frame, Method, PassName, Plan, Visibility};
 
 /// Bytes between entries of a uniform buffer that are bound one at a time.
 const UNIFORM_STRIDE: u64 = 256;
 
 /// A compiled pass with what it binds: once for a piece, or for each round of each batch.
-pub struct Stage {
+pub struct BoundPass {
     /// Which.
     pub name: PassName,
     /// The pass.
@@ -30,7 +30,7 @@ pub struct Stage {
 /// The stages of frames of one plan over so many batches, bound to the buffers that were there.
 #[derive(Default)]
 pub struct Stages {
-    stages: Vec<Stage>,
+    stages: Vec<BoundPass>,
     rounds: u32,
     batches: Option<wgpu::Buffer>,
     made_for: Option<MadeFor>,
@@ -41,7 +41,7 @@ pub struct Stages {
 struct MadeFor {
     passes: Vec<PlannedPass>,
     method: Method,
-    thrift: Thrift,
+    culling: Culling,
     curves: Curves,
     batches: usize,
     /// Of scene, page and curves.
@@ -61,11 +61,11 @@ impl Stages {
         page: &PageBuffers,
         curves: &CurveBuffers,
     ) -> Result<()> {
-        let Plan { method, thrift, curves: asked, .. } = frame.plan;
+        let Plan { method, culling, curves: asked, .. } = frame.plan;
         let made_for = MadeFor {
             passes: passes(&frame.plan),
             method,
-            thrift,
+            culling,
             curves: asked,
             batches: frame.batches.len().max(1),
             generations: [scene.generation(), page.generation(), curves.generation()],
@@ -91,7 +91,7 @@ impl Stages {
                 }
                 Often::Once | Often::ForCurves | Often::OnReading => vec![bound.group(gpu, &pass, 0, 0, none[0])?],
             };
-            stages.push(Stage { name: planned.name, pass, groups });
+            stages.push(BoundPass { name: planned.name, pass, groups });
         }
         *self = Self { stages, rounds, batches: Some(uniforms), made_for: Some(made_for) };
         Ok(())
@@ -101,7 +101,7 @@ impl Stages {
     ///
     /// # Errors
     /// [`Error::Mistake`] when the plan has none.
-    pub fn get(&self, name: PassName) -> Result<&Stage> {
+    pub fn get(&self, name: PassName) -> Result<&BoundPass> {
         let none = || Error::mistake(format!("pass {} is not of the plan", name.name()));
         self.stages.iter().find(|stage| stage.name == name).ok_or_else(none)
     }
@@ -115,7 +115,7 @@ impl Stages {
     ///
     /// # Errors
     /// [`Error::Mistake`] when there is no such batch or round.
-    pub fn group<'a>(&self, stage: &'a Stage, batch: usize, round: u32) -> Result<&'a wgpu::BindGroup> {
+    pub fn group<'a>(&self, stage: &'a BoundPass, batch: usize, round: u32) -> Result<&'a wgpu::BindGroup> {
         let none =
             || Error::mistake(format!("pass {} binds nothing for batch {batch} in round {round}", stage.pass.name));
         let group = stage.groups.get(batch * self.rounds as usize + round as usize);
@@ -170,13 +170,13 @@ fn compile(gpu: &Gpu, frame: &Frame, passes: &[PlannedPass]) -> Result<Vec<Arc<P
 /// What all shaders may depend on.
 fn constants(frame: &Frame) -> [(&'static str, f64); 6] {
     let flag = |on: bool| f64::from(u8::from(on));
-    let Plan { method, thrift, curves, .. } = frame.plan;
+    let Plan { method, culling, curves, .. } = frame.plan;
     [
         ("has_voids", flag(frame.tests_voids)),
         // In how many parts facing bits lie.
         ("facing_parts", f64::from(frame.batches.last().map_or(0, Batch::part) + 1)),
         ("two_depths", flag(frame.visibility == Visibility::TwoDepths)),
-        ("thrifty", flag(thrift == Thrift::LeaveOut)),
+        ("culls", flag(culling == Culling::On)),
         ("all_curves", flag(curves == Curves::All)),
         ("conservative", flag(method.entry().conservative)),
     ]

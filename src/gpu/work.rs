@@ -5,20 +5,25 @@ use super::device::Gpu;
 use super::on_device::OnDevice;
 use super::sizes::LIST_HEADER;
 use crate::error::Result;
-use crate::plan::{Frame, PassName, Piece};
+use crate::plan::{Frame, PagePiece, PassName};
 
 /// Commands for a piece of a frame, recorded and not yet submitted.
-pub(crate) struct Work<'a> {
+pub(crate) struct FrameWork<'a> {
     on_device: OnDevice<'a>,
     frame: &'a Frame,
-    piece: Piece,
+    piece: PagePiece,
     timer: Option<&'a mut Timer>,
     encoder: wgpu::CommandEncoder,
 }
 
-impl<'a> Work<'a> {
+impl<'a> FrameWork<'a> {
     /// Nothing recorded yet.
-    pub(crate) fn new(on_device: OnDevice<'a>, frame: &'a Frame, piece: Piece, timer: Option<&'a mut Timer>) -> Self {
+    pub(crate) fn new(
+        on_device: OnDevice<'a>,
+        frame: &'a Frame,
+        piece: PagePiece,
+        timer: Option<&'a mut Timer>,
+    ) -> Self {
         let encoder = on_device.gpu.device.create_command_encoder(&Default::default());
         let mut work = Self { on_device, frame, piece, timer, encoder };
         if work.timer.is_some() {

@@ -27,7 +27,7 @@ mod wobble;
 
 pub use colour::Colour;
 pub use draw::draw;
-pub use drawing::{Drawing, Form, Layer, Pen, Stroke, StrokePoint};
+pub use drawing::{Drawing, Layer, Pen, Stroke, StrokeForm, StrokePoint};
 pub use hachures::{HachureStyle, LightStyle};
 pub(crate) use inked::InkedNear;
 pub use mask::write_mask;

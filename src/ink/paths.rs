@@ -7,7 +7,7 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use super::outline::outline;
-use super::{Form, Layer, Stroke};
+use super::{Layer, Stroke, StrokeForm};
 
 /// Points of the strokes in a piece: about 1 MB of text.
 const PIECE: usize = 1 << 15;
@@ -24,11 +24,11 @@ pub(super) struct Path {
 /// What a file holds of a stroke: the borders of its area, or the way of the pen.
 pub(super) fn paths(stroke: &Stroke, layer: &Layer) -> Vec<Path> {
     match layer.form {
-        Form::Outlines => {
+        StrokeForm::Outlines => {
             let polygons = outline(stroke, layer.pen.width);
             polygons.into_iter().map(|polygon| Path::new(polygon.into_iter(), true)).collect()
         }
-        Form::CentreLines => vec![Path::new(stroke.points.iter().map(|point| point.place), stroke.closed)],
+        StrokeForm::CentreLines => vec![Path::new(stroke.points.iter().map(|point| point.place), stroke.closed)],
     }
 }
 

@@ -38,12 +38,12 @@ pub struct Job {
     /// In words.
     pub called: String,
     /// The files it makes.
-    pub files: Vec<Made>,
+    pub files: Vec<JobFile>,
 }
 
 /// A file that a job makes.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Made {
+pub struct JobFile {
     /// Where it stands.
     pub path: PathBuf,
     /// The name of all that it is made of.
@@ -53,11 +53,11 @@ pub struct Made {
 impl Job {
     /// Whether all its files are there, whole, and made of the same.
     pub fn is_done(&self) -> bool {
-        self.files.iter().all(Made::is_there)
+        self.files.iter().all(JobFile::is_there)
     }
 }
 
-impl Made {
+impl JobFile {
     /// Whether the file is there, whole, and made of the same.
     pub fn is_there(&self) -> bool {
         Seal::job_of(&self.path).is_ok_and(|name| name == Some(self.name))

@@ -18,7 +18,7 @@ use rayon::prelude::*;
 
 use super::along::fade;
 use super::laid::line_of;
-use super::way::{Way, WayPoint};
+use super::way::{LandWay, WayPoint};
 use crate::dem::Dem;
 use crate::error::Result;
 use crate::relief::{LineKind, Slopes, SurfaceLine, SurfacePoint, spacing};
@@ -201,7 +201,7 @@ impl Land {
     }
 
     /// The lines that are shown, each point as strongly as it is.
-    pub fn ways(&self, from: From) -> Vec<Way> {
+    pub fn ways(&self, from: From) -> Vec<LandWay> {
         let way = |((line, world), weights): ((&SurfaceLine, &[DVec3]), Vec<f32>)| {
             let points = line.points.iter().zip(world).zip(&weights);
             let point = |((point, world), weight): ((&SurfacePoint, &DVec3), &f32)| WayPoint {
@@ -211,7 +211,7 @@ impl Land {
                 black: 1.0,
             };
             let points: Vec<WayPoint> = points.map(point).collect();
-            (points.len() > 1).then_some(Way { line: line_of(line.kind), points, closed: line.closed })
+            (points.len() > 1).then_some(LandWay { line: line_of(line.kind), points, closed: line.closed })
         };
         self.iter().zip(self.shown(from)).filter_map(way).collect()
     }

@@ -8,7 +8,7 @@ const BLOCK: usize = 512;
 ///
 /// A block of cells of which none is set takes 4 bytes.
 #[derive(Clone)]
-pub(super) struct Grid {
+pub(super) struct CellGrid {
     /// Cells in a row: the page's width and the margin.
     pub stride: usize,
     /// Index of each block; 0 is the one without a cell.
@@ -16,7 +16,7 @@ pub(super) struct Grid {
     blocks: Vec<[u64; BLOCK / 64]>,
 }
 
-impl Grid {
+impl CellGrid {
     /// An empty grid for a page of this size.
     pub(super) fn new(width: u32, height: u32) -> Self {
         let stride = width as usize + 2;
@@ -46,7 +46,7 @@ impl Grid {
         self.blocks[block][cell % BLOCK / 64] >> (cell % 64) & 1 == 1
     }
 
-    /// Which of the 8 neighbours are set, in the order of [`Grid::around`].
+    /// Which of the 8 neighbours are set, in the order of [`CellGrid::around`].
     pub(super) fn neighbours(&self, cell: usize) -> [bool; 8] {
         self.around(cell).map(|n| self.has(n))
     }

@@ -7,7 +7,7 @@
 use rayon::prelude::*;
 
 use super::{InkRaster, Kind, Pixel};
-use crate::plan::Piece;
+use crate::plan::PagePiece;
 use crate::plan::pieces::Rectangle;
 
 /// Of 8 neighbours of a pixel of the cover, inked ones that all but enclose it: holes have two pixels at most.
@@ -94,12 +94,12 @@ impl From<&InkRaster> for Marks {
     fn from(raster: &InkRaster) -> Self {
         let size = [raster.width, raster.height];
         let whole = Rectangle { origin: [0, 0], size };
-        Self::new(size, of_piece(raster, Piece { kept: whole, drawn: whole }))
+        Self::new(size, of_piece(raster, PagePiece { kept: whole, drawn: whole }))
     }
 }
 
 /// The marks of a piece, which was drawn as `raster`, halo and all.
-pub(crate) fn of_piece(raster: &InkRaster, piece: Piece) -> Vec<Mark> {
+pub(crate) fn of_piece(raster: &InkRaster, piece: PagePiece) -> Vec<Mark> {
     let [left, top] = [0, 1].map(|axis| piece.kept.origin[axis] - piece.drawn.origin[axis]);
     let [width, height] = piece.kept.size;
     let [x, y] = piece.drawn.origin;
@@ -118,7 +118,7 @@ pub(crate) fn of_piece(raster: &InkRaster, piece: Piece) -> Vec<Mark> {
 }
 
 /// How many pixels of a piece, which was drawn as `raster`, show land.
-pub(crate) fn covered(raster: &InkRaster, piece: Piece) -> u64 {
+pub(crate) fn covered(raster: &InkRaster, piece: PagePiece) -> u64 {
     let [left, top] = [0, 1].map(|axis| (piece.kept.origin[axis] - piece.drawn.origin[axis]) as usize);
     let [width, height] = piece.kept.size.map(|side| side as usize);
     let of_row = |row: usize| {

@@ -47,7 +47,7 @@ struct Reach {
 impl Horizon {
     /// Nothing hidden yet. `None` where nothing can be told.
     pub(super) fn new(surface: &Surface, camera: &Camera) -> Option<Self> {
-        let sides = camera.wedge()?;
+        let sides = camera.frustum()?;
         let dem = surface.dem();
         let eye = camera.eye - dem.position(0, 0).with_z(0.0);
         let at = dem.grid_place(camera.eye.truncate());

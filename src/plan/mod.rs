@@ -15,10 +15,10 @@ pub(crate) use batches::{Batch, batches};
 pub use detail::Detail;
 pub(crate) use frame::Frame;
 pub use hachures::{Hachures, Light, LightAzimuth, Shade, Tone};
-pub use method::{Border, Curves, LandLines, Method, Share, Thrift, Visibility};
+pub use method::{Border, Culling, Curves, LandLines, Method, SharedVertices, Visibility};
 pub(crate) use passes::PassName;
-pub(crate) use pieces::{Piece, Pieces};
-pub use registry::Entry;
+pub(crate) use pieces::{PagePiece, Pieces};
+pub use registry::MethodEntry;
 pub(crate) use registry::Yields;
 
 /// What is drawn, whatever the eye.
@@ -37,7 +37,7 @@ pub struct Plan {
     /// How hachures look, where they are drawn.
     pub hachures: Option<Hachures>,
     /// Whether what cannot change the picture is left out.
-    pub thrift: Thrift,
+    pub culling: Culling,
 }
 
 impl Plan {
@@ -50,7 +50,7 @@ impl Plan {
             curves: Curves::Off,
             land: LandLines::Off,
             hachures: None,
-            thrift: Thrift::LeaveOut,
+            culling: Culling::On,
         }
     }
 

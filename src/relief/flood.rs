@@ -9,7 +9,7 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use super::frame::Frame;
+use super::frame::FramedGrid;
 use super::heap::{RadixHeap, key};
 
 /// Water rises from here first.
@@ -20,7 +20,7 @@ const VOID: u8 = 10;
 /// Floods from seeds, each a sample that is no void. `reached` hears of each sample, by when the parents of all on its way back are
 /// known.
 pub(super) fn flood(
-    frame: Frame,
+    frame: FramedGrid,
     heights: &[f32],
     seeds: impl Iterator<Item = usize>,
     mut reached: impl FnMut(usize, &[u8]),

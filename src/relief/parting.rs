@@ -46,7 +46,7 @@ struct End {
 }
 
 /// Water on its way to a bed.
-struct Run {
+struct WaterRun {
     sample: usize,
     metres: f32,
     node: Option<usize>,
@@ -97,8 +97,8 @@ impl<'a> Beds<'a> {
     /// How the waters of two samples part.
     pub(super) fn parting(&self, sides: [usize; 2]) -> Parting {
         let runs = sides.map(|side| self.run(side));
-        let whole = |run: &Run| run.metres + run.node.map_or(0.0, |node| self.left[node]);
-        let end = |run: &Run| run.node.map_or(run.sample, |node| self.outlet(node));
+        let whole = |run: &WaterRun| run.metres + run.node.map_or(0.0, |node| self.left[node]);
+        let end = |run: &WaterRun| run.node.map_or(run.sample, |node| self.outlet(node));
         let ends = [end(&runs[0]), end(&runs[1])];
         let mut metres = [whole(&runs[0]), whole(&runs[1])];
         let mut lowest = ends;
@@ -115,7 +115,7 @@ impl<'a> Beds<'a> {
     }
 
     /// Down to a bed, or to where the water ends before.
-    fn run(&self, mut sample: usize) -> Run {
+    fn run(&self, mut sample: usize) -> WaterRun {
         let distances = self.flow.frame().distances();
         let mut metres = 0.0;
         loop {
@@ -125,7 +125,7 @@ impl<'a> Beds<'a> {
                     metres += distances[k] as f32;
                     sample = down;
                 }
-                _ => return Run { sample, metres, node },
+                _ => return WaterRun { sample, metres, node },
             }
         }
     }

@@ -7,9 +7,9 @@ use super::branches::{branches, lasting};
 use super::channels::Channels;
 use super::flow::{Ends, Flow};
 use super::grid::Grid;
-use super::lines::{Node, lines};
+use super::lines::{NetNode, lines};
 use super::parting::{Beds, Parting};
-use super::threshold::{FIRST, Trial, found, trials};
+use super::threshold::{AreaTrial, FIRST, found, trials};
 use super::tops::tops;
 use super::trace::Follows;
 use super::water::sea;
@@ -35,7 +35,7 @@ pub enum ChannelArea {
 
 /// Samples that make a channel where the falls of the streams tell this: at least 25, which are taken where they tell nothing, at
 /// most 100.
-pub fn auto_cells(found: Option<Trial>) -> u32 {
+pub fn auto_cells(found: Option<AreaTrial>) -> u32 {
     found.map_or(CELLS, |trial| trial.cells.clamp(CELLS, MOST_CELLS))
 }
 
@@ -87,7 +87,7 @@ impl Relief {
         let node = |branch: usize, node: u32| {
             let i = sample(node);
             let drop = tops[branch] - self.grid.smoothed[i];
-            Node { at: self.grid.frame.at(i), length: self.area.length[i], drop, order: orders[node as usize] }
+            NetNode { at: self.grid.frame.at(i), length: self.area.length[i], drop, order: orders[node as usize] }
         };
         lines(&self.grid, &branches, Follows::Valley, node)
     }
@@ -118,7 +118,7 @@ impl Relief {
             let sides = [2, 6].map(|turn| i.wrapping_add(steps[(k + turn) % 8]));
             let is_land = sides.iter().all(|side| self.flow.is_land(*side));
             let Parting { length, drop } = if is_land { beds.parting(sides) } else { Parting::default() };
-            Node { at: frame.at(i), length, drop, order: 1 }
+            NetNode { at: frame.at(i), length, drop, order: 1 }
         };
         Ok(lines(&self.grid, &branches, Follows::Crest, node))
     }
@@ -160,7 +160,7 @@ impl Relief {
     }
 
     /// Areas from which water may run in beds, and how streams then fall.
-    pub fn trials(&self) -> Vec<Trial> {
+    pub fn trials(&self) -> Vec<AreaTrial> {
         trials(&self.grid, &Channels::of(&self.flow, &self.area, FIRST), &self.area)
     }
 

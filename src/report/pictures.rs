@@ -4,7 +4,7 @@ use std::io;
 
 use crate::error::{Error, Result};
 use crate::ink;
-use crate::measure::compare::Shown;
+use crate::measure::compare::ShownPicture;
 use crate::truth::Mask;
 use crate::truth::metrics::Measured;
 
@@ -27,11 +27,11 @@ pub struct Picture {
 ///
 /// # Errors
 /// [`Error::Output`] where PNG cannot hold it.
-pub fn of_shown(name: String, shown: Shown<'_>) -> Result<Picture> {
+pub fn of_shown(name: String, shown: ShownPicture<'_>) -> Result<Picture> {
     match shown {
-        Shown::Truth(truth) => truth_picture(name, truth),
-        Shown::Mask(mask) => mask_picture(name, mask),
-        Shown::Difference(mask, measured) => difference_picture(name, mask, measured),
+        ShownPicture::Truth(truth) => truth_picture(name, truth),
+        ShownPicture::Mask(mask) => mask_picture(name, mask),
+        ShownPicture::Difference(mask, measured) => difference_picture(name, mask, measured),
     }
 }
 

@@ -31,7 +31,7 @@ const COARSEST_CELLS: usize = 64;
 /// Squares of 4, 8, 16 ... cells, each layer a grid from the north-west, up to one square or 64 cells between vertices.
 #[derive(Debug, Clone)]
 pub struct Pyramid {
-    layers: Vec<Layer>,
+    layers: Vec<PyramidLayer>,
     samples: [usize; 2],
     cell: DVec2,
 }
@@ -40,7 +40,7 @@ pub struct Pyramid {
 pub(crate) struct PyramidBuilder(Pyramid);
 
 #[derive(Debug, Clone)]
-struct Layer {
+struct PyramidLayer {
     columns: usize,
     /// Cells along a square.
     size: usize,
@@ -49,7 +49,7 @@ struct Layer {
 
 /// Where the surface over a square lies, metres.
 #[derive(Debug, Clone, Copy)]
-pub struct Relief {
+pub struct SquareBounds {
     /// Exaggerated height below all of it.
     pub low: f32,
     /// Above all of it; below `low` where there is none.
@@ -133,7 +133,7 @@ impl Pyramid {
         let needed =
             |size: &usize| *size <= LEVEL_1_CELLS || *size / 2 < longest && *size <= COARSEST_CELLS * LEVEL_1_CELLS;
         let sizes = std::iter::successors(Some(finest), |size| Some(2 * size)).take_while(needed);
-        Self { layers: sizes.map(|size| Layer::new(cells, size)).collect(), samples, cell: dem.cell() }
+        Self { layers: sizes.map(|size| PyramidLayer::new(cells, size)).collect(), samples, cell: dem.cell() }
     }
 
     /// All that is known, in parts, to be kept with the DEM.
@@ -178,9 +178,9 @@ impl Pyramid {
     }
 
     /// Between which heights the surface of the chunk at `origin` lies, and how far it reaches beyond its square.
-    pub fn relief(&self, origin: [u32; 2], step: u32) -> Relief {
+    pub fn relief(&self, origin: [u32; 2], step: u32) -> SquareBounds {
         let Square { low, high, bulge, .. } = self.square(origin, step);
-        Relief { low, high, beyond: bulge }
+        SquareBounds { low, high, beyond: bulge }
     }
 
     /// Lowest and highest slope dz/d east and dz/d north of the sides of facets of the chunk at `origin`.
@@ -251,7 +251,7 @@ impl PyramidBuilder {
     }
 }
 
-impl Layer {
+impl PyramidLayer {
     /// Squares of `size` cells over so many, nothing known of them.
     fn new(cells: [usize; 2], size: usize) -> Self {
         let [columns, rows] = cells.map(|cells| cells.div_ceil(size));

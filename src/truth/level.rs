@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::cell::Cell;
 use super::contour::NUDGE;
-use super::page::Page;
+use super::page::Projection;
 use super::sight::{Blocker, Sight};
 use super::terrain::Terrain;
 use crate::surface::lattice::CELL_STEPS;
@@ -39,7 +39,7 @@ impl Terrain<'_> {
 }
 
 /// Longest straight line between corners of a cell, px, rounded up.
-fn longest_edge(cell: &Cell, page: &Page) -> f32 {
+fn longest_edge(cell: &Cell, page: &Projection) -> f32 {
     let corners = cell.patches.iter().flatten().map(corners);
     let edges = corners.flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]);
     let longest = edges.map(|edge| page.edge_length(edge)).fold(0.0, f64::max);

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::{Piece, Truth};
+use super::{Truth, TruthPiece};
 
 /// The inked pixels of a page.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,8 +38,8 @@ impl Mask {
     }
 
     /// The pixels that hold the middle of a piece; all middles must be on the page.
-    pub(super) fn of_pieces<'a>(size: [u32; 2], pieces: impl Iterator<Item = &'a Piece>) -> Self {
-        let inked = |piece: &Piece| {
+    pub(super) fn of_pieces<'a>(size: [u32; 2], pieces: impl Iterator<Item = &'a TruthPiece>) -> Self {
+        let inked = |piece: &TruthPiece| {
             let place = piece.middle().as_uvec2();
             Inked { column: place.x, row: place.y, distance: piece.distance }
         };

@@ -14,7 +14,7 @@ use rstar::primitives::Line as Segment;
 use rstar::{PointDistance, RTree};
 
 pub use self::chains::ChainScores;
-use super::{Mask, Piece, Truth};
+use super::{Mask, Truth, TruthPiece};
 
 mod chains;
 
@@ -115,7 +115,7 @@ pub struct Judge<'a> {
 impl<'a> Judge<'a> {
     /// `None` where no line is on the page: then there is nothing to judge by.
     pub fn new(truth: &'a Truth) -> Option<Self> {
-        let segment = |piece: &Piece| Segment::new(piece.ends[0].to_array(), piece.ends[1].to_array());
+        let segment = |piece: &TruthPiece| Segment::new(piece.ends[0].to_array(), piece.ends[1].to_array());
         let mut depths: Vec<_> = truth.on_page().map(|piece| (piece.distance, piece.length())).collect();
         let length = truth.length();
         depths.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -139,11 +139,11 @@ impl<'a> Judge<'a> {
     /// Measures a mask of the same page against truth, and truth against the mask.
     pub fn measure<'m>(&'m self, mask: &'m Mask) -> Measured<'m> {
         let centres = RTree::bulk_load(mask.inked.iter().map(|p| p.centre().to_array()).collect());
-        let to_ink = |piece: &&Piece| {
+        let to_ink = |piece: &&TruthPiece| {
             let middle = piece.middle().to_array();
             centres.nearest_neighbor(middle).map_or(f64::INFINITY, |centre| centre.distance_2(&middle).sqrt())
         };
-        let pieces: Vec<&Piece> = self.truth.on_page().collect();
+        let pieces: Vec<&TruthPiece> = self.truth.on_page().collect();
         Measured {
             judge: self,
             mask,
@@ -171,7 +171,7 @@ pub struct Measured<'a> {
     mask: &'a Mask,
     /// Of each inked pixel, px.
     to_truth: Vec<f64>,
-    pieces: Vec<&'a Piece>,
+    pieces: Vec<&'a TruthPiece>,
     /// Of each piece, px; infinite without ink.
     to_ink: Vec<f64>,
 }

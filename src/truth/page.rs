@@ -12,7 +12,7 @@ const MARGIN: f64 = 4.0;
 
 /// Which line a piece belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Line {
+pub enum TruthLine {
     /// Between surface toward the eye and surface away from it.
     Contour,
     /// The rim of the DEM or of a void.
@@ -21,16 +21,16 @@ pub enum Line {
 
 /// A visible piece of line on the page.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Piece {
+pub struct TruthPiece {
     /// Its ends, px from the page's top left corner.
     pub ends: [DVec2; 2],
     /// Metres along the view axis to its middle.
     pub distance: f64,
     /// Which line.
-    pub line: Line,
+    pub line: TruthLine,
 }
 
-impl Piece {
+impl TruthPiece {
     /// Its middle on the page, px.
     pub fn middle(&self) -> DVec2 {
         self.ends[0].midpoint(self.ends[1])
@@ -49,7 +49,7 @@ impl Piece {
 }
 
 /// A camera, with what projecting takes worked out.
-pub(super) struct Page {
+pub(super) struct Projection {
     axes: [DVec3; 3],
     focal: f64,
     size: DVec2,
@@ -57,7 +57,7 @@ pub(super) struct Page {
     near: f64,
 }
 
-impl Page {
+impl Projection {
     pub(super) fn new(camera: &Camera, near: f64) -> Self {
         let size = DVec2::new(f64::from(camera.width), f64::from(camera.height));
         Self { axes: camera.axes(), focal: camera.focal(), size, near }
@@ -87,9 +87,9 @@ impl Page {
     pub(super) fn pieces(
         &self,
         edge: [DVec3; 2],
-        line: Line,
+        line: TruthLine,
         mut sees: impl FnMut(DVec3) -> bool,
-        out: &mut Vec<Piece>,
+        out: &mut Vec<TruthPiece>,
     ) {
         let Some([p, q]) = self.before_eye(edge) else { return };
         let [(a, near_a), (b, near_b)] = [self.project(p), self.project(q)];
@@ -103,7 +103,7 @@ impl Page {
             let place = p.lerp(q, along);
             if sees(place) {
                 let distance = place.dot(self.axes[2]);
-                out.push(Piece { ends: [a.lerp(b, start), a.lerp(b, end)], distance, line });
+                out.push(TruthPiece { ends: [a.lerp(b, start), a.lerp(b, end)], distance, line });
             }
         }
     }

@@ -11,7 +11,7 @@ use hachure::door::surface::lattice::CHUNK_FACETS;
 use hachure::door::surface::{Lattice, LatticePoint};
 use hachure::gpu::Gpu;
 use hachure::line::{Bound, Curve};
-use hachure::plan::{Border, Curves, Detail, Method, Plan, Thrift};
+use hachure::plan::{Border, Culling, Curves, Detail, Method, Plan};
 use hachure::surface::Surface;
 use hachure::view::{Camera, Perspective};
 
@@ -22,8 +22,8 @@ use crate::scenes::{Random, gpu, level, rough};
 use crate::tolerances::{CROSSING_PX, TURNING_SHARE, TURNING_SINE};
 
 /// What is drawn: with curves, whatever the mask.
-pub fn plan(detail: impl Into<Detail>, thrift: Thrift) -> Plan {
-    Plan { curves: Curves::On, thrift, ..Plan::new(detail, Method::Walk, Border::On) }
+pub fn plan(detail: impl Into<Detail>, culling: Culling) -> Plan {
+    Plan { curves: Curves::On, culling, ..Plan::new(detail, Method::Walk, Border::On) }
 }
 
 /// A piece as the device has found it, in parts of about a pixel.
@@ -260,16 +260,16 @@ fn edge_on(twin: &Twin, corners: &[LatticePoint]) -> bool {
 }
 
 /// What is drawn in these tests: land, how fine its facets are, what may be left out.
-pub fn scenes() -> Vec<(Arc<Surface>, Detail, Thrift)> {
+pub fn scenes() -> Vec<(Arc<Surface>, Detail, Culling)> {
     let scenes = [
-        (rough(60, 50, 2.0, 4.0, false), Detail::from(level(4)), Thrift::LeaveOut),
-        (rough(60, 50, 2.0, 4.0, true), Detail::from(level(2)), Thrift::LeaveOut),
-        (rough(60, 50, 2.0, 4.0, true), Detail::from(level(1)), Thrift::Nothing),
-        (rough(90, 75, 1.0, 0.5, false), Detail::Adaptive { error_px: 4.0 }, Thrift::Nothing),
-        (rough(90, 75, 1.0, 0.5, true), Detail::Adaptive { error_px: 0.5 }, Thrift::LeaveOut),
-        (moor(), Detail::Adaptive { error_px: 1.0 }, Thrift::LeaveOut),
+        (rough(60, 50, 2.0, 4.0, false), Detail::from(level(4)), Culling::On),
+        (rough(60, 50, 2.0, 4.0, true), Detail::from(level(2)), Culling::On),
+        (rough(60, 50, 2.0, 4.0, true), Detail::from(level(1)), Culling::Off),
+        (rough(90, 75, 1.0, 0.5, false), Detail::Adaptive { error_px: 4.0 }, Culling::Off),
+        (rough(90, 75, 1.0, 0.5, true), Detail::Adaptive { error_px: 0.5 }, Culling::On),
+        (moor(), Detail::Adaptive { error_px: 1.0 }, Culling::On),
     ];
-    scenes.map(|(dem, detail, thrift)| (Arc::new(Surface::new(dem)), detail, thrift)).into()
+    scenes.map(|(dem, detail, culling)| (Arc::new(Surface::new(dem)), detail, culling)).into()
 }
 
 /// A camera a little above the land, that looks along it: there contours are.
@@ -291,10 +291,10 @@ pub fn low(surface: &Surface, random: &mut Random) -> Camera {
 /// Calls `check` with frames of each scene and their twins.
 pub fn each_frame(seed: u64, frames: u32, mut check: impl FnMut(&Scene, &Twin, &str)) {
     let mut random = Random::new(seed);
-    for (i, (surface, detail, thrift)) in scenes().into_iter().enumerate() {
+    for (i, (surface, detail, culling)) in scenes().into_iter().enumerate() {
         for _ in 0..frames {
             let camera = low(&surface, &mut random);
-            let scene = Scene::draw(gpu(), &surface, plan(detail, thrift), &camera);
+            let scene = Scene::draw(gpu(), &surface, plan(detail, culling), &camera);
             let twin = Twin::new(&surface, &scene.lattice, camera.eye);
             check(&scene, &twin, &format!("scene {i}, {camera:?}"));
         }
@@ -317,11 +317,11 @@ fn the_device_finds_the_pieces_of_the_twin() {
 
 #[test]
 fn a_wrong_piece_is_noticed() {
-    let (surface, detail, thrift) = scenes().swap_remove(4);
+    let (surface, detail, culling) = scenes().swap_remove(4);
     let mut random = Random::new(29);
     let frames = std::iter::repeat_with(|| {
         let camera = low(&surface, &mut random);
-        let scene = Scene::draw(gpu(), &surface, plan(detail, thrift), &camera);
+        let scene = Scene::draw(gpu(), &surface, plan(detail, culling), &camera);
         let twin = Twin::new(&surface, &scene.lattice, camera.eye);
         let met = scene.compare(&twin).expect("nothing wrong");
         (camera, scene, twin, met)

@@ -9,7 +9,7 @@ use hachure::door::gpu::uniforms::{Segment, code};
 use hachure::door::plan::batches::BATCH_CHUNKS;
 use hachure::door::surface::Chunk;
 use hachure::line::Curve;
-use hachure::plan::{Detail, Thrift};
+use hachure::plan::{Culling, Detail};
 use hachure::surface::Surface;
 use hachure::view::Camera;
 
@@ -100,9 +100,9 @@ fn curves_of_the_device_hang_together() {
 fn curves_are_the_same_on_every_run_and_without_int64() {
     let mut random = Random::new(23);
     let mut found = 0;
-    for (surface, detail, thrift) in scenes() {
+    for (surface, detail, culling) in scenes() {
         let camera = low(&surface, &mut random);
-        let draw = |gpu| Scene::draw(gpu, &surface, plan(detail, thrift), &camera).curves;
+        let draw = |gpu| Scene::draw(gpu, &surface, plan(detail, culling), &camera).curves;
         let first = draw(gpu());
         assert!(first == draw(gpu()), "another run, other curves: {camera:?}");
         assert!(first == draw(gpu_without_int64()), "other curves without 64-bit atomics: {camera:?}");
@@ -119,7 +119,7 @@ fn curves_of_several_batches_are_those_of_the_twin() {
     let [west, south, east, _] = surface.dem().extent();
     let eye = DVec3::new((west + east) / 2.0, south - 200.0, 100.0);
     let camera = Camera { eye, azimuth: 0.0, altitude: -15.0, fov: 80.0, width: 256, height: 256 };
-    let plan = plan(Detail::from(level(64)), Thrift::LeaveOut);
+    let plan = plan(Detail::from(level(64)), Culling::On);
     let mut scene = Scene::draw(gpu(), &surface, plan, &camera);
     let chunks = scene.lattice.chunks();
     assert!(chunks.len() > BATCH_CHUNKS as usize, "{} chunks", chunks.len());

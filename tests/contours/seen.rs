@@ -4,7 +4,7 @@
 use glam::DVec2;
 use hachure::door::line::visible::chains;
 use hachure::line::{Bound, Chain, Curve, Line};
-use hachure::plan::{Detail, Thrift};
+use hachure::plan::{Culling, Detail};
 use hachure::truth::Truth;
 use hachure::view::Camera;
 
@@ -17,7 +17,7 @@ use crate::scenes::{gpu, level};
 use crate::tolerances::{CHAIN_END_PX, CONTOUR_MEAN_PX};
 
 fn scene(case: &Case) -> Scene {
-    Scene::draw(gpu(), &case.surface(), plan(Detail::from(level(8)), Thrift::LeaveOut), &case.camera())
+    Scene::draw(gpu(), &case.surface(), plan(Detail::from(level(8)), Culling::On), &case.camera())
 }
 
 /// What chains draw but for the border, as a judge takes it.

@@ -8,7 +8,7 @@ use hachure::dem::Dem;
 use hachure::door::plan::detail;
 use hachure::door::surface::{Lattice, LatticePoint};
 use hachure::line::Bound;
-use hachure::plan::{Curves, Thrift};
+use hachure::plan::{Culling, Curves};
 use hachure::surface::Surface;
 
 use super::twin::{Edge, Node, Piece, Twin, string_pieces};
@@ -202,7 +202,7 @@ fn contours_end_only_where_chunks_are_left_out() {
     let mut random = Random::new(11);
     for _ in 0..4 {
         let camera = above(&surface, &mut random);
-        let (lattice, _) = detail::adaptive(&surface, &camera, 2.0, Thrift::LeaveOut, Curves::Off).expect("few chunks");
+        let (lattice, _) = detail::adaptive(&surface, &camera, 2.0, Culling::On, Curves::Off).expect("few chunks");
         let twin = Twin::new(&surface, &lattice, camera.eye);
         let pieces = twin.pieces();
         check(&twin, &pieces, &format!("{camera:?}"));

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use glam::{DVec2, DVec3};
 use hachure::dem::{Crs, Dem};
-use hachure::geo::{ElevationUnit, ReadOptions, Stage, read, read_all as read_files};
+use hachure::geo::{ElevationUnit, ReadOptions, ReadStage, read, read_all as read_files};
 
 use super::{Raster, TRANSFORM, cropped, folder, hill, read_all, sized_vrt, vrt, with_steps};
 use crate::common::words;
@@ -338,7 +338,7 @@ fn progress_runs_through_every_stage_once() {
     let options = ReadOptions { fill_voids: true, ..Default::default() };
     read_files(&[path], &options, &|stage, share| heard.borrow_mut().push((stage, share))).unwrap();
     let heard = heard.into_inner();
-    for stage in [Stage::Read, Stage::Warp, Stage::Fill] {
+    for stage in [ReadStage::Read, ReadStage::Warp, ReadStage::Fill] {
         let shares: Vec<_> = heard.iter().filter(|(s, _)| *s == stage).map(|(_, share)| *share).collect();
         assert!(shares.is_sorted() && shares.last() == Some(&1.0), "{stage:?}: {shares:?}");
     }

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 use hachure::dem::Dem;
-use hachure::door::line::hachures::{Seen, hatched};
+use hachure::door::line::hachures::{Viewer, hatched};
 
 use super::map::{Map, PX_PER_MM, lehmann};
 use crate::cli::{Place, stderr};
@@ -24,7 +24,7 @@ fn land_too_near_for_lines_stays_bare() {
         let map = map(apart);
         let wanted = map.look.apart(26.57 / 45.0) / map.overhead.px_per_metre;
         println!("{} strokes, {:.2} spacings apart", map.strokes.len(), wanted / map.slopes().least_spacing());
-        let found = hatched(map.slopes(), &map.look, Seen::Above(&map.overhead)).expect("lines");
+        let found = hatched(map.slopes(), &map.look, Viewer::Above(&map.overhead)).expect("lines");
         assert_eq!((map.strokes.len() > 20, found.bare.is_some()), (strokes, bare), "{apart} at {PX_PER_MM} px/mm");
         assert!(strokes || map.strokes.is_empty());
     }

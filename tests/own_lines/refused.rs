@@ -5,7 +5,7 @@ use std::path::Path;
 use clap::Parser;
 use hachure::dem::Dem;
 use hachure::door::cli::lines::LinesArguments;
-use hachure::door::cli::talk::{Lines, Talk, TalkArguments};
+use hachure::door::cli::talk::{LinesTo, Talk, TalkArguments};
 use hachure::door::cli::words::line;
 use hachure::geo::own_lines;
 use hachure::relief;
@@ -35,7 +35,7 @@ fn the_flag_is_repeatable_and_names_what_was_asked() {
     let road = |end: f64| feature("LineString", &format!("[[-122.5,37.8],[-122.49,{end}]]"), "");
     let [one, other] = [37.81, 37.82].map(|end| write(&folder, &format!("{end}.geojson"), &road(end)));
     let typed_two = typed(&[&one, &other]);
-    let talk = Talk::new(&typed_two.talk, Lines::Stdout);
+    let talk = Talk::new(&typed_two.talk, LinesTo::Stdout);
     assert_eq!(typed_two.lines.files(), [Path::new(&one), Path::new(&other)]);
     assert!(!typed_two.lines.is_empty() && typed(&[]).lines.is_empty());
     let lines = typed_two.lines.read(sample().dem(), false, &talk).unwrap_or_else(|e| panic!("{}", line(&e)));

@@ -8,7 +8,7 @@ use std::thread;
 
 use hachure::ink::plot::planned;
 use hachure::ink::styles::BuiltIn;
-use hachure::ink::{self, Colour, Drawing, Form, Layer, Pen, Sheet, Stroke};
+use hachure::ink::{self, Colour, Drawing, Layer, Pen, Sheet, Stroke, StrokeForm};
 
 use crate::plots::checks;
 use crate::plots::made::curves;
@@ -84,7 +84,7 @@ fn drawing(layers: Vec<(&str, Vec<Stroke>)>) -> Drawing {
     let layer = |(name, strokes): (&str, Vec<Stroke>)| Layer {
         name: name.into(),
         pen: Pen::default(),
-        form: Form::CentreLines,
+        form: StrokeForm::CentreLines,
         found: hachure::ink::plot::Journey::through(&strokes),
         strokes,
     };

@@ -7,7 +7,7 @@ use glam::DVec2;
 use hachure::dem::Dem;
 use hachure::door::relief::channels::Channels;
 use hachure::door::relief::flow::Flow;
-use hachure::door::relief::frame::Frame;
+use hachure::door::relief::frame::FramedGrid;
 use hachure::error::Error;
 use hachure::geo::{ReadOptions, read};
 use hachure::relief::{ChannelArea, Relief};
@@ -88,7 +88,7 @@ fn water_ends_at_rims_and_in_the_sea_alone() {
 }
 
 /// Pairs of directions that cross between four samples.
-fn crossings(frame: Frame, down: impl Fn(usize) -> Option<usize>) -> usize {
+fn crossings(frame: FramedGrid, down: impl Fn(usize) -> Option<usize>) -> usize {
     let is = |from: usize, to: usize| down(from) == Some(to) || down(to) == Some(from);
     let crossing = |i: &usize| {
         let [nw, ne, sw, se] = [*i, i + 1, i + frame.stride(), i + frame.stride() + 1];

@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 
-use hachure::cache::{Cache, Hearing};
+use hachure::cache::{Cache, CacheObserver};
 use hachure::dem::Dem;
 use hachure::door::cli::words::told;
 use hachure::door::relief::FlowLines;
@@ -17,7 +17,8 @@ const BOTH: [FlowLines; 2] = [FlowLines::Drainage(ChannelArea::Auto), FlowLines:
 fn creases(cache: &Cache, dem: &Dem, exaggeration: f64, creases: &[FlowLines]) -> (Vec<Vec<SurfaceLine>>, Vec<String>) {
     let said = RefCell::new(Vec::new());
     let warn = |message: &hachure::error::Message| said.borrow_mut().push(told(message));
-    let lines = cache.creases(dem, exaggeration, creases, Hearing { warn: &warn, progress: &|_| () }).expect("creases");
+    let lines =
+        cache.creases(dem, exaggeration, creases, CacheObserver { warn: &warn, progress: &|_| () }).expect("creases");
     (lines, said.into_inner())
 }
 

@@ -1,7 +1,7 @@
 //! Orders of streams and the area from which water runs in beds, against ways of their own.
 
 use hachure::door::relief::channels::{Channels, NO_NODE};
-use hachure::door::relief::threshold::{Trial, found};
+use hachure::door::relief::threshold::{AreaTrial, found};
 use hachure::geo::{ReadOptions, read};
 use hachure::relief::{ChannelArea, Relief};
 
@@ -47,7 +47,7 @@ fn orders_are_those_of_the_books() {
 
 #[test]
 fn the_area_of_channels_is_the_first_that_stays() {
-    let trial = |cells, t| Trial { cells, streams: [100, 30], t };
+    let trial = |cells, t| AreaTrial { cells, streams: [100, 30], t };
     let trials = [trial(10, 1.0), trial(17, 5.0), trial(28, -1.9), trial(47, 0.3), trial(78, 2.5)];
     assert_eq!(found(&trials).map(|trial| trial.cells), Some(28), "at 10 it only passes through 0");
     assert_eq!(found(&trials[..2]), None);

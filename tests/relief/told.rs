@@ -47,7 +47,7 @@ fn info_lists_what_was_tried_and_says_what_is_taken() {
 
 #[test]
 fn what_the_land_tells_is_taken_within_bounds() {
-    let trial = |cells| Some(hachure::door::relief::threshold::Trial { cells, streams: [100, 30], t: 0.0 });
+    let trial = |cells| Some(hachure::door::relief::threshold::AreaTrial { cells, streams: [100, 30], t: 0.0 });
     assert_eq!([None, trial(10), trial(28), trial(100), trial(217)].map(auto_cells), [25, 25, 28, 100, 100]);
     assert_eq!(found(&[]), None);
     // A part of the sample has too few streams to tell.

@@ -11,7 +11,7 @@ use serde_json::Value;
 
 use super::browser::{Browser, Visit};
 use super::{SIZE, sample, sample_with_floors};
-use hachure::door::measure::compare::Found;
+use hachure::door::measure::compare::Finding;
 use hachure::door::report::lines::lines;
 
 /// What is looked for in the browser.
@@ -60,7 +60,7 @@ fn sequences_have_a_table_where_there_are_any() {
         assert!(rows.contains(cell), "{cell}");
     }
     assert!(page.contains("href=\"#sequences\"") && !without.contains("sequences"));
-    let line = lines(&Found::Sequence(&results.sequences[0])).concat().join("\n");
+    let line = lines(&Finding::Sequence(&results.sequences[0])).concat().join("\n");
     let wanted = "walk level auto, 20 frames 10 m apart: excess pop 0.034 % (ink 1.234 %, truth 1.200 %), R 0.9967 (least \
                   0.9951); of strokes 0.078 % (of 2.130 % lost); 97.2 % of ids kept; 105 ms a frame, 5465 px of ink";
     assert!(line.ends_with(wanted), "{line}");

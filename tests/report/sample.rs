@@ -1,10 +1,10 @@
 //! Results of a comparison that never was: two scenes, every method, and all that is awkward to write down.
 
 use hachure::door::measure::figures::{
-    AtDistance, Band, ChainFigures, Convergence, DrawnLevel, FloorFigures, LevelOffset, PassFigures, Place, Run,
-    SequenceRun, TruthReport,
+    AtDistance, ChainFigures, Convergence, DepthBand, DrawnLevel, FloorFigures, LevelOffset, PassFigures, PlaceOffsets,
+    Run, SequenceRun, TruthReport,
 };
-use hachure::door::report::results::{Machine, Results, SCHEMA, Scene, TruthSummary};
+use hachure::door::report::results::{ComparedScene, Machine, Results, SCHEMA, TruthSummary};
 
 /// A name that HTML, CSV, SVG and the shell each have to quote.
 pub const AWKWARD: &str = "a<b & c, \"d's\"";
@@ -104,7 +104,7 @@ pub fn with_floors(width: u32, height: u32) -> Results {
     results
 }
 
-fn scene(name: &str, width: u32, height: u32) -> Scene {
+fn scene(name: &str, width: u32, height: u32) -> ComparedScene {
     let convergence = (name != AWKWARD).then(|| Convergence {
         levels: [(1, 0.61), (2, 0.158), (4, 0.041), (8, 0.0112)]
             .map(|(level, px)| LevelOffset { level, median_px: px, mean_px: 1.5 * px, p95_px: 4.0 * px })
@@ -112,7 +112,7 @@ fn scene(name: &str, width: u32, height: u32) -> Scene {
         fitted_levels: vec![1, 2, 4],
         slope: Some(-1.947),
     });
-    Scene {
+    ComparedScene {
         name: name.into(),
         dem: vec![format!("{name}.tif")],
         columns: 120,
@@ -148,7 +148,7 @@ fn scene(name: &str, width: u32, height: u32) -> Scene {
     }
 }
 
-fn runs_of(scene: &Scene) -> Vec<Run> {
+fn runs_of(scene: &ComparedScene) -> Vec<Run> {
     let levels = if scene.name == AWKWARD { 2 } else { 4 };
     let slower = if scene.name == AWKWARD { 1.7 } else { 1.0 };
     let of =
@@ -156,7 +156,7 @@ fn runs_of(scene: &Scene) -> Vec<Run> {
     FIGURES.iter().flat_map(|(method, figures)| figures[..levels].iter().map(move |f| of(method, f))).collect()
 }
 
-fn run(scene: &Scene, method: &'static str, level: u32, [precision, recall]: [f64; 2], frame_ms: f64) -> Run {
+fn run(scene: &ComparedScene, method: &'static str, level: u32, [precision, recall]: [f64; 2], frame_ms: f64) -> Run {
     let f = 2.0 * precision * recall / (precision + recall);
     let inked = (3800.0 * recall / precision) as usize;
     let at = |px: f64| AtDistance {
@@ -165,7 +165,7 @@ fn run(scene: &Scene, method: &'static str, level: u32, [precision, recall]: [f6
         recall: recall.powf(1.0 / px),
         f: f.powf(1.0 / px),
     };
-    let band = |name, to_m| Band { name, to_m, truth_px: 1261.75, inked: inked / 3, precision, recall, f };
+    let band = |name, to_m| DepthBand { name, to_m, truth_px: 1261.75, inked: inked / 3, precision, recall, f };
     let pass = |name, share: f64| {
         let moved = 4.0e7 * share;
         PassFigures { name, ms: frame_ms * share, bytes: moved as u64, operations: 3 * moved as u64 }
@@ -195,7 +195,7 @@ fn run(scene: &Scene, method: &'static str, level: u32, [precision, recall]: [f6
         excess_pop: 0.002 * (1.0 - f),
         at: [0.5, 1.0, 2.0, 3.0].map(at).to_vec(),
         bands: vec![band("near", Some(2410.0)), band("middle", Some(5120.5)), band("far", None)],
-        place: (method == "walk").then_some(Place { mean_px: 0.61 / f64::from(level * level), p95_px: 0.04 }),
+        place: (method == "walk").then_some(PlaceOffsets { mean_px: 0.61 / f64::from(level * level), p95_px: 0.04 }),
         facets: 33_082 * u64::from(level * level),
         inked,
         frame_ms,

@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use glam::DVec2;
 use hachure::truth::metrics::{Agreement, BandScore, DISTANCES, FRAGMENT, Judge, Offsets, Scores};
-use hachure::truth::{Inked, Mask, Piece, Truth};
+use hachure::truth::{Inked, Mask, Truth, TruthPiece};
 
 use crate::judged::{piece, truth};
 use crate::scenes::Random;
@@ -15,7 +15,7 @@ use crate::tolerances::{CIRCLE_PX, CIRCLE_SHARE, PIXEL_PX, SUM};
 pub const PAGE: [u32; 2] = [128, 96];
 
 /// A straight line in pieces of a quarter pixel, `distance` metres away.
-pub fn straight(from: [f64; 2], to: [f64; 2], distance: f64) -> Vec<Piece> {
+pub fn straight(from: [f64; 2], to: [f64; 2], distance: f64) -> Vec<TruthPiece> {
     let (from, to) = (DVec2::from(from), DVec2::from(to));
     let count = (from.distance(to) * 4.0).ceil() as u32;
     let at = |k: u32| from.lerp(to, f64::from(k) / f64::from(count));
@@ -61,7 +61,7 @@ fn a_moved_circle_is_as_far_off_as_geometry_says() {
     let here = circle(0.0);
     for moved in [1.0, 2.0, 3.0, 4.0] {
         let there = circle(moved);
-        let places: Vec<DVec2> = there.pieces.iter().map(Piece::middle).collect();
+        let places: Vec<DVec2> = there.pieces.iter().map(TruthPiece::middle).collect();
         let (judge, back) = (Judge::new(&here).expect("a circle"), Judge::new(&there).expect("a circle"));
         for offsets in [judge.offsets(&places), judge.offsets_of(&there), back.offsets_of(&here)] {
             let Offsets { mean, median, p95 } = offsets.expect("places");
@@ -207,9 +207,9 @@ fn bands_of_depth_hold_a_third_of_the_line_each() {
     let [short, long] = [10.0, 30.0].map(|x| straight([x, 20.5], [x + 20.0, 20.5], 0.0));
     let short = short.iter().flat_map(|piece| {
         let [a, b] = piece.ends;
-        [[a, a.midpoint(b)], [a.midpoint(b), b]].map(|ends| Piece { ends, ..*piece })
+        [[a, a.midpoint(b)], [a.midpoint(b), b]].map(|ends| TruthPiece { ends, ..*piece })
     });
-    let mut receding: Vec<Piece> = short.chain(long).chain(straight([50.0, 20.5], [110.0, 20.5], 0.0)).collect();
+    let mut receding: Vec<TruthPiece> = short.chain(long).chain(straight([50.0, 20.5], [110.0, 20.5], 0.0)).collect();
     receding.iter_mut().for_each(|piece| piece.distance = piece.middle().x);
     let bands = scores(&truth(PAGE, receding), &ink(&[])).bands;
     near("first end", bands[0].to, 10.0 + 100.0 / 3.0, 0.25);
@@ -289,7 +289,7 @@ fn scatter(random: &mut Random) -> (Truth, Mask) {
     (truth(PAGE, pieces), ink(&[inked.collect()]))
 }
 
-fn to_lines(p: DVec2, pieces: &[Piece]) -> f64 {
+fn to_lines(p: DVec2, pieces: &[TruthPiece]) -> f64 {
     let to =
         |[a, b]: [DVec2; 2]| p.distance(a.lerp(b, ((p - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0)));
     pieces.iter().map(|piece| to(piece.ends)).fold(f64::INFINITY, f64::min)

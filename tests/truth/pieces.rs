@@ -6,7 +6,7 @@ use std::ops::RangeInclusive;
 use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
 use hachure::surface::Surface;
-use hachure::truth::{Line, Piece, Terrain};
+use hachure::truth::{Terrain, TruthLine, TruthPiece};
 use hachure::view::Camera;
 
 use super::slow::{Found, Slow};
@@ -111,20 +111,20 @@ impl Compared {
 }
 
 /// Each piece has one partner at most, doubtful pieces need none.
-fn compare(truth: &[Piece], slow: &Found) -> Compared {
-    let same = |a: &Piece, b: &Piece| {
+fn compare(truth: &[TruthPiece], slow: &Found) -> Compared {
+    let same = |a: &TruthPiece, b: &TruthPiece| {
         let [p, q] = b.ends;
         let near = |p: DVec2, q: DVec2| a.ends[0].distance(p).max(a.ends[1].distance(q)) <= SAME_PIECE_PX;
         let depth = (a.distance / b.distance - 1.0).abs() <= SAME_PIECE_PX;
         a.line == b.line && depth && (near(p, q) || near(q, p))
     };
-    let mut open: Vec<&Piece> = truth.iter().collect();
-    let mut partner = |piece: &&Piece| open.iter().position(|p| same(p, piece)).map(|i| open.remove(i)).is_some();
+    let mut open: Vec<&TruthPiece> = truth.iter().collect();
+    let mut partner = |piece: &&TruthPiece| open.iter().position(|p| same(p, piece)).map(|i| open.remove(i)).is_some();
     let missing = slow.seen.iter().filter(|p| !partner(p)).count();
     slow.doubtful.iter().for_each(|p| _ = partner(&p));
     Compared {
         pieces: truth.len(),
-        border: truth.iter().filter(|p| p.line == Line::Border).count(),
+        border: truth.iter().filter(|p| p.line == TruthLine::Border).count(),
         doubtful: slow.doubtful.len(),
         missing,
         extra: open.len(),

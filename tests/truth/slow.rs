@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use glam::{DMat3, DVec2, DVec3};
 use hachure::door::surface::LatticePoint;
 use hachure::surface::{Level, Surface};
-use hachure::truth::{Line, Piece};
+use hachure::truth::{TruthLine, TruthPiece};
 use hachure::view::Camera;
 
 use crate::tolerances::DOUBT;
@@ -17,8 +17,8 @@ use crate::tolerances::DOUBT;
 /// Pieces by how sure it is that they are seen.
 #[derive(Debug, Default)]
 pub struct Found {
-    pub seen: Vec<Piece>,
-    pub doubtful: Vec<Piece>,
+    pub seen: Vec<TruthPiece>,
+    pub doubtful: Vec<TruthPiece>,
 }
 
 /// A facet with its lattice vertices, counter-clockwise from above.
@@ -101,13 +101,13 @@ impl Slow {
                         continue;
                     }
                     let doubtful = rise > -DOUBT || facings.iter().any(|f| f.abs() <= DOUBT);
-                    (doubtful, lift(facets[a].up().normalize() + facets[b].up().normalize()), Line::Contour)
+                    (doubtful, lift(facets[a].up().normalize() + facets[b].up().normalize()), TruthLine::Contour)
                 }
                 [(only, _)] => {
                     if facings[0] <= -DOUBT {
                         continue;
                     }
-                    (facings[0] <= DOUBT, lift(facets[only].up()), Line::Border)
+                    (facings[0] <= DOUBT, lift(facets[only].up()), TruthLine::Border)
                 }
                 _ => panic!("{} facets share an edge", sides.len()),
             };
@@ -124,7 +124,7 @@ impl Slow {
 
     /// The part of an edge that lies before the eye and on the page or 4 px around it, in equal pieces of at most a
     /// quarter pixel, with their middles in metres from the eye.
-    fn cut(&self, camera: &Camera, edge: [DVec3; 2], line: Line) -> Vec<(Piece, DVec3)> {
+    fn cut(&self, camera: &Camera, edge: [DVec3; 2], line: TruthLine) -> Vec<(TruthPiece, DVec3)> {
         let place = |p: DVec3| camera.project(camera.eye + p);
         let depths = edge.map(|p| place(p).1 - self.near);
         if depths.iter().all(|d| *d < 0.0) {
@@ -157,7 +157,7 @@ impl Slow {
             // The inverse of depth runs straight along an edge.
             let share = from + (to - from) * (i + 0.5) / count;
             let distance = 1.0 / ((1.0 - share) / ends[0].1 + share / ends[1].1);
-            (Piece { ends: [at(0.0), at(1.0)], distance, line }, camera.ray(at(0.5)) * distance)
+            (TruthPiece { ends: [at(0.0), at(1.0)], distance, line }, camera.ray(at(0.5)) * distance)
         };
         (0..count as u32).map(|i| piece(f64::from(i))).collect()
     }

@@ -8,7 +8,7 @@ use std::time::Instant;
 use glam::DVec3;
 use hachure::door::measure::memory::peak;
 use hachure::geo::{ReadOptions, read};
-use hachure::plan::{Border, Method, Share};
+use hachure::plan::{Border, Method, SharedVertices};
 use hachure::surface::Surface;
 use hachure::truth::metrics::{Agreement, Judge};
 use hachure::truth::{Mask, Terrain};
@@ -31,8 +31,8 @@ const VIEW: Camera = Camera {
 /// Pixels of true line in the study.
 const LENGTH: f64 = 3785.0;
 
-const EDGE: Method = Method::Adjacency { share: Share::Edge };
-const CORNER: Method = Method::Adjacency { share: Share::Corner };
+const EDGE: Method = Method::Adjacency { share: SharedVertices::Edge };
+const CORNER: Method = Method::Adjacency { share: SharedVertices::Corner };
 const TOWARD_AWAY: Method = Method::TowardAway { wide: false };
 
 /// Method, level, precision and recall in the study, and how far ours may be from them.

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use glam::{DVec2, dvec2};
 use hachure::ink::plot::Journey;
-use hachure::ink::{Colour, Drawing, Form, Layer, Pen, Sheet, Stroke, StrokePoint};
+use hachure::ink::{Colour, Drawing, Layer, Pen, Sheet, Stroke, StrokeForm, StrokePoint};
 use hachure::line::Id;
 
 /// Whole pixels at the scales of the tests.
@@ -57,11 +57,11 @@ pub fn dot(place: DVec2) -> Stroke {
 
 pub fn layer(name: &str, width: f64, colour: [u8; 3], opacity: f64, strokes: Vec<Stroke>) -> Layer {
     let pen = Pen { width, colour: Colour(colour), opacity };
-    Layer { name: name.into(), pen, form: Form::Outlines, found: Journey::default(), strokes }
+    Layer { name: name.into(), pen, form: StrokeForm::Outlines, found: Journey::default(), strokes }
 }
 
 pub fn centre_lines(layer: Layer) -> Layer {
-    Layer { form: Form::CentreLines, ..layer }
+    Layer { form: StrokeForm::CentreLines, ..layer }
 }
 
 /// Layers on white paper, the strokes named.

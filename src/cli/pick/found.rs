@@ -21,7 +21,7 @@ const WHOLE: f64 = 0.99;
 const EDGE: f64 = 2.0;
 
 /// A page with its lines and its drawing, and the middle of the pixel that is asked about.
-pub(super) struct Page<'a> {
+pub(super) struct PickedPage<'a> {
     pub illustration: &'a Illustration,
     pub page: &'a render::Page,
     pub lines: &'a Lines,
@@ -48,8 +48,8 @@ pub(super) struct Found {
 ///
 /// # Errors
 /// As [`Station::hides`].
-pub(super) fn lines(page: &Page, station: &Station) -> Result<Vec<Found>> {
-    let Page { illustration, lines, hidden, middle, .. } = page;
+pub(super) fn lines(page: &PickedPage, station: &Station) -> Result<Vec<Found>> {
+    let PickedPage { illustration, lines, hidden, middle, .. } = page;
     let px_per_mm = page.drawn.sheet.placement(illustration.frame).px_per_mm;
     let stray = OFF_CHAIN + (illustration.style.wobble.reach + illustration.style.tolerance) * px_per_mm;
     let inks = page.drawn.inked_near(illustration.frame, *middle, REACH + stray);
@@ -106,7 +106,7 @@ fn drawn(ink: &InkedNear, faded: Option<Rule>, weight: f32) -> Rule {
     Rule::Drawn { layer: ink.layer.to_owned(), width_mm: ink.width, faded: faded.map(Box::new), weight: weight.into() }
 }
 
-impl Page<'_> {
+impl PickedPage<'_> {
     /// Which rule lowers the weight of a line most, if one does.
     fn lowered(&self, near: &Near, merit: &Merit) -> Option<Rule> {
         let economy = &self.illustration.economy;
@@ -165,7 +165,7 @@ impl Found {
 /// As [`Station::located`].
 pub(super) fn told(
     mut found: Vec<Found>,
-    page: &Page,
+    page: &PickedPage,
     station: &Station,
     land: Option<&Met>,
 ) -> Result<Vec<LineAnswer>> {
@@ -191,7 +191,7 @@ pub(super) fn told(
     Ok(answers)
 }
 
-fn answer(found: &Found, page: &Page, station: &Station) -> Result<LineAnswer> {
+fn answer(found: &Found, page: &PickedPage, station: &Station) -> Result<LineAnswer> {
     let Found { line, id, px, world, rule, flags, .. } = found;
     let has_place = !matches!(rule, Rule::ChannelArea { .. });
     let kind = kind(*line, &page.lines.own);
@@ -220,7 +220,7 @@ fn answer(found: &Found, page: &Page, station: &Station) -> Result<LineAnswer> {
 }
 
 /// That no silhouette is there, and why.
-fn facing(page: &Page, land: Option<&Met>) -> LineAnswer {
+fn facing(page: &PickedPage, land: Option<&Met>) -> LineAnswer {
     let ray = page.page.perspective.unproject(page.middle, page.page.perspective.near()) - page.page.perspective.eye();
     let degrees = land.map(|met| met.normal.dot(ray.normalize()).abs().min(1.0).asin().to_degrees());
     let bounds = near(&page.lines.chains, page.middle, f64::INFINITY);

@@ -7,7 +7,7 @@
 //! disagree, water has no open end ([`ENDS`]). The sea, at exactly 0, may have more of its shore below; where no run of it
 //! ends at a shore it is believed.
 
-use super::Run;
+use super::EqualHeights;
 
 /// Fewest samples of a body of water: smaller ones are gone on a page, and as likely a hollow.
 const LEAST: u64 = 64;
@@ -86,7 +86,7 @@ impl Region {
 
 impl Regions {
     /// A region of this run alone.
-    pub(super) fn add(&mut self, row: u32, run: Run) -> u32 {
+    pub(super) fn add(&mut self, row: u32, run: EqualHeights) -> u32 {
         let node = [row, run.first, run.end, NONE];
         let node = put(&mut self.runs, &mut self.free_runs, node);
         let (runs, samples) = ([node; 2], u64::from(run.end - run.first));
@@ -144,7 +144,7 @@ impl Regions {
     }
 
     /// Counts so many edges between two runs of different heights; one may be void.
-    pub(super) fn shore(&mut self, runs: [&Run; 2], edges: u32) {
+    pub(super) fn shore(&mut self, runs: [&EqualHeights; 2], edges: u32) {
         for (run, other) in [(runs[0], runs[1]), (runs[1], runs[0])] {
             if run.region == NONE {
                 continue;

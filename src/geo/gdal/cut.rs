@@ -5,7 +5,7 @@
 use glam::DVec2;
 use rayon::prelude::*;
 
-use super::crs::Way;
+use super::crs::CrsPath;
 use super::raster::Raster;
 use crate::dem::Crs;
 
@@ -25,7 +25,7 @@ impl Cut {
         let grid = &raster.grid;
         let bands = raster.metres.par_chunks_mut(grid.columns * ROWS).enumerate();
         bands.for_each(|(band, metres)| {
-            let Some(way) = Way::between(&grid.crs, &self.crs) else { return };
+            let Some(way) = CrsPath::between(&grid.crs, &self.crs) else { return };
             let sample = |i: usize| grid.sample((i % grid.columns) as f64, (band * ROWS + i / grid.columns) as f64);
             let mut places: Vec<_> = (0..metres.len()).map(sample).collect();
             way.carry(&mut places);

@@ -27,7 +27,7 @@ const SIDE_POINTS: usize = 64;
 /// Samples in rows and columns, with the place of each in a coordinate system. The middle of pixel (c, r) is sample
 /// (c, r): pixel coordinates (c + 0.5, r + 0.5).
 #[derive(Debug, Clone)]
-pub(super) struct Grid {
+pub(super) struct GeoGrid {
     /// The system of its places.
     pub crs: Crs,
     /// From pixel coordinates to places.
@@ -38,7 +38,7 @@ pub(super) struct Grid {
     pub rows: usize,
 }
 
-impl Grid {
+impl GeoGrid {
     /// Of `source`, placed by `cell` (metres) where the file does not say where it lies and is read `alone`. Clauses on
     /// what had to be assumed go to `history`.
     pub(super) fn of(source: &Source, cell: Option<f64>, alone: bool, history: &mut History) -> Result<Self> {
@@ -254,7 +254,7 @@ fn from_cell(rows: usize, cell: f64) -> DAffine2 {
 }
 
 /// Whether coordinates look like longitude and latitude, with cells below `largest`.
-pub(super) fn looks_like_degrees(grid: &Grid, largest: f64) -> bool {
+pub(super) fn looks_like_degrees(grid: &GeoGrid, largest: f64) -> bool {
     let far = grid.to_crs.transform_point2(DVec2::new(grid.columns as f64, grid.rows as f64));
     let on_globe = [grid.to_crs.translation, far].iter().all(|p| p.x.abs() <= 360.0 && p.y.abs() <= 90.0);
     on_globe && grid.cell().max_element() < largest

@@ -11,8 +11,8 @@ use std::f64::consts::TAU;
 
 use glam::{DAffine2, DMat2, DVec2};
 
-use super::crs::Way;
-use super::grid::Grid;
+use super::crs::CrsPath;
+use super::grid::GeoGrid;
 use crate::dem::{Crs, History, Window};
 
 /// A map whose metres differ from those on the ground by more than this share is off it.
@@ -25,7 +25,7 @@ pub(super) struct Ground(Vec<DMat2>);
 
 impl Ground {
     /// Of the middle, first, and the corners of a window; `None` for degrees, and where no place is on the globe.
-    pub(super) fn of(grid: &Grid, window: Window) -> Option<Self> {
+    pub(super) fn of(grid: &GeoGrid, window: Window) -> Option<Self> {
         Self::at(&grid.crs, &places(grid, window))
     }
 
@@ -33,7 +33,7 @@ impl Ground {
     pub(super) fn at(crs: &Crs, places: &[DVec2]) -> Option<Self> {
         let unit = crs.metres_per_unit()?;
         let globe = crs.geographic()?;
-        let (way, radii) = (Way::between(crs, &globe)?, globe.radii()?);
+        let (way, radii) = (CrsPath::between(crs, &globe)?, globe.radii()?);
         let step = STEP * radii[0] / unit;
         let steps = [DVec2::X, -DVec2::X, DVec2::Y, -DVec2::Y].map(|side| side * step);
         let around = places.iter().flat_map(|place| steps.map(|step| *place + step));
@@ -87,7 +87,7 @@ impl Ground {
 }
 
 /// The middle and the corners of the outermost samples.
-pub(super) fn places(grid: &Grid, window: Window) -> [DVec2; 5] {
+pub(super) fn places(grid: &GeoGrid, window: Window) -> [DVec2; 5] {
     let grid = grid.part(window);
     let (c, r) = ((grid.columns - 1) as f64, (grid.rows - 1) as f64);
     [[c / 2.0, r / 2.0], [0.0, 0.0], [c, 0.0], [0.0, r], [c, r]].map(|[c, r]| grid.sample(c, r))
@@ -120,7 +120,7 @@ fn scales(m: &DMat2) -> [f64; 2] {
 
 /// `grid` in coordinates that run east and north where those of its map do not: left-handed ones, and such as its
 /// definition says run west or south. `like` is a system that has been through this.
-pub(super) fn upright(grid: Grid, like: Option<&Crs>, history: &mut History) -> Grid {
+pub(super) fn upright(grid: GeoGrid, like: Option<&Crs>, history: &mut History) -> GeoGrid {
     let axes = match like {
         Some(like) if like.as_defined() == grid.crs => like.axes(),
         _ => axes(&grid),
@@ -129,11 +129,11 @@ pub(super) fn upright(grid: Grid, like: Option<&Crs>, history: &mut History) -> 
         return grid;
     }
     history.convert(words(axes, &grid.crs));
-    Grid { to_crs: DAffine2::from_mat2(axes) * grid.to_crs, crs: grid.crs.with_axes(axes), ..grid }
+    GeoGrid { to_crs: DAffine2::from_mat2(axes) * grid.to_crs, crs: grid.crs.with_axes(axes), ..grid }
 }
 
 /// What turns and flips the map of `grid` to east and north, as nearly as can be; one where nothing is to be done.
-fn axes(grid: &Grid) -> DMat2 {
+fn axes(grid: &GeoGrid) -> DMat2 {
     let none = DMat2::IDENTITY;
     let ground = Ground::of(grid, grid.whole()).map(|ground| ground.0);
     // Where a map folds over beyond its area, it is left-handed in a part.
@@ -163,12 +163,12 @@ fn words(axes: DMat2, crs: &Crs) -> String {
 mod tests {
     use super::*;
 
-    fn about(epsg: u32, longitude: f64, latitude: f64) -> Grid {
+    fn about(epsg: u32, longitude: f64, latitude: f64) -> GeoGrid {
         let crs = Crs::from_epsg(epsg).expect("a system");
-        let way = Way::between(&Crs::lonlat().expect("degrees"), &crs).expect("a way");
+        let way = CrsPath::between(&Crs::lonlat().expect("degrees"), &crs).expect("a way");
         let place = way.place(DVec2::new(longitude, latitude)).expect("a place");
         let matrix = DMat2::from_diagonal(DVec2::new(30.0, -30.0));
-        Grid {
+        GeoGrid {
             crs,
             to_crs: DAffine2::from_mat2_translation(matrix, place - matrix * DVec2::splat(100.0)),
             columns: 200,
@@ -176,7 +176,7 @@ mod tests {
         }
     }
 
-    fn ground(grid: &Grid) -> Ground {
+    fn ground(grid: &GeoGrid) -> Ground {
         Ground::of(grid, grid.whole()).expect("a place")
     }
 
@@ -220,7 +220,7 @@ mod tests {
         assert_eq!(axes(&about(2048, 19.5, -30.0)), columns([-1.0, 0.0], [0.0, -1.0]), "west, south");
         // PROJ knows no way from there to the globe.
         let to_crs = DAffine2::from_translation(DVec2::splat(5e5));
-        let west_north = Grid { crs: Crs::from_epsg(3052).expect("a system"), to_crs, ..about(2048, 19.5, -30.0) };
+        let west_north = GeoGrid { crs: Crs::from_epsg(3052).expect("a system"), to_crs, ..about(2048, 19.5, -30.0) };
         assert_eq!(axes(&west_north), columns([-1.0, 0.0], [0.0, 1.0]), "west, north");
         // North, east; east, north; and maps of a pole, whose axes both run north or south.
         for (epsg, longitude, latitude) in

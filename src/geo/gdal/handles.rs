@@ -13,7 +13,7 @@ use xxhash_rust::xxh3::Xxh3;
 use super::formats;
 use super::listed::{Folders, Listed};
 use super::lossless;
-use super::name::Place;
+use super::name::RasterPlace;
 use super::source::Source;
 use crate::error::{Error, Result, shown};
 
@@ -27,7 +27,7 @@ const FILES: usize = 4;
 /// Handles of all files of a DEM that no thread uses at the moment, each with the number of its file; the one used last
 /// is the last.
 #[derive(Default)]
-struct Pool(Mutex<Spare>);
+struct HandleCache(Mutex<Spare>);
 
 #[derive(Default)]
 struct Spare {
@@ -38,7 +38,7 @@ struct Spare {
 /// What the files of one DEM share as they are opened.
 #[derive(Default)]
 pub(super) struct Opening {
-    pool: Arc<Pool>,
+    pool: Arc<HandleCache>,
     folders: Folders,
 }
 
@@ -55,10 +55,10 @@ pub(super) struct Handles {
     /// What of its name is no file on the disk: the grid of a container, the member of an archive.
     inner: String,
     file: usize,
-    pool: Arc<Pool>,
+    pool: Arc<HandleCache>,
 }
 
-impl Pool {
+impl HandleCache {
     /// A number for one more file.
     fn add(&self) -> usize {
         let mut spare = self.spare();
@@ -147,11 +147,11 @@ impl Handles {
 }
 
 /// What of a raster's name is no file on the disk, so that all ways to the file are one.
-fn inner((name, place): &(PathBuf, Place)) -> String {
+fn inner((name, place): &(PathBuf, RasterPlace)) -> String {
     let name = lossless::text(name.as_os_str());
     match place {
-        Place::File(file) | Place::Archive(file) => name.replacen(&lossless::text(file.as_os_str()), "", 1),
-        Place::Remote => name,
+        RasterPlace::File(file) | RasterPlace::Archive(file) => name.replacen(&lossless::text(file.as_os_str()), "", 1),
+        RasterPlace::Remote => name,
     }
 }
 

@@ -12,9 +12,9 @@ use glam::DVec2;
 use xxhash_rust::xxh3::Xxh3;
 
 use super::assumed::Tallied;
-use super::crs::Way;
+use super::crs::CrsPath;
 use super::elevation::{Elevation, Reading};
-use super::grid::{Grid, span};
+use super::grid::{GeoGrid, span};
 use super::ground::upright;
 use super::handles::{Handles, Opening};
 use super::lie::Lie;
@@ -36,9 +36,9 @@ const FIRST_SAMPLES: [usize; 2] = [512, 16];
 const MARGIN: usize = 3;
 
 /// Files on one grid.
-pub(super) struct Layer {
+pub(super) struct FileLayer {
     /// North-up wherever that takes no resampling.
-    pub grid: Grid,
+    pub grid: GeoGrid,
     /// Side of a square as large as a cell, metres on the ground.
     pub cell: f64,
     /// The format of the first file, in GDAL's words.
@@ -54,7 +54,7 @@ pub(super) struct Placed {
     handles: Handles,
     elevation: Elevation,
     /// Its own grid.
-    pub grid: Grid,
+    pub grid: GeoGrid,
     /// First column and row in the layer.
     first: [i64; 2],
     /// Whether rows and columns are read backwards.
@@ -67,7 +67,7 @@ pub(super) struct Placed {
     format: String,
 }
 
-impl Layer {
+impl FileLayer {
     /// Of `files`, at least one, each with its lie to the first's grid, north up, and their numbers among all that are named.
     /// `several`: whether messages name them.
     pub(super) fn of(files: Vec<(Placed, Lie)>, numbers: Vec<usize>, cell: f64, several: bool) -> Option<Self> {
@@ -80,7 +80,7 @@ impl Layer {
         let sources = files.into_iter().map(|(placed, lie)| placed.at(lie, low)).collect();
         let to_crs = base.to_crs * glam::DAffine2::from_translation(DVec2::new(low[0] as f64, low[1] as f64));
         let [columns, rows] = [0, 1].map(|i| (end[i] - low[i]) as usize);
-        Some(Self { grid: Grid { to_crs, columns, rows, ..base }, cell, format, several, numbers, sources })
+        Some(Self { grid: GeoGrid { to_crs, columns, rows, ..base }, cell, format, several, numbers, sources })
     }
 
     /// The first file, for messages.
@@ -206,7 +206,7 @@ impl Layer {
     }
 
     /// The grid of the first file.
-    pub(super) fn first_grid(&self) -> &Grid {
+    pub(super) fn first_grid(&self) -> &GeoGrid {
         &self.sources[0].grid
     }
 }
@@ -227,7 +227,7 @@ impl Placed {
         if let Some(member) = &source.member {
             history.convert(format!("{member} is taken of the archive, its only raster"));
         }
-        let grid = upright(Grid::of(&source, options.cell, alone, history)?, like, history);
+        let grid = upright(GeoGrid::of(&source, options.cell, alone, history)?, like, history);
         let (grid, transposed) = grid.transposed().map_or((grid, false), |grid| (grid, true));
         if transposed {
             history.convert("rows are read for columns, north up");
@@ -362,9 +362,9 @@ fn transposed<T: Copy>(block: &[T], width: usize) -> Vec<T> {
 }
 
 /// The samples of `source` that cubic convolution needs for all of `target`; `None` where they do not meet.
-pub(super) fn reach(target: &Grid, source: &Grid) -> Option<Window> {
+pub(super) fn reach(target: &GeoGrid, source: &GeoGrid) -> Option<Window> {
     let mut places = target.outline(target.whole());
-    Way::between(&target.crs, &source.crs)?.carry(&mut places);
+    CrsPath::between(&target.crs, &source.crs)?.carry(&mut places);
     source.pixels(&mut places);
     places.retain(|place| place.is_finite());
     let [low, high] = span(&places);

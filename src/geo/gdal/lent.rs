@@ -12,7 +12,7 @@ use gdal::errors::GdalError;
 use gdal::{Dataset, DriverManager};
 use glam::DAffine2;
 
-use super::grid::Grid;
+use super::grid::GeoGrid;
 use super::source::heard;
 
 /// A dataset over borrowed samples: `S` is `&[f32]` where GDAL reads them, `&mut [f32]` where it writes them, too.
@@ -23,7 +23,7 @@ pub(super) struct Lent<S> {
 
 impl<'a> Lent<&'a [f32]> {
     /// Of all samples of `grid`, NaN at voids. Fails with GDAL's words.
-    pub(super) fn reading(samples: &'a [f32], grid: &Grid) -> Result<Self, String> {
+    pub(super) fn reading(samples: &'a [f32], grid: &GeoGrid) -> Result<Self, String> {
         // SAFETY: they stay borrowed as long as the guard lives, and no method of this type lets GDAL write.
         let dataset = unsafe { dataset(samples.as_ptr().cast_mut(), samples.len(), grid) }?;
         Ok(Self { dataset, samples: PhantomData })
@@ -32,7 +32,7 @@ impl<'a> Lent<&'a [f32]> {
 
 impl<'a> Lent<&'a mut [f32]> {
     /// Of all samples of `grid`, NaN at voids. Fails with GDAL's words.
-    pub(super) fn writing(samples: &'a mut [f32], grid: &Grid) -> Result<Self, String> {
+    pub(super) fn writing(samples: &'a mut [f32], grid: &GeoGrid) -> Result<Self, String> {
         // SAFETY: they stay borrowed, by nobody else, as long as the guard lives.
         let dataset = unsafe { dataset(samples.as_mut_ptr(), samples.len(), grid) }?;
         Ok(Self { dataset, samples: PhantomData })
@@ -98,7 +98,7 @@ impl<'a> Lent<&'a mut [f32]> {
 /// # Safety
 /// The samples must outlive the dataset, and be left alone while it is used; it must not be written to where they are
 /// borrowed for reading.
-unsafe fn dataset(samples: *mut f32, count: usize, grid: &Grid) -> Result<Dataset, String> {
+unsafe fn dataset(samples: *mut f32, count: usize, grid: &GeoGrid) -> Result<Dataset, String> {
     assert_eq!(count, grid.columns * grid.rows);
     let words = [CString::new(format!("DATAPOINTER=0x{:x}", samples as usize)).unwrap_or_default()];
     let make = || {

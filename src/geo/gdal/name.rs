@@ -51,7 +51,7 @@ pub(super) enum Name {
 
 /// Where a raster lies.
 #[derive(Debug, Clone)]
-pub(super) enum Place {
+pub(super) enum RasterPlace {
     /// In this file on the disk.
     File(PathBuf),
     /// In a file in this archive on the disk.
@@ -99,8 +99,8 @@ impl Local {
     }
 
     /// Where it lies.
-    pub(super) fn place(&self) -> Place {
-        if self.archive { Place::Archive(self.file.clone()) } else { Place::File(self.file.clone()) }
+    pub(super) fn place(&self) -> RasterPlace {
+        if self.archive { RasterPlace::Archive(self.file.clone()) } else { RasterPlace::File(self.file.clone()) }
     }
 
     /// What a plain name in a file of that name on a network stands for.

@@ -8,12 +8,12 @@ use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 use xxhash_rust::xxh3::Xxh3;
 
 use super::assumed::{assumed, units};
-use super::layer::Layer;
+use super::layer::FileLayer;
 use super::raster::Raster;
 use super::smoothing::{self, Smoothing};
 use super::steps::Steps;
 use super::tally::{Tallies, merge};
-use crate::cache::{Cache, Hearing};
+use crate::cache::{Cache, CacheObserver};
 use crate::dem::in_bands::in_bands;
 use crate::dem::smoothest::HALO;
 use crate::dem::tiling::gather;
@@ -27,7 +27,7 @@ const BAND: usize = 1 << 24;
 
 /// Some samples of a layer.
 pub(super) struct Part {
-    layer: Layer,
+    layer: FileLayer,
     window: Window,
     keep_steps: bool,
     counted: Mutex<Counted>,
@@ -43,7 +43,7 @@ struct Counted {
 
 impl Part {
     /// `window` of `layer`, nothing read yet. `keep_steps`: heights stay as the files have them.
-    pub(super) fn new(layer: Layer, window: Window, keep_steps: bool) -> Self {
+    pub(super) fn new(layer: FileLayer, window: Window, keep_steps: bool) -> Self {
         Self { layer, window, keep_steps, counted: Mutex::default(), smoothing: OnceLock::new() }
     }
 
@@ -65,7 +65,7 @@ impl Part {
     }
 
     /// The layer that it is of.
-    pub(super) fn layer(&self) -> &Layer {
+    pub(super) fn layer(&self) -> &FileLayer {
         &self.layer
     }
 
@@ -87,7 +87,7 @@ impl Part {
             Some(stamp) => {
                 let key = smoothing::key(stamp, label);
                 // What was kept and is damaged is made anew, without a word: it takes no longer than the first time.
-                cache.get(&key, Hearing { warn: &|_| (), progress }, smoothing::recall, |sheet, progress| {
+                cache.get(&key, CacheObserver { warn: &|_| (), progress }, smoothing::recall, |sheet, progress| {
                     let found = self.looked(progress)?;
                     sheet.into_iter().for_each(|sheet| smoothing::keep(found.as_ref(), sheet));
                     Ok(found)

@@ -43,7 +43,7 @@ pub(super) struct Land {
 
 /// A place of the land.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Place {
+pub(super) struct LandPlace {
     /// Metres on the map from the north-west sample, x east and y south, by columns and rows.
     pub at: DVec2,
     /// Exaggerated metres.
@@ -54,7 +54,7 @@ pub(super) struct Place {
     pub downhill: DVec2,
 }
 
-impl Place {
+impl LandPlace {
     /// Whether the map's way downhill is no more than so far, by its cosine, from that of another place.
     fn is_towards(&self, other: &Self, cosine: f64) -> bool {
         self.gradient.dot(other.gradient) >= cosine * self.gradient.length() * other.gradient.length()
@@ -124,7 +124,7 @@ impl Land {
     }
 
     /// Whether a line through `seed` may be at a place.
-    pub(super) fn allows(&self, place: &Place, seed: &Place) -> bool {
+    pub(super) fn allows(&self, place: &LandPlace, seed: &LandPlace) -> bool {
         let is_water = |water: &FlatWater| {
             let at = self.samples(place.at).round().as_usizevec2();
             water.is_water(at.x, at.y)
@@ -161,7 +161,7 @@ impl<'a> Walker<'a> {
     }
 
     /// A place by its metres; none outside, at voids, where the surface is level and where it folds.
-    pub(super) fn place(&mut self, at: DVec2) -> Option<Place> {
+    pub(super) fn place(&mut self, at: DVec2) -> Option<LandPlace> {
         let (dem, cell) = (self.land.surface.dem(), self.land.cell);
         let place = at / cell;
         let last = DVec2::new(dem.columns() as f64, dem.rows() as f64) - 1.0;
@@ -181,7 +181,7 @@ impl<'a> Walker<'a> {
         let way = -gradient.normalize_or_zero();
         let downhill = DVec2::new(way.perp_dot(south.truncate()), east.truncate().perp_dot(way)) / normal.z * cell;
         let is_sloping = normal.z <= -LEAST_COVER * cell.x * cell.y && gradient.length_squared() > 0.0;
-        is_sloping.then(|| Place { at, height: point.z, gradient, downhill: downhill.normalize_or_zero() })
+        is_sloping.then(|| LandPlace { at, height: point.z, gradient, downhill: downhill.normalize_or_zero() })
     }
 
     /// A patch; none where a corner is a void.

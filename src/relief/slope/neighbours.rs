@@ -25,14 +25,14 @@ pub(super) struct Neighbours {
     size: [i32; 2],
     /// The last piece of each bucket, row by row.
     last: Vec<u32>,
-    pieces: Vec<Piece>,
+    pieces: Vec<LinePiece>,
     /// Half of the longest piece, metres.
     half: f32,
 }
 
 /// A straight piece of a line; metres from the low corner.
 #[derive(Debug, Clone, Copy)]
-struct Piece {
+struct LinePiece {
     middle: Vec2,
     way: Vec2,
     half: f32,
@@ -42,7 +42,7 @@ struct Piece {
     before: u32,
 }
 
-impl Piece {
+impl LinePiece {
     /// From a place, squared: across, and [`AHEAD`] times as far before its ends.
     fn distance_squared(&self, place: Vec2) -> f32 {
         let off = place - self.middle;
@@ -84,7 +84,13 @@ impl Neighbours {
                 let half = from.distance(to) / 2.0;
                 let room = line[k..=end].iter().map(|point| point.room).fold(0.0, f32::max);
                 let before = &mut self.last[(y * self.size[0] + x) as usize];
-                self.pieces.push(Piece { middle, way: (to - from).normalize_or_zero(), half, room, before: *before });
+                self.pieces.push(LinePiece {
+                    middle,
+                    way: (to - from).normalize_or_zero(),
+                    half,
+                    room,
+                    before: *before,
+                });
                 *before = self.pieces.len() as u32 - 1;
                 self.half = self.half.max(half);
             }
@@ -99,7 +105,7 @@ impl Neighbours {
         let Some([x, y]) = self.bucket(place) else { return true };
         let [columns, rows] = self.size;
         let reach = ((distance + self.half) / self.side).ceil() as i32;
-        let is_far = |piece: &Piece| piece.distance_squared(place) >= distance.min(piece.room).powi(2);
+        let is_far = |piece: &LinePiece| piece.distance_squared(place) >= distance.min(piece.room).powi(2);
         let is_clear = |column: i32, row: i32| {
             let is_inside = (0..columns).contains(&column) && (0..rows).contains(&row);
             !is_inside || self.of_bucket(row * columns + column).all(is_far)
@@ -142,7 +148,7 @@ impl Neighbours {
         })
     }
 
-    fn of_bucket(&self, bucket: i32) -> impl Iterator<Item = &Piece> {
+    fn of_bucket(&self, bucket: i32) -> impl Iterator<Item = &LinePiece> {
         let first = self.pieces.get(self.last[bucket as usize] as usize);
         std::iter::successors(first, |piece| self.pieces.get(piece.before as usize))
     }

@@ -44,7 +44,7 @@ pub(super) enum Curve {
 /// Cubic pieces and how long they are.
 #[derive(Debug, Clone)]
 pub(super) struct Spline {
-    pieces: Vec<Piece>,
+    pieces: Vec<Cubic>,
     parts: Vec<Part>,
     /// Metres to each point; of a closed one to the first again.
     pub knots: Vec<f64>,
@@ -54,7 +54,7 @@ pub(super) struct Spline {
 
 /// A cubic over 0 to 1, by powers.
 #[derive(Debug, Clone, Copy)]
-struct Piece([DVec2; 4]);
+struct Cubic([DVec2; 4]);
 
 /// A part of a piece.
 #[derive(Debug, Clone, Copy)]
@@ -109,7 +109,7 @@ impl Spline {
         };
         let pieces = if closed { count } else { count - 1 };
         let pieces: Vec<_> =
-            (0..pieces as isize).map(|i| Piece::through([-1, 0, 1, 2].map(|d| point(i + d)))).collect();
+            (0..pieces as isize).map(|i| Cubic::through([-1, 0, 1, 2].map(|d| point(i + d)))).collect();
         let (mut parts, mut knots, mut metres) = (Vec::new(), vec![0.0], 0.0);
         for (number, piece) in pieces.iter().enumerate() {
             piece.part(0.0, 1.0, piece.length(0.0, 1.0), 0, &mut |from, to, length| {
@@ -165,7 +165,7 @@ impl Spline {
     }
 }
 
-impl Piece {
+impl Cubic {
     /// From the second of four points to the third: tangents by Barry and Goldman's recursion over centripetal knots.
     fn through([before, from, to, after]: [DVec2; 4]) -> Self {
         let apart = |a: DVec2, b: DVec2| a.distance(b).sqrt();
