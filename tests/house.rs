@@ -7,9 +7,9 @@ use clap::CommandFactory;
 use hachure::door::cli::Arguments;
 
 /// Folders and files of `src` in the order in which the data flows; errors are everyone's.
-const ORDER: [&str; 18] = [
+const ORDER: [&str; 19] = [
     "error", "files", "cache", "dem", "geo", "surface", "relief", "view", "plan", "gpu", "line", "ink", "truth",
-    "render", "measure", "job", "report", "cli",
+    "render", "measure", "job", "report", "cli", "door",
 ];
 
 /// What truth may know.
