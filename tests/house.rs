@@ -16,7 +16,7 @@ const ORDER: [&str; 19] = [
 const TRUTH: [&str; 5] = ["error", "dem", "surface", "view", "truth"];
 
 /// Macros of the crate that are imported as modules are.
-const MACROS: [&str; 1] = ["message"];
+const MACROS: [&str; 2] = ["message", "shader"];
 
 /// What report may know: what was found, by which methods, and how to write it.
 const REPORT: [&str; 7] = ["error", "files", "plan", "ink", "truth", "measure", "report"];
