@@ -29,7 +29,7 @@ fn is_open(p: u32, q: u32, slot: u32, summary: u32) -> bool {
     if p == q {
         return false;
     }
-    if !thrifty || p == 0u || q == 0u || (q - 1u) / CHUNK_FACETS != slot {
+    if !culls || p == 0u || q == 0u || (q - 1u) / CHUNK_FACETS != slot {
         return true;
     }
     return (summary & squares_between((p - 1u) % CHUNK_FACETS, (q - 1u) % CHUNK_FACETS)) != 0u;

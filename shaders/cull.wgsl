@@ -23,11 +23,11 @@ fn bounds_of(slot: u32) -> Bounds {
 }
 
 // Whether some ray of the page passes over or under the chunk: only such chunks can be seen or be crossed by a walk,
-// since a segment between two points of a wedge stays in it.
-fn in_wedge(box: Bounds) -> bool {
-    let left = dot(camera.wedge.xy, box.middle.xy) + dot(abs(camera.wedge.xy), box.reach.xy);
-    let right = dot(camera.wedge.zw, box.middle.xy) + dot(abs(camera.wedge.zw), box.reach.xy);
-    return !thrifty || (left >= 0.0 && right >= 0.0);
+// since a segment between two points of a frustum stays in it.
+fn in_frustum(box: Bounds) -> bool {
+    let left = dot(camera.frustum.xy, box.middle.xy) + dot(abs(camera.frustum.xy), box.reach.xy);
+    let right = dot(camera.frustum.zw, box.middle.xy) + dot(abs(camera.frustum.zw), box.reach.xy);
+    return !culls || (left >= 0.0 && right >= 0.0);
 }
 
 // Whether some of a box lies on the inner side of a plane through the eye.
@@ -37,7 +37,7 @@ fn reaches(box: Bounds, inward: vec3<f32>) -> bool {
 
 // Whether the chunk can be seen.
 fn in_view(box: Bounds) -> bool {
-    if !thrifty {
+    if !culls {
         return true;
     }
     let forward = camera.forward.xyz;
@@ -45,7 +45,7 @@ fn in_view(box: Bounds) -> bool {
     let rise = camera.up.xyz * camera.focal;
     let low = drawn_from();
     let high = drawn_to();
-    return in_wedge(box)
+    return in_frustum(box)
         && dot(forward, box.middle) + dot(abs(forward), box.reach) >= scene.near
         && reaches(box, side - forward * low.x) && reaches(box, forward * high.x - side)
         && reaches(box, -rise - forward * low.y) && reaches(box, forward * high.y + rise);

@@ -28,7 +28,7 @@ fn away_halves(nw: Vertex, ne: Vertex, sw: Vertex, se: Vertex) -> u32 {
 @compute @workgroup_size(16, 4)
 fn facing(@builtin(global_invocation_id) invocation: vec3<u32>) {
     let slot = batch.first_slot + invocation.y;
-    if slot >= camera.chunks || !in_wedge(bounds_of(slot)) {
+    if slot >= camera.chunks || !in_frustum(bounds_of(slot)) {
         return;
     }
     let chunk = chunks[slot];

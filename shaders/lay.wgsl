@@ -1,4 +1,6 @@
 // One invocation a point of a line on the land: the facet under it, where it lies on that, and whether it is to be looked at.
+// Every line of the world goes this way, so that what is seen of it is decided as for contours, by `sight`. Cost: a look-up of
+// the facet, and a look at the nine pixels about it. Not handled: points on the very edge of a facet.
 
 // Points of lines by their places in walk units; those at the very north-west corner are none.
 @group(0) @binding(20) var<storage, read> laid: array<vec2<i32>>;

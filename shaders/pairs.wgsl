@@ -88,7 +88,7 @@ fn is_open(p: u32, q: u32, chunk_p: Chunk) -> bool {
         between = quads_between(chunk_p, low, high);
         other = quads_between(chunk_q, low, high);
     }
-    if !thrifty || !covered {
+    if !culls || !covered {
         return true;
     }
     var slot = slot_p;

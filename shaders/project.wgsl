@@ -24,7 +24,7 @@ fn screen_of(at: vec2<u32>, place: vec4<f32>) -> vec4<i32> {
 @compute @workgroup_size(32, 2)
 fn project(@builtin(global_invocation_id) invocation: vec3<u32>) {
     let slot = batch.first_slot + invocation.y;
-    if slot >= camera.seen || !in_wedge(bounds_of(slot)) {
+    if slot >= camera.seen || !in_frustum(bounds_of(slot)) {
         return;
     }
     let chunk = chunks[slot];

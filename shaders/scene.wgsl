@@ -19,7 +19,7 @@ struct Camera {
     focal: f32,             // pixels per unit of tangent
     chunks: u32,            // of the frame
     size: vec2<u32>,        // pixels across, down, of what is drawn: the page or a piece of it
-    wedge: vec4<f32>,       // inward normals of the two sides of its map projection; 0 where it is no wedge
+    frustum: vec4<f32>,       // inward normals of the two sides of its map projection; 0 where it is no frustum
     origin: vec2<i32>,      // the page's column and row of its top left pixel
     seen: u32,              // chunks in the first slots that are drawn
     fresh: u32,             // chunks whose vertices are not there yet
@@ -50,7 +50,7 @@ override two_depths: bool = false;
 // Away facets are noted in every pixel they touch, not only where they cover the centre.
 override conservative: bool = false;
 // Whether what cannot change the picture is left out.
-override thrifty: bool = true;
+override culls: bool = true;
 // Whether curves are listed that nearer land certainly hides.
 override all_curves: bool = false;
 

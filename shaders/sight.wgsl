@@ -27,7 +27,7 @@ fn hides(at: vec2<i32>, place: vec2<i32>, reach: f32) -> bool {
     }
     let hit = facet_hit(id, centre_of(at));
     let from_line = abs(vec2<f32>(hit - place));
-    if thrifty && !has_voids && max(from_line.x, from_line.y) <= reach {
+    if culls && !has_voids && max(from_line.x, from_line.y) <= reach {
         // So are all facets on the way.
         return false;
     }

@@ -48,7 +48,7 @@ fn tessellate(@builtin(global_invocation_id) invocation: vec3<u32>) {
     let columns = block_columns(chunk.step);
     let across = CHUNK_QUADS / columns + 1u;
     let first = vec2<u32>(invocation.x % across * columns, invocation.x / across * block_rows(chunk.step));
-    if number >= camera.fresh || first.y >= CHUNK_SIDE || (batch.passing == 1u && !in_wedge(bounds_of(slot))) {
+    if number >= camera.fresh || first.y >= CHUNK_SIDE || (batch.passing == 1u && !in_frustum(bounds_of(slot))) {
         return;
     }
     let end = min(first + vec2<u32>(columns, block_rows(chunk.step)), vec2<u32>(CHUNK_SIDE));

@@ -79,7 +79,7 @@ fn turn(@builtin(global_invocation_id) invocation: vec3<u32>) {
     let east_column = min(column + 1u, CHUNK_QUADS);
     let counts = vec2<bool>(column > 0u, column < CHUNK_QUADS);
     // What batches overwrite is not made beside the page's map projection.
-    let is_made = batch.passing == 0u || in_wedge(bounds_of(slot));
+    let is_made = batch.passing == 0u || in_frustum(bounds_of(slot));
     let number = invocation.y * CHUNK_VERTICES + column;
     let side = around[slot * AROUND + SIDES_AT] * SIDE_VERTICES;
     // Of what is not drawn the sides alone count. Beside a coarser chunk, where facets have collapsed, whole ones do.

@@ -6,7 +6,7 @@
 
 // What a chunk holds. Beside the page's map projection nobody has looked: there it may be both.
 fn holds(slot: u32) -> u32 {
-    if !in_wedge(bounds_of(slot)) {
+    if !in_frustum(bounds_of(slot)) {
         return BOTH;
     }
     if (summaries[slot] & 0xffffu) == 0u {

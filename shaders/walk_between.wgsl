@@ -156,7 +156,7 @@ fn node_of(walk: ptr<function, Walk>, leg: ptr<function, Leg>) -> Node {
     let of_square = summary >> square_of(node.inner);
     node.eventful = (of_square & 0x10001u) != 0u;
     node.lacking = (of_square & 0x10000u) != 0u;
-    node.size = select(select(4u, 1u, node.eventful || !thrifty), CHUNK_QUADS, summary == 0u && thrifty);
+    node.size = select(select(4u, 1u, node.eventful || !culls), CHUNK_QUADS, summary == 0u && culls);
     let in_node = node.inner & vec2<u32>(node.size - 1u);
     node.to_side = select(in_node + 1u, node.size - in_node, ahead);
     node.column_end = wide_add((*leg).lead, wide_scale((*leg).per_column, node.to_side.x - 1u));

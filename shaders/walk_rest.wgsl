@@ -1,5 +1,14 @@
 // One invocation a pixel with pairs that `walk` has left: with neighbours that show no surface, or with a walk past
 // squares that lack facets or past facets beside a coarser chunk. Where no surface shows, the cut of the land is followed too.
+//
+// Where the straight way to a pixel without surface meets nothing, the cut of the surface by the plane through the eye and
+// both pixels is followed: land as thin as a pixel turns away beside that way, and a straight way along its flank never
+// rounds it. An away facet on the cut inks the pixel where it lies behind the toward one before it; one that lies before it is
+// an underside, seen through a void or past the border, and hides the edge between the two.
+//
+// Cost: at most 256 facets a pair; in a plain seen edge-on against the sky, all of them. Not handled: land that takes more
+// facets than that to turn away within a pixel, and pairs that both show land, which take the straight way alone, so that
+// the foot of a spire may lack ink for a few pixels before land beside it.
 
 @group(0) @binding(25) var<storage, read> rest: ListRead;
 

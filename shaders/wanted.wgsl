@@ -57,7 +57,7 @@ fn wanted(@builtin(global_invocation_id) invocation: vec3<u32>) {
         return;
     }
     let box = bounds_of(slot);
-    if !in_view(box) || (thrifty && !all_curves && lies_buried(box)) {
+    if !in_view(box) || (culls && !all_curves && lies_buried(box)) {
         return;
     }
     atomicOr(&out_turning[slot], DRAWN);

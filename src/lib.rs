@@ -83,7 +83,7 @@
 //! compares bits. Large pages are drawn in [`pieces`](plan::pieces), of which only the inked pixels are kept; strokes are filled in bands of 128
 //! rows, which go to the file one after the other: memory grows with the ink, not with the page.
 //!
-//! One pass has one name: `shaders/rasterize.wgsl` and `src/gpu/rasterize.rs` hold the pass `rasterize`. What runs for a frame is
+//! One pass has one name: `shaders/rasterize.wgsl` holds the pass `rasterize`, a line of `src/gpu/shaders.rs` what it is composed of. What runs for a frame is
 //! planned in [`plan::passes`], in the order of [`render`].
 //!
 //! # Coordinates
@@ -111,7 +111,7 @@
 //! | [`relief`] | lines on the land that do not depend on the eye: drainage, ridges, shores, peaks, own lines |
 //! | [`view`] | the camera, how it sees, a view where none is given, cameras along a way |
 //! | [`plan`] | what a frame needs, as data: lattice, batches, passes, pieces, what is left out; the registry of methods |
-//! | [`gpu`] | device, buffers, one adapter a pass; the mathematics stands in `shaders/` |
+//! | [`gpu`] | device, buffers, a table of passes; the mathematics stands in `shaders/` |
 //! | [`mod@line`] | curves with kind and world place: ink traced to chains, smoothed; lines of the world projected |
 //! | [`ink`] | chains to strokes to pictures |
 //! | [`truth`] | where the lines really are, in f64, and how far ink is from them; knows nothing of the GPU |
@@ -121,23 +121,58 @@
 //! | [`report`] | comparisons as JSON, CSV, a plot and a page to read |
 //! | [`cli`] | flags as typed become options checked |
 
+//!
+//! # Words
+//!
+//! Names are those of the field, where it has one. What it calls otherwise, or what this crate has of its own:
+//!
+//! | word | means |
+//! |---|---|
+//! | sample, cell | a height of the grid; the square between four of them |
+//! | patch | a cubic PN triangle (Vlachos et al. 2001), half a cell |
+//! | facet | a flat triangle that is drawn, on the integer lattice |
+//! | chunk | 16 x 16 quads of facets with one level of detail: what others call a cluster or tile of the mesh |
+//! | batch, slot | chunks that are drawn at once; the place of one in the device's buffers |
+//! | toward, away | front and back facing |
+//! | rim, border | the edge of the DEM and of its voids; the pass that draws it |
+//! | mask, ink | the pixels that bear lines; one of them with its kind, depth and place |
+//! | walk | going over the lattice between the points that two pixels show |
+//! | seam | where chunks of different levels meet, made crack-free |
+//! | sight | visibility of a line, as against that of a pixel |
+//! | laid | draped on the facets that are drawn |
+//! | curve, chain, stroke | a line on the surface; a visible run of one on the page; what a pen draws of it |
+//! | economy, recession | leaving out lines that crowd or hardly part near from far; fading with distance |
+//! | pops | what changes on the page between frames beyond what the camera moves |
+//! | bare | of land: without hachures, since strokes would stand too close |
+//! | frustum, culling | what a page sees, as seen on the map; leaving out what lies beyond it or cannot change the picture |
+//! | slot cache | what frames leave on the device for later ones |
+//! | yardstick | work that no choice of ours changes, by which times are told |
+//! | the door | what the binary and the tests look into and nobody else: `hachure::door` |
+
 #![deny(missing_docs)]
+#![warn(unreachable_pub)]
+// Those who read the code follow such links, or `cargo doc --document-private-items`.
+#![allow(rustdoc::private_intra_doc_links)]
+// Much serves the reading of rasters alone.
+#![cfg_attr(not(feature = "gdal"), allow(dead_code, unused_imports))]
 
 pub mod cache;
-pub mod cli;
+mod cli;
 pub mod dem;
+#[doc(hidden)]
+pub mod door;
 pub mod error;
-pub mod files;
+mod files;
 pub mod geo;
 pub mod gpu;
 pub mod ink;
-pub mod job;
+mod job;
 pub mod line;
-pub mod measure;
+mod measure;
 pub mod plan;
 pub mod relief;
 pub mod render;
-pub mod report;
+mod report;
 pub mod surface;
 pub mod truth;
 pub mod view;

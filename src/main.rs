@@ -3,8 +3,8 @@
 use std::process::ExitCode;
 
 use clap::Parser;
-use hachure::cli::{Arguments, memory, threads, words};
-use hachure::files::signals;
+use hachure::door::cli::{Arguments, memory, threads, words};
+use hachure::door::files::signals;
 
 /// Says in a line that memory has ended.
 #[global_allocator]

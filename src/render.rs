@@ -12,20 +12,20 @@ use std::sync::Arc;
 use crate::error::{Error, Result, Setting};
 use crate::gpu::clock::Timer;
 use crate::gpu::uniforms::{Counts, near_plane};
-use crate::gpu::work::Work;
+use crate::gpu::work::FrameWork;
 use crate::gpu::{CurveBuffers, Gpu, OnDevice, PageBuffers, Scene, Stages};
 use crate::line::{InkRaster, Land};
 use crate::message;
 use crate::plan::PassName::Compose;
-use crate::plan::frame::Kept;
-use crate::plan::{Frame, Piece, Plan};
+use crate::plan::frame::KeptLattice;
+use crate::plan::{Frame, PagePiece, Plan};
 use crate::surface::Surface;
 use crate::view::{Camera, Perspective};
 
 pub use crate::gpu::clock::{FrameTime, PassTime};
-pub use estimate::Estimate;
-pub use illustration::Illustration;
-pub use page::{Found, Page};
+pub(crate) use estimate::Estimate;
+pub(crate) use illustration::Illustration;
+pub use page::{Page, PageFindings};
 
 /// A surface on a device, ready to be seen from any eye by any plan on a page of any size.
 ///
@@ -36,13 +36,13 @@ pub struct Renderer {
     gpu: Arc<Gpu>,
     surface: Arc<Surface>,
     land: Option<Arc<Land>>,
-    kept: Kept,
+    kept: KeptLattice,
     scene: Scene,
     page: PageBuffers,
     curves: CurveBuffers,
     stages: Stages,
     /// What lies on the device: `None` while a frame is on its way, and after one that failed there.
-    last: Option<(Frame, Piece)>,
+    last: Option<(Frame, PagePiece)>,
 }
 
 /// What a frame leaves to read, and what was counted on the way.
@@ -118,10 +118,10 @@ impl Renderer {
     }
 
     /// All passes over a piece of a frame, from clean buffers to its ink.
-    fn passes(&mut self, frame: &Frame, piece: Piece, timer: Option<&mut Timer>) -> Result<()> {
+    fn passes(&mut self, frame: &Frame, piece: PagePiece, timer: Option<&mut Timer>) -> Result<()> {
         self.last = None;
         self.scene.write_camera(&self.gpu, &self.surface, frame, piece)?;
-        let mut work = Work::new(self.on_device(), frame, piece, timer);
+        let mut work = FrameWork::new(self.on_device(), frame, piece, timer);
         work.clear(&[&["pixels", "ink", "summaries", "counts"], frame.plan.method.entry().words].concat())?;
         for list in frame.lists() {
             work.empty(list, "no_pixels")?;
@@ -160,7 +160,7 @@ impl Renderer {
     }
 
     /// The frame that lies on the device, if it is a page in one piece.
-    fn last_whole(&self) -> Result<(Frame, Piece)> {
+    fn last_whole(&self) -> Result<(Frame, PagePiece)> {
         let (frame, piece) = self.last.clone().ok_or_else(|| Error::mistake("there is no frame to read"))?;
         match frame.pieces.iter().len() {
             1 => Ok((frame, piece)),
@@ -172,11 +172,11 @@ impl Renderer {
     }
 
     /// Composes a piece that was drawn; where that fails, there is no frame to read.
-    fn read_piece(&mut self, frame: &Frame, piece: Piece) -> Result<Drawn> {
+    fn read_piece(&mut self, frame: &Frame, piece: PagePiece) -> Result<Drawn> {
         self.last = None;
         let [width, height] = piece.drawn.size;
         let on_device = self.on_device();
-        let mut work = Work::new(on_device, frame, piece, None);
+        let mut work = FrameWork::new(on_device, frame, piece, None);
         work.run(Compose, [0, 0])?;
         work.finish()?;
         let pixels = self.gpu.read(on_device.buffer("page")?, width as usize * height as usize)?;
@@ -185,11 +185,6 @@ impl Renderer {
         self.surface.dem().check()?;
         self.last = Some((frame.clone(), piece));
         Ok(Drawn { raster: InkRaster { width, height, pixels }, longest_walk })
-    }
-
-    /// How a frame's camera sees, with the near plane of its depths.
-    pub fn perspective(&self, frame: &Frame) -> Perspective {
-        Perspective::new(&frame.camera, self.near())
     }
 
     /// Metres to the near plane: depths of a frame are this over the distance along the view axis.
@@ -211,6 +206,15 @@ impl Renderer {
     /// one that failed on its way there or back.
     pub fn last(&self) -> Option<&Frame> {
         self.last.as_ref().map(|(frame, _)| frame)
+    }
+}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
+impl Renderer {
+    /// How a frame's camera sees, with the near plane of its depths.
+    pub fn perspective(&self, frame: &Frame) -> Perspective {
+        Perspective::new(&frame.camera, self.near())
     }
 
     /// What lies on the device, for reading what passes left.

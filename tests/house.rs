@@ -7,16 +7,16 @@ use clap::CommandFactory;
 use hachure::door::cli::Arguments;
 
 /// Folders and files of `src` in the order in which the data flows; errors are everyone's.
-const ORDER: [&str; 18] = [
+const ORDER: [&str; 19] = [
     "error", "files", "cache", "dem", "geo", "surface", "relief", "view", "plan", "gpu", "line", "ink", "truth",
-    "render", "measure", "job", "report", "cli",
+    "render", "measure", "job", "report", "cli", "door",
 ];
 
 /// What truth may know.
 const TRUTH: [&str; 5] = ["error", "dem", "surface", "view", "truth"];
 
 /// Macros of the crate that are imported as modules are.
-const MACROS: [&str; 1] = ["message"];
+const MACROS: [&str; 2] = ["message", "shader"];
 
 /// What report may know: what was found, by which methods, and how to write it.
 const REPORT: [&str; 7] = ["error", "files", "plan", "ink", "truth", "measure", "report"];

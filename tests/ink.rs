@@ -1,8 +1,9 @@
 //! Ink: from pixels to strokes, on rasters made here.
 
 use glam::{DVec2, DVec3, UVec2};
+use hachure::door::line::{smooth, trace};
 use hachure::ink::{self, Drawing, Sheet, Style, write_mask};
-use hachure::line::{self, Chain, InkRaster, Kind, Line, Lines, Marks, Pixel};
+use hachure::line::{Chain, InkRaster, Kind, Line, Lines, Marks, Pixel};
 use hachure::view::{Camera, Perspective};
 
 const TOLERANCE: f64 = 0.6;
@@ -15,12 +16,12 @@ fn perspective([width, height]: [u32; 2]) -> Perspective {
 
 /// The chains of a raster's ink.
 fn trace(raster: &InkRaster) -> Vec<Chain> {
-    line::trace(&Marks::from(raster), &perspective([raster.width, raster.height]))
+    trace::trace(&Marks::from(raster), &perspective([raster.width, raster.height]))
 }
 
 /// The chains smoothed.
 fn smooth(chains: &[Chain], tolerance: f64) -> Vec<Chain> {
-    line::smooth(chains, &perspective([64, 64]), tolerance)
+    smooth::smooth(chains, &perspective([64, 64]), tolerance)
 }
 
 /// The drawing of a raster's ink, a pixel a millimetre.

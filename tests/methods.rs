@@ -5,8 +5,8 @@ use std::fmt::Debug;
 use std::hash::Hash;
 
 use hachure::door::plan::Yields;
-use hachure::door::plan::registry::{Marker, MethodEntry, PlotLook};
-use hachure::plan::Method;
+use hachure::door::plan::registry::{Marker, PlotLook};
+use hachure::plan::{Method, MethodEntry};
 
 /// What is wrong with these entries.
 fn faults(entries: &[MethodEntry]) -> Vec<String> {

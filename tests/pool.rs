@@ -5,7 +5,7 @@ use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use glam::DVec3;
-use hachure::door::gpu::pool::SlotCache;
+use hachure::door::gpu::slot_cache::SlotCache;
 use hachure::door::surface::lattice::CHUNK_VERTICES;
 use hachure::door::surface::tile::TILE_SAMPLES;
 use hachure::door::surface::{Chunk, Tile};

@@ -11,14 +11,12 @@ use glam::DVec2;
 use hachure::door::cli::words::line;
 use hachure::door::gpu::Capacity;
 use hachure::door::gpu::pass::{parse, reflect};
+use hachure::door::gpu::shaders::{STRIP_FACETS, source};
 use hachure::door::gpu::sizes::{BLOCK, LARGEST_BINDING, fits, of_page, of_scene};
 use hachure::door::gpu::uniforms::{BatchUniform, ChunkUniform, Counts, SceneUniform, Segment, Tally, code, seen};
-use hachure::door::gpu::{
-    CameraUniform, adjacency, border, candidates, compose, crossed, curves, facing, lay, meet, pairs,
-};
-use hachure::door::gpu::{project, rasterize, rasterize_large, rim_segments, seam, segments, sight, tessellate};
-use hachure::door::gpu::{toward_away, turn, turning, walk, walk_rest, wanted};
+use hachure::door::gpu::{CameraUniform, curves};
 use hachure::door::measure::depth_draw;
+use hachure::door::plan::PassName;
 use hachure::door::plan::batches::{BATCH_CHUNKS, PART_CHUNKS};
 use hachure::door::surface::rim::RimEdge;
 use hachure::door::surface::{Lattice, lattice, quadtree, tile};
@@ -35,39 +33,50 @@ mod on_device;
 
 pub use bound::{Bound, bound};
 
+/// Passes to ink.
+const OF_INK: [PassName; 14] = [
+    PassName::Tessellate,
+    PassName::Seam,
+    PassName::Facing,
+    PassName::Project,
+    PassName::Rasterize,
+    PassName::RasterizeLarge,
+    PassName::Candidates,
+    PassName::Pairs,
+    PassName::Walk,
+    PassName::WalkRest,
+    PassName::TowardAway,
+    PassName::Adjacency,
+    PassName::Border,
+    PassName::Compose,
+];
+
+/// Passes that find curves.
+const OF_CURVES: [PassName; 9] = [
+    PassName::Turning,
+    PassName::Wanted,
+    PassName::Turn,
+    PassName::Meet,
+    PassName::Crossed,
+    PassName::Segments,
+    PassName::RimSegments,
+    PassName::Lay,
+    PassName::Sight,
+];
+
 /// Entry point and source of every pass to ink over a raster of this kind, where vertices are kept or found anew.
 pub fn shaders(visibility: Visibility, keeps_vertices: bool) -> Vec<(&'static str, Cow<'static, str>)> {
-    vec![
-        ("tessellate", tessellate::SOURCE.into()),
-        ("seam", seam::SOURCE.into()),
-        ("facing", facing::SOURCE.into()),
-        ("project", project::SOURCE.into()),
-        ("rasterize", rasterize::source(visibility).into()),
-        ("rasterize_large", rasterize_large::source(visibility).into()),
-        ("candidates", candidates::SOURCE.into()),
-        ("pairs", pairs::SOURCE.into()),
-        ("walk", walk::source(keeps_vertices).into()),
-        ("walk_rest", walk_rest::source(keeps_vertices).into()),
-        ("toward_away", toward_away::SOURCE.into()),
-        ("adjacency", adjacency::SOURCE.into()),
-        ("border", border::SOURCE.into()),
-        ("compose", compose::SOURCE.into()),
-    ]
+    OF_INK.map(|pass| (pass.name(), source(pass, visibility, keeps_vertices))).to_vec()
 }
 
 /// Entry point and source of every pass that finds curves.
 fn curve_shaders(keeps_vertices: bool) -> Vec<(&'static str, Cow<'static, str>)> {
-    vec![
-        ("turning", turning::SOURCE.into()),
-        ("wanted", wanted::SOURCE.into()),
-        ("turn", turn::SOURCE.into()),
-        ("meet", meet::SOURCE.into()),
-        ("crossed", crossed::SOURCE.into()),
-        ("segments", segments::source(keeps_vertices).into()),
-        ("rim_segments", rim_segments::source(keeps_vertices).into()),
-        ("lay", lay::source(keeps_vertices).into()),
-        ("sight", sight::source(keeps_vertices).into()),
-    ]
+    OF_CURVES.map(|pass| (pass.name(), source(pass, Visibility::Key64, keeps_vertices))).to_vec()
+}
+
+/// The shader of a pass over rasters of 64-bit words, with kept vertices.
+pub fn shader_of(pass: PassName) -> Cow<'static, str> {
+    source(pass, Visibility::Key64, true)
 }
 
 /// Entry point and source of every composed shader of a frame.
@@ -184,7 +193,7 @@ fn shared_constants() -> Vec<(&'static str, f64)> {
         seen::NOT_ASKED,
         tile::TILE_SIDE,
         tile::TILE_SAMPLES,
-        rasterize::STRIP_FACETS,
+        STRIP_FACETS,
         // What tests say of shaders.
         frames::BESIDE,
         frames::CLIPPED,
@@ -303,7 +312,7 @@ fn one_name_has_one_value_in_all_shaders() {
 
 #[test]
 fn differences_between_rust_and_wgsl_are_noticed() {
-    let source = tessellate::SOURCE;
+    let source = shader_of(PassName::Tessellate);
     let differ = |from: &str, to: &str| {
         assert!(source.contains(from), "`{from}` is no longer there");
         let module = naga::front::wgsl::parse_str(&source.replacen(from, to, 1)).expect("WGSL");
@@ -321,7 +330,7 @@ fn differences_between_rust_and_wgsl_are_noticed() {
     assert_eq!(globals_with_vec3(&module), ["places"]);
     assert!(reflect("tessellate", &format!("{source} fn broken() -> u32 {{ return nowhere(); }}")).is_err());
     assert!(reflect("tessellate", &format!("{source} fn broken() -> u32 {{ return 1.5; }}")).is_err());
-    assert!(reflect("tesselate", source).is_err(), "no entry point of this name");
+    assert!(reflect("tesselate", &source).is_err(), "no entry point of this name");
 }
 
 #[test]

@@ -5,12 +5,13 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
+use hachure::door::gpu::shaders;
 use hachure::door::gpu::uniforms::SceneUniform;
-use hachure::door::gpu::walk;
+use hachure::door::plan::PassName;
 use hachure::door::surface::LatticePoint;
 use hachure::door::surface::lattice::CHUNK_FACETS;
 use hachure::line::Kind as LineKind;
-use hachure::plan::{Border, Detail, Method, Plan};
+use hachure::plan::{Border, Detail, Method, Plan, Visibility};
 use hachure::surface::Surface;
 use hachure::truth::{Terrain, Truth};
 use hachure::view::Camera;
@@ -123,7 +124,7 @@ const KINDS: [(Kind, u32); 4] = [
 #[test]
 fn beyond_each_edge_lies_the_facet_that_shares_it() {
     let section = concat!(hachure::shader!("section"), include_str!("kernels/beyond_probe.wgsl"));
-    let source = [walk::source(false).as_str(), section].concat();
+    let source = [&shaders::source(PassName::Walk, Visibility::Key64, false), section].concat();
     for (seed, (kind, dropped)) in (1..).zip(KINDS) {
         let mut random = Random::new(seed * 6007);
         let dem = flat(kind, &mut random);

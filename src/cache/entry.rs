@@ -14,7 +14,7 @@ use bytemuck::{Pod, Zeroable};
 use xxhash_rust::xxh3::{Xxh3, xxh3_64, xxh3_128};
 
 use super::shelf::TEMPORARY;
-use super::{Key, Kind};
+use super::{CacheKey, CacheKind};
 use crate::error::{Error, Result};
 use crate::files::Output;
 
@@ -47,7 +47,7 @@ pub(super) enum Fault {
 
 /// An artefact, open for reading and safe from removal as long as it is.
 #[derive(Debug)]
-pub struct Kept {
+pub struct KeptEntry {
     /// From the first byte on.
     pub file: File,
     /// Bytes of the artefact; what follows is not its own.
@@ -58,24 +58,24 @@ pub struct Kept {
 
 /// An artefact in the making.
 #[derive(Debug)]
-pub struct Sheet {
+pub struct NewEntry {
     output: Output,
     /// The same file, locked, as it will be read.
     file: File,
     path: PathBuf,
-    key: Key,
+    key: CacheKey,
     bytes: u64,
     failed: Option<Error>,
 }
 
-impl Key {
+impl CacheKey {
     /// What its file is called.
     pub fn file_name(&self) -> String {
         format!("{}-{:032x}", self.kind.name, self.name())
     }
 
     fn name(&self) -> u128 {
-        let Kind { name, format, .. } = self.kind;
+        let CacheKind { name, format, .. } = self.kind;
         xxh3_128(format!("{name} {format} {:032x}", self.hash).as_bytes())
     }
 
@@ -129,7 +129,7 @@ pub(super) fn open_plain(path: &Path) -> std::result::Result<Option<File>, Fault
 }
 
 /// Opens the artefact of a key and notes that it is used; `None` where there is none.
-pub(super) fn open(path: &Path, key: &Key) -> std::result::Result<Option<Kept>, Fault> {
+pub(super) fn open(path: &Path, key: &CacheKey) -> std::result::Result<Option<KeptEntry>, Fault> {
     let Some(mut file) = open_plain(path)? else { return Ok(None) };
     // Where there are no locks the file is used without.
     let _ = file.try_lock_shared();
@@ -140,7 +140,7 @@ pub(super) fn open(path: &Path, key: &Key) -> std::result::Result<Option<Kept>, 
     file.rewind().map_err(|_| Fault::Damaged)?;
     // The time of a file is that of its last use. Another user's cannot be set.
     let _ = file.set_modified(SystemTime::now());
-    Ok(Some(Kept { file, bytes, path: path.to_owned() }))
+    Ok(Some(KeptEntry { file, bytes, path: path.to_owned() }))
 }
 
 /// Bytes of the artefact in a file, its tail, and of what it was made.
@@ -168,8 +168,8 @@ pub(super) fn made_of(path: &Path) -> Option<String> {
     tail(&mut file).ok().map(|(_, _, text)| text)
 }
 
-impl Kept {
-    /// The bytes that [`Sheet::publish_whole`] wrote.
+impl KeptEntry {
+    /// The bytes that [`NewEntry::publish_whole`] wrote.
     ///
     /// # Errors
     /// The system's; [`ErrorKind::InvalidData`] for other bytes.
@@ -185,9 +185,9 @@ impl Kept {
     }
 }
 
-impl Sheet {
+impl NewEntry {
     /// Begins the file of a key.
-    pub(super) fn create(path: &Path, key: &Key) -> Result<Self> {
+    pub(super) fn create(path: &Path, key: &CacheKey) -> Result<Self> {
         let output = Output::create_as(path, TEMPORARY)?;
         let file = output.duplicate().map_err(|why| Error::output(path, &why))?;
         // From here on nobody takes it for a leftover, nor away when it has its name.
@@ -203,11 +203,11 @@ impl Sheet {
         }
     }
 
-    /// All bytes at once, and a hash of them, by which [`Kept::whole`] knows them again.
+    /// All bytes at once, and a hash of them, by which [`KeptEntry::whole`] knows them again.
     ///
     /// # Errors
     /// As [`Self::publish`].
-    pub fn publish_whole(mut self, bytes: &[u8]) -> Result<Kept> {
+    pub fn publish_whole(mut self, bytes: &[u8]) -> Result<KeptEntry> {
         self.write(bytes);
         self.write(&xxh3_64(bytes).to_le_bytes());
         self.publish()
@@ -219,7 +219,7 @@ impl Sheet {
     }
 
     /// What it is of.
-    pub fn key(&self) -> &Key {
+    pub fn key(&self) -> &CacheKey {
         &self.key
     }
 
@@ -227,7 +227,7 @@ impl Sheet {
     ///
     /// # Errors
     /// [`Error::Output`] where it could not be written, or something else than a file has its name.
-    pub fn publish(mut self) -> Result<Kept> {
+    pub fn publish(mut self) -> Result<KeptEntry> {
         let (bytes, text) = (self.bytes, self.key.text().as_bytes().to_vec());
         self.write(&text);
         self.write(bytemuck::bytes_of(&Tail::new(self.key.name(), &text)));
@@ -238,6 +238,6 @@ impl Sheet {
         }
         output.publish()?;
         file.rewind().map_err(|why| Error::output(&path, &why))?;
-        Ok(Kept { file, bytes, path })
+        Ok(KeptEntry { file, bytes, path })
     }
 }

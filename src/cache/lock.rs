@@ -18,7 +18,7 @@ use crate::error::shown;
 use crate::files::output;
 
 /// Nobody works on what has not been written for so long.
-pub const AGE: Duration = Duration::from_secs(10);
+pub(super) const AGE: Duration = Duration::from_secs(10);
 /// How often the maker writes.
 const BEAT: Duration = Duration::from_secs(1);
 /// How often a waiter looks.
@@ -54,7 +54,7 @@ pub(super) struct Held {
 
 impl Lock {
     /// The lock of the artefact at `path`, taken over where its holder is gone.
-    pub fn take(artefact: &Path) -> Result<Self, Refused> {
+    pub(super) fn take(artefact: &Path) -> Result<Self, Refused> {
         let mut name = artefact.as_os_str().to_owned();
         name.push(ENDING);
         let path = PathBuf::from(name);
@@ -77,7 +77,7 @@ impl Lock {
     }
 
     /// Says how far the work has come.
-    pub fn tell(&self, share: f64) {
+    pub(super) fn tell(&self, share: f64) {
         self.done.store((share * 1000.0) as u32, Ordering::Relaxed);
     }
 
@@ -112,7 +112,7 @@ impl Drop for Lock {
 impl Held {
     /// Waits until the lock is gone or old; `progress` hears how far its holder has come. Fails where nobody writes to it
     /// and it cannot be removed.
-    pub fn wait(mut self, progress: &dyn Fn(f64)) -> io::Result<()> {
+    pub(super) fn wait(mut self, progress: &dyn Fn(f64)) -> io::Result<()> {
         let mut since = Instant::now();
         while let Ok(found) = fs::symlink_metadata(&self.path) {
             let modified = found.modified().ok();

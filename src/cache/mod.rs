@@ -6,24 +6,26 @@
 //! the folder costs time and a warning, never the work. Not handled: folders on a network whose clocks are minutes apart: two
 //! processes may make the same then.
 
-mod entry;
+pub(crate) mod entry;
 mod lock;
-pub mod shelf;
+pub(crate) mod shelf;
 
 use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Message, Result, Setting, shown};
 use crate::message;
 
-pub use entry::{Kept, Sheet};
-pub use shelf::{Cleared, Shown};
+pub(crate) use entry::{KeptEntry, NewEntry};
+pub(crate) use shelf::{Cleared, ShelfEntry};
 
 /// Bytes that a cache may take unless told otherwise.
+#[doc(hidden)]
 pub const SIZE: u64 = 2 << 30;
 
 /// A kind of artefact.
+#[doc(hidden)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Kind {
+pub struct CacheKind {
     /// Begins the names of its files.
     pub name: &'static str,
     /// Number of what its bytes mean and how they are found: raised when either changes, older files are no longer found then.
@@ -33,10 +35,11 @@ pub struct Kind {
 }
 
 /// What an artefact is, of what, and by a hash of all that it depends on.
+#[doc(hidden)]
 #[derive(Debug, Clone)]
-pub struct Key {
+pub struct CacheKey {
     /// Its kind.
-    pub kind: Kind,
+    pub kind: CacheKind,
     /// Hash of what it depends on.
     pub hash: u128,
     /// What it was made of, for people.
@@ -52,7 +55,7 @@ pub struct Cache {
 
 /// Who hears of the work.
 #[derive(Clone, Copy)]
-pub struct Hearing<'a> {
+pub struct CacheObserver<'a> {
     /// Something the user should know: a damaged file, a folder that cannot be written. They cost time, nothing else.
     pub warn: &'a dyn Fn(&Message),
     /// The share of the making that is done, here or by another process.
@@ -75,11 +78,6 @@ impl Cache {
         Self { folder: None, size: SIZE }
     }
 
-    /// The same, of at most so many bytes: what is in use or was just made stays, whatever its size.
-    pub fn with_size(self, size: u64) -> Self {
-        Self { size, ..self }
-    }
-
     /// Where it is.
     pub fn folder(&self) -> Option<&Path> {
         self.folder.as_deref()
@@ -90,8 +88,40 @@ impl Cache {
         self.size
     }
 
-    fn path(&self, key: &Key) -> Option<PathBuf> {
+    fn path(&self, key: &CacheKey) -> Option<PathBuf> {
         self.folder.as_ref().map(|folder| folder.join(key.file_name()))
+    }
+
+    /// Makes an artefact under its lock, and keeps it where it can be kept.
+    fn make<T>(
+        &self,
+        path: &Path,
+        key: &CacheKey,
+        lock: &lock::Lock,
+        hearing: CacheObserver<'_>,
+        make: impl FnOnce(Option<NewEntry>, &dyn Fn(f64)) -> Result<T>,
+    ) -> Result<T> {
+        let sheet = NewEntry::create(path, key).inspect_err(|error| (hearing.warn)(&not_kept(key, error)));
+        let made = make(sheet.ok(), &|share| {
+            lock.tell(share);
+            (hearing.progress)(share);
+        });
+        self.trim(Some(path));
+        made
+    }
+
+    /// An artefact that is there, safe from removal as long as it is open: who needs several holds all of them first.
+    pub fn hold(&self, key: &CacheKey) -> Option<KeptEntry> {
+        self.path(key).and_then(|path| entry::open(&path, key).ok().flatten())
+    }
+}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
+impl Cache {
+    /// The same, of at most so many bytes: what is in use or was just made stays, whatever its size.
+    pub fn with_size(self, size: u64) -> Self {
+        Self { size, ..self }
     }
 
     /// An artefact: found and read by `recall`, which fails where the bytes are not those that were written; else made by
@@ -101,10 +131,10 @@ impl Cache {
     /// Those of `make`.
     pub fn get<T>(
         &self,
-        key: &Key,
-        hearing: Hearing<'_>,
-        recall: impl Fn(Kept) -> std::io::Result<T>,
-        make: impl FnOnce(Option<Sheet>, &dyn Fn(f64)) -> Result<T>,
+        key: &CacheKey,
+        hearing: CacheObserver<'_>,
+        recall: impl Fn(KeptEntry) -> std::io::Result<T>,
+        make: impl FnOnce(Option<NewEntry>, &dyn Fn(f64)) -> Result<T>,
     ) -> Result<T> {
         let Some(path) = self.path(key) else { return make(None, hearing.progress) };
         let mut damaged = false;
@@ -149,31 +179,8 @@ impl Cache {
         }
     }
 
-    /// Makes an artefact under its lock, and keeps it where it can be kept.
-    fn make<T>(
-        &self,
-        path: &Path,
-        key: &Key,
-        lock: &lock::Lock,
-        hearing: Hearing<'_>,
-        make: impl FnOnce(Option<Sheet>, &dyn Fn(f64)) -> Result<T>,
-    ) -> Result<T> {
-        let sheet = Sheet::create(path, key).inspect_err(|error| (hearing.warn)(&not_kept(key, error)));
-        let made = make(sheet.ok(), &|share| {
-            lock.tell(share);
-            (hearing.progress)(share);
-        });
-        self.trim(Some(path));
-        made
-    }
-
-    /// An artefact that is there, safe from removal as long as it is open: who needs several holds all of them first.
-    pub fn hold(&self, key: &Key) -> Option<Kept> {
-        self.path(key).and_then(|path| entry::open(&path, key).ok().flatten())
-    }
-
     /// Removes an artefact that turned out damaged.
-    pub fn remove(&self, key: &Key) {
+    pub fn remove(&self, key: &CacheKey) {
         // One that cannot be removed is found damaged again.
         let _ = self.path(key).map(std::fs::remove_file);
     }
@@ -189,7 +196,7 @@ enum Found<T> {
     Strange(&'static str),
 }
 
-fn found<T>(path: &Path, key: &Key, recall: impl Fn(Kept) -> std::io::Result<T>) -> Found<T> {
+fn found<T>(path: &Path, key: &CacheKey, recall: impl Fn(KeptEntry) -> std::io::Result<T>) -> Found<T> {
     match entry::open(path, key) {
         Ok(None) => Found::Nothing,
         Ok(Some(kept)) => recall(kept).map_or(Found::Damaged, Found::Whole),
@@ -199,7 +206,7 @@ fn found<T>(path: &Path, key: &Key, recall: impl Fn(Kept) -> std::io::Result<T>)
 }
 
 /// That something was made and could not be kept.
-pub fn not_kept(key: &Key, why: &Error) -> Message {
+pub(crate) fn not_kept(key: &CacheKey, why: &Error) -> Message {
     let why = match why {
         Error::Output { path, what, .. } => format!("{}: {what}", shown(path)),
         other => other.to_string(),

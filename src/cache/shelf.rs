@@ -18,7 +18,7 @@ const LEFT_BEHIND: Duration = Duration::from_secs(60);
 
 /// A file of the cache.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Shown {
+pub struct ShelfEntry {
     /// Its name in the folder.
     pub name: String,
     /// What it is: its name up to the first dash.
@@ -43,29 +43,6 @@ pub struct Cleared {
 }
 
 impl Cache {
-    /// Its files, the one used last first.
-    pub fn list(&self) -> Vec<Shown> {
-        let mut files: Vec<Shown> =
-            self.files().map(|(path, shown)| Shown { of: entry::made_of(&path), ..shown }).collect();
-        files.sort_by(|a, b| b.used.cmp(&a.used).then_with(|| a.name.cmp(&b.name)));
-        files
-    }
-
-    /// Removes all that nobody uses.
-    pub fn clear(&self) -> Cleared {
-        let mut cleared = Cleared::default();
-        for (path, shown) in self.files() {
-            if remove(&path) {
-                cleared.files += 1;
-                cleared.bytes += shown.bytes;
-            } else {
-                cleared.stayed += 1;
-            }
-        }
-        self.sweep();
-        cleared
-    }
-
     /// Removes what was used longest ago until the rest fits; `fresh` stays, and so does what some process has open.
     pub(super) fn trim(&self, fresh: Option<&Path>) {
         self.sweep();
@@ -98,18 +75,45 @@ impl Cache {
     }
 
     /// The files that are artefacts by their names, what they were made of left out.
-    fn files(&self) -> impl Iterator<Item = (PathBuf, Shown)> {
+    fn files(&self) -> impl Iterator<Item = (PathBuf, ShelfEntry)> {
         self.names().filter_map(|(path, name)| {
             let kind = kind_of(&name)?;
             let found = fs::symlink_metadata(&path).ok().filter(fs::Metadata::is_file)?;
             let used = found.modified().unwrap_or(SystemTime::UNIX_EPOCH);
-            Some((path, Shown { name, kind, bytes: found.len(), used, of: None }))
+            Some((path, ShelfEntry { name, kind, bytes: found.len(), used, of: None }))
         })
     }
 
     fn names(&self) -> impl Iterator<Item = (PathBuf, String)> {
         let entries = self.folder().and_then(|folder| fs::read_dir(folder).ok()).into_iter().flatten().flatten();
         entries.filter_map(|entry| Some((entry.path(), entry.file_name().into_string().ok()?)))
+    }
+}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
+impl Cache {
+    /// Its files, the one used last first.
+    pub fn list(&self) -> Vec<ShelfEntry> {
+        let mut files: Vec<ShelfEntry> =
+            self.files().map(|(path, shown)| ShelfEntry { of: entry::made_of(&path), ..shown }).collect();
+        files.sort_by(|a, b| b.used.cmp(&a.used).then_with(|| a.name.cmp(&b.name)));
+        files
+    }
+
+    /// Removes all that nobody uses.
+    pub fn clear(&self) -> Cleared {
+        let mut cleared = Cleared::default();
+        for (path, shown) in self.files() {
+            if remove(&path) {
+                cleared.files += 1;
+                cleared.bytes += shown.bytes;
+            } else {
+                cleared.stayed += 1;
+            }
+        }
+        self.sweep();
+        cleared
     }
 }
 

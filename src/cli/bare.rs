@@ -3,11 +3,11 @@
 use super::blank::length;
 
 /// Of a plan.
-pub const PLAN: &str = "the scale leaves dark land, or all, without hachures: they would stand closer than an eighth of a \
+pub(crate) const PLAN: &str = "the scale leaves dark land, or all, without hachures: they would stand closer than an eighth of a \
                         cell; use --scale with a larger N, or a finer DEM";
 
 /// Of a view where it goes so far from the eye, metres.
-pub fn of_view(bare: f64) -> String {
+pub(crate) fn of_view(bare: f64) -> String {
     format!(
         "land nearer than {} has no hachures: they would stand closer than an eighth of a cell; give an eye higher above it, \
          or a finer DEM",
@@ -16,7 +16,7 @@ pub fn of_view(bare: f64) -> String {
 }
 
 /// Of so many frames.
-pub fn of_frames(count: usize) -> String {
+pub(crate) fn of_frames(count: usize) -> String {
     format!(
         "{count} of the frames drawn show land so near that it has no hachures, for they would stand closer than an eighth \
          of a cell: fly higher above it, or over a finer DEM"

@@ -20,21 +20,21 @@ use super::scene;
 use super::serve;
 use super::talk::Talk;
 use super::words::told;
-use super::work::Work;
+use super::work::JobWork;
 use crate::cache::Cache;
 use crate::error::{Error, Result, shown};
 use crate::files::{Taken, relative};
 use crate::gpu::Gpu;
 use crate::ink::Seal;
-use crate::job::manifest::Sequence;
+use crate::job::manifest::SequenceKey;
 use crate::job::name::Naming;
-use crate::job::{Job, Made, Manifest};
+use crate::job::{Job, JobFile, Manifest};
 use crate::line::Land;
-use crate::plan::frame::Kept;
+use crate::plan::frame::KeptLattice;
 use crate::relief::LandWanted;
 use crate::render::{Estimate, Illustration, Page, Renderer};
 use crate::surface::Surface;
-use entry::{Contents, Entry};
+use entry::{BatchEntry, Contents};
 use sheets::SheetArguments;
 
 /// The end of `hachure batch --help`.
@@ -54,7 +54,7 @@ Examples:
 /// Flags of `hachure batch`, as typed.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES, after_long_help = reference::of(&[reference::LIST, reference::JOBS, EXAMPLES]))]
-pub struct BatchArguments {
+pub(crate) struct BatchArguments {
     /// The list of drawings
     #[arg(value_name = "FILE.toml")]
     file: PathBuf,
@@ -69,7 +69,7 @@ pub struct BatchArguments {
 }
 
 /// A DEM on a device, for all drawings of it that follow one another.
-struct Scene {
+struct BatchScene {
     /// What it was read of and how.
     of: String,
     /// The files that it was read of: no drawing may replace one.
@@ -82,8 +82,8 @@ struct Scene {
 }
 
 /// A drawing on its way to its files.
-struct Drawn<'a> {
-    entry: &'a Entry,
+struct BatchDrawing<'a> {
+    entry: &'a BatchEntry,
     inputs: Vec<PathBuf>,
     what: What,
 }
@@ -99,8 +99,8 @@ enum What {
 /// Makes the drawings.
 ///
 /// # Errors
-/// As [`Work::run`] and [`serve::run`]; [`Error::Input`] for a file that is no list of drawings.
-pub fn run(arguments: &BatchArguments, talk: &Talk) -> Result<()> {
+/// As [`JobWork::run`] and [`serve::run`]; [`Error::Input`] for a file that is no list of drawings.
+pub(crate) fn run(arguments: &BatchArguments, talk: &Talk) -> Result<()> {
     if arguments.jobs.serve {
         serve::end_unread();
     }
@@ -120,7 +120,7 @@ pub fn run(arguments: &BatchArguments, talk: &Talk) -> Result<()> {
     let together = names.iter().fold(Naming::new(), |naming, names| naming.with("drawing", names[0].to_le_bytes()));
     // Another list beside it makes other drawings; seen from the folder, all machines agree on its name.
     let list = relative(&folder, &arguments.file);
-    let sequence = Sequence {
+    let sequence = SequenceKey {
         of: format!("the {} drawings of {}", entries.len(), shown(&arguments.file)),
         sequence: Naming::bare().with("batch", list.as_os_str().as_encoded_bytes()).name(),
         job: together.name(),
@@ -132,14 +132,14 @@ pub fn run(arguments: &BatchArguments, talk: &Talk) -> Result<()> {
     if arguments.jobs.list {
         return studio.list(&entries, &jobs, talk);
     }
-    let work = Work { sequence, share, called: "drawings", jobs, folder, dems };
+    let work = JobWork { sequence, share, called: "drawings", jobs, folder, dems };
     if arguments.jobs.serve && entries.iter().any(|entry| entry.draw.scale().is_none()) {
         // Before any job: that there is none fails them all.
         studio.gpu()?;
     }
-    let mut make = |work: &Work, progress: &Progress, talk: &Talk| {
+    let mut make = |work: &JobWork, progress: &Progress, talk: &Talk| {
         let draw = |job: &Job| studio.draw(&entries[job.number as usize], progress);
-        work.run(talk, progress, draw, |job, drawn: Drawn| drawn.write(job))
+        work.run(talk, progress, draw, |job, drawn: BatchDrawing| drawn.write(job))
     };
     if arguments.jobs.serve {
         return serve::run(&work, talk, stdin().lock(), stdout(), make);
@@ -152,7 +152,7 @@ pub fn run(arguments: &BatchArguments, talk: &Talk) -> Result<()> {
 
 impl BatchArguments {
     /// Which jobs, and how they are told of.
-    pub fn jobs(&self) -> &JobArguments {
+    pub(crate) fn jobs(&self) -> &JobArguments {
         &self.jobs
     }
 }
@@ -162,17 +162,17 @@ struct Studio<'a> {
     arguments: &'a BatchArguments,
     cache: Cache,
     gpu: Option<Arc<Gpu>>,
-    scene: Option<Scene>,
+    scene: Option<BatchScene>,
     /// Tells more of each drawing than is wanted of many.
     talk: Talk,
 }
 
 impl Studio<'_> {
     /// Lists jobs with what they may take.
-    fn list(&mut self, entries: &[Entry], jobs: &[Job], talk: &Talk) -> Result<()> {
-        let mut kept = Kept::default();
+    fn list(&mut self, entries: &[BatchEntry], jobs: &[Job], talk: &Talk) -> Result<()> {
+        let mut kept = KeptLattice::default();
         for job in jobs {
-            let Entry { draw, .. } = &entries[job.number as usize];
+            let BatchEntry { draw, .. } = &entries[job.number as usize];
             let estimate = match job.is_done() {
                 true => Ok(Estimate::NOTHING),
                 false => self.estimate(draw, &mut kept),
@@ -183,7 +183,7 @@ impl Studio<'_> {
     }
 
     /// What a drawing may take.
-    fn estimate(&mut self, draw: &DrawArguments, kept: &mut Kept) -> Result<Estimate> {
+    fn estimate(&mut self, draw: &DrawArguments, kept: &mut KeptLattice) -> Result<Estimate> {
         if draw.scale().is_some() {
             let (_, land) = plan::check(draw)?;
             return Ok(Estimate::of_plan(self.scene(draw)?.surface.dem(), &land));
@@ -194,7 +194,7 @@ impl Studio<'_> {
     }
 
     /// Draws what a view of an entry shows.
-    fn draw<'e>(&mut self, entry: &'e Entry, progress: &Progress) -> Result<Drawn<'e>> {
+    fn draw<'e>(&mut self, entry: &'e BatchEntry, progress: &Progress) -> Result<BatchDrawing<'e>> {
         self.talk.say(&format!("{}:", entry.called))?;
         if let Some(scale) = entry.draw.scale() {
             let scene = self.scene(&entry.draw)?;
@@ -202,7 +202,7 @@ impl Studio<'_> {
             let surface = scene.surface.clone();
             let land = self.land(&entry.draw, &plan::check(&entry.draw)?.1)?;
             let planned = plan::draw(&entry.draw, scale, surface.dem(), land.as_deref(), &self.talk)?;
-            return Ok(Drawn { entry, inputs, what: What::Plan(planned) });
+            return Ok(BatchDrawing { entry, inputs, what: What::Plan(planned) });
         }
         let illustration = entry.draw.check()?;
         let gpu = self.gpu()?;
@@ -222,7 +222,7 @@ impl Studio<'_> {
         let page = renderer.page(&illustration.plan, &view.camera, |_| ())?;
         entry.draw.warn_of_page(renderer, &view, &page, talk);
         let inputs = inputs(scene, &entry.draw);
-        Ok(Drawn { entry, inputs, what: What::View(Box::new(page), illustration, adapter) })
+        Ok(BatchDrawing { entry, inputs, what: What::View(Box::new(page), illustration, adapter) })
     }
 
     /// The device: open, or opened.
@@ -250,7 +250,7 @@ impl Studio<'_> {
     }
 
     /// The DEM of a drawing: the last one's, or read.
-    fn scene(&mut self, draw: &DrawArguments) -> Result<&mut Scene> {
+    fn scene(&mut self, draw: &DrawArguments) -> Result<&mut BatchScene> {
         let talk = &self.talk;
         let of = draw.scene();
         if self.scene.as_ref().is_none_or(|scene| scene.of != of) {
@@ -261,16 +261,16 @@ impl Studio<'_> {
             let surface = Arc::new(scene::surface(&draw.terrain, reading, talk)?);
             scene::prepare(&surface, &self.cache, talk)?;
             self.cache.discard_damaged(surface.dem(), &|message| talk.warn(&told(message)));
-            self.scene = Some(Scene { of, files, surface, renderer: None, land: None });
+            self.scene = Some(BatchScene { of, files, surface, renderer: None, land: None });
         }
         self.scene.as_mut().ok_or_else(|| Error::mistake("a DEM was read and is not there"))
     }
 }
 
 /// Warns once of drawings whose style has lines that their method does not draw. What cannot be told fails as it is made.
-fn warn_of_creases(entries: &[Entry], talk: &Talk) {
+fn warn_of_creases(entries: &[BatchEntry], talk: &Talk) {
     let views = entries.iter().filter(|entry| entry.draw.scale().is_none());
-    let words = |entry: &Entry| entry.draw.drawing.left_out_of_style().ok().flatten();
+    let words = |entry: &BatchEntry| entry.draw.drawing.left_out_of_style().ok().flatten();
     let mut all = views.filter_map(|entry| Some((&entry.called, words(entry)?)));
     if let Some((called, words)) = all.next() {
         let more = match all.count() {
@@ -282,11 +282,11 @@ fn warn_of_creases(entries: &[Entry], talk: &Talk) {
 }
 
 /// The files that a drawing is made of.
-fn inputs(scene: &Scene, draw: &DrawArguments) -> Vec<PathBuf> {
+fn inputs(scene: &BatchScene, draw: &DrawArguments) -> Vec<PathBuf> {
     [scene.files.clone(), draw.drawing.land.lines.files()].concat()
 }
 
-impl Drawn<'_> {
+impl BatchDrawing<'_> {
     fn write(self, job: &Job) -> Result<()> {
         let Self { entry, inputs, what } = self;
         // Another process may have made it meanwhile.
@@ -300,7 +300,7 @@ impl Drawn<'_> {
             }
             What::Plan(planned) => (None, planned.drawing, planned.px_per_mm, "none".to_owned()),
         };
-        let seal = |made: &Made| Seal { job: made.name, adapter: adapter.clone() };
+        let seal = |made: &JobFile| Seal { job: made.name, adapter: adapter.clone() };
         drawing.seal = job.files.first().map(seal);
         for made in &job.files {
             let folder = folder_of(&made.path);

@@ -15,7 +15,7 @@ use crate::surface::Surface;
 use crate::view::{Camera, direction};
 
 /// Warns where a page holds no ink: says whether land is on it, where the DEM lies, and which flags show it.
-pub fn warn(renderer: &mut Renderer, view: &View, level: LevelChoice, page: &Page, talk: &Talk) {
+pub(crate) fn warn(renderer: &mut Renderer, view: &View, level: LevelChoice, page: &Page, talk: &Talk) {
     if page.marks.inked() > 0 {
         return;
     }
@@ -48,7 +48,7 @@ pub fn warn(renderer: &mut Renderer, view: &View, level: LevelChoice, page: &Pag
 
 /// Where the DEM lies as seen from an eye: azimuth and altitude of its middle, half-way between its lowest and its highest
 /// place; and the same in words, the azimuth from the view's north.
-pub fn where_it_lies(surface: &Surface, view: &View) -> (Option<(f64, f64)>, String) {
+pub(crate) fn where_it_lies(surface: &Surface, view: &View) -> (Option<(f64, f64)>, String) {
     let [west, south, east, north] = surface.dem().extent();
     let [low, high] = surface.dem().range().unwrap_or_default().map(f64::from);
     let way = DVec3::new(west + east, south + north, low + high) / 2.0 - view.camera.eye;
@@ -64,7 +64,7 @@ pub fn where_it_lies(surface: &Surface, view: &View) -> (Option<(f64, f64)>, Str
 }
 
 /// An error of a view in which there is nothing to do, with where the DEM lies; others as they are.
-pub fn with_place(error: Error, surface: &Surface, view: &View) -> Error {
+pub(crate) fn with_place(error: Error, surface: &Surface, view: &View) -> Error {
     match error {
         Error::Scene { what, remedy } => {
             Error::Scene { what: message![what, format!(" ({})", where_it_lies(surface, view).1)], remedy }
@@ -74,7 +74,7 @@ pub fn with_place(error: Error, surface: &Surface, view: &View) -> Error {
 }
 
 /// Metres in words, with three or four figures.
-pub fn length(metres: f64) -> String {
+pub(crate) fn length(metres: f64) -> String {
     match metres {
         m if m >= 1e4 => format!("{:.1} km", m / 1e3),
         m if m >= 10.0 => format!("{m:.0} m"),

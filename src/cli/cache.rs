@@ -9,7 +9,7 @@ use super::talk::Talk;
 use super::terrain::{TerrainArguments, warn_of_survey};
 use super::values;
 use super::words::told;
-use crate::cache::{Cache, Cleared, SIZE, Shown};
+use crate::cache::{Cache, Cleared, SIZE, ShelfEntry};
 use crate::error::{Error, Result, shown};
 use crate::surface::Surface;
 
@@ -28,7 +28,7 @@ Examples:
 /// Flags that say where things are kept.
 #[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "Cache")]
-pub struct CacheArguments {
+pub(crate) struct CacheArguments {
     /// The folder in which things are kept for later runs [default: the user's folder for caches]
     #[arg(long, value_name = "DIR")]
     cache: Option<PathBuf>,
@@ -40,7 +40,7 @@ pub struct CacheArguments {
 /// Flags of `hachure cache`, as typed.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES, after_long_help = reference::of(&[reference::KEPT, EXAMPLES]), mut_arg("dems", |dems| dems.required(false).requires("make")))]
-pub struct CacheCommand {
+pub(crate) struct CacheCommand {
     /// Remove all that is not in use
     #[arg(long, conflicts_with = "make")]
     clear: bool,
@@ -72,7 +72,7 @@ impl Display for Size {
 
 impl CacheArguments {
     /// The cache that they mean.
-    pub fn cache(&self) -> Cache {
+    pub(crate) fn cache(&self) -> Cache {
         self.cache.clone().map_or_else(Cache::of_user, Cache::in_folder).with_size(self.cache_size.0)
     }
 }
@@ -81,7 +81,7 @@ impl CacheArguments {
 ///
 /// # Errors
 /// Those of reading a DEM; [`crate::error::Error::Output`] where standard output takes no more.
-pub fn run(arguments: &CacheCommand, talk: &Talk) -> Result<()> {
+pub(crate) fn run(arguments: &CacheCommand, talk: &Talk) -> Result<()> {
     let cache = arguments.cache.cache();
     if arguments.make {
         return make(&arguments.terrain, &cache, talk);
@@ -103,7 +103,7 @@ pub fn run(arguments: &CacheCommand, talk: &Talk) -> Result<()> {
 }
 
 /// Name, kind, size, last use and what it is of.
-fn line(Shown { name, kind, bytes, used, of }: &Shown, now: SystemTime) -> String {
+fn line(ShelfEntry { name, kind, bytes, used, of }: &ShelfEntry, now: SystemTime) -> String {
     let seconds = now.duration_since(*used).map_or(0, |age| age.as_secs());
     let (number, unit) = match seconds {
         0..120 => (seconds, "s"),

@@ -11,7 +11,7 @@ const AROUND: f64 = 4.01e7;
 const ROUGH: f64 = 0.1;
 
 /// Warns of a DEM whose cells or extent make no sense as metres, and says where it lies.
-pub fn warn(dem: &Dem, exaggeration: f64, talk: &Talk) {
+pub(crate) fn warn(dem: &Dem, exaggeration: f64, talk: &Talk) {
     let (cell, [west, south, east, north]) = (dem.cell().min_element(), dem.extent());
     let wide = (east - west).max(north - south);
     let highest = dem.range().map_or(0.0, |range| range.into_iter().fold(0.0_f32, |most, z| most.max(z.abs())));

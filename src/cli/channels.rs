@@ -2,20 +2,20 @@
 
 use crate::dem::Dem;
 use crate::error::Result;
-use crate::relief::threshold::{ENOUGH, LIMIT, Trial, found};
+use crate::relief::threshold::{AreaTrial, ENOUGH, LIMIT, found};
 use crate::relief::{Relief, auto_cells};
 
 /// The area that channels of a DEM begin with and why, and a line for each that was tried.
 ///
 /// # Errors
 /// As [`Relief::of`].
-pub fn told(dem: &Dem) -> Result<String> {
+pub(super) fn told(dem: &Dem) -> Result<String> {
     let relief = Relief::of(dem, 1.0)?;
     Ok(lines(&relief.trials(), relief.grid().frame.area()))
 }
 
 /// The same of trials of cells of so many square metres.
-fn lines(trials: &[Trial], cell: f64) -> String {
+fn lines(trials: &[AreaTrial], cell: f64) -> String {
     let of = |cells: u32| format!("{cells} cells, {} km2", short(f64::from(cells) * cell / 1e6));
     let found = found(trials);
     let taken = auto_cells(found);
@@ -34,7 +34,7 @@ fn lines(trials: &[Trial], cell: f64) -> String {
         lines +=
             &format!("; Student's t of the difference of their mean falls has to lie between -{LIMIT} and {LIMIT}");
     }
-    for (n, Trial { cells, streams: [first, higher], t }) in (1..).zip(trials) {
+    for (n, AreaTrial { cells, streams: [first, higher], t }) in (1..).zip(trials) {
         let mark = if found.is_some_and(|trial| trial.cells == *cells) { ", from here on" } else { "" };
         lines += &format!(
             "\ntrial {n:<4} {}: streams {first} of order 1, {higher} of higher ones, t {t:.2}{mark}",
@@ -57,7 +57,7 @@ mod tests {
     #[test]
     fn what_is_taken_is_said_with_why() {
         let told = |trials: &[(u32, f64)]| {
-            let trial = |(cells, t): &(u32, f64)| Trial { cells: *cells, streams: [100, 30], t: *t };
+            let trial = |(cells, t): &(u32, f64)| AreaTrial { cells: *cells, streams: [100, 30], t: *t };
             lines(&trials.iter().map(trial).collect::<Vec<_>>(), 400.0)
         };
         for (trials, words) in [

@@ -12,7 +12,7 @@ use super::device::DeviceArguments;
 use super::flight::{FlightArguments, FlightPlan};
 use super::talk::Talk;
 use super::terrain::TerrainArguments;
-use super::values::{self, Height, LevelChoice, Size};
+use super::values::{self, GivenHeight, LevelChoice, Size};
 use super::viewpoint::{View, ViewArguments};
 use super::views::{self, NamedView};
 use super::words::{flag, told};
@@ -23,7 +23,7 @@ use crate::files::Taken;
 use crate::geo::Reading;
 use crate::gpu::Gpu;
 use crate::gpu::sizes::page_fits;
-use crate::measure::compare::{Compared, Comparison, Found, Hearing};
+use crate::measure::compare::{CompareObserver, Compared, Comparison, Finding};
 use crate::measure::depth_draw;
 use crate::measure::figures::{Run, SequenceRun};
 use crate::measure::sequence::Sequence;
@@ -32,7 +32,7 @@ use crate::plan::{Border, Method};
 use crate::report::folder::{Contents, Folder};
 use crate::report::lines::lines;
 use crate::report::pictures::{self, Picture};
-use crate::report::results::{Machine, Results, SCHEMA, Scene, TruthSummary};
+use crate::report::results::{ComparedScene, Machine, Results, SCHEMA, TruthSummary};
 use crate::report::{error_time_svg, report_html, write_csv};
 use crate::surface::{Level, Surface};
 use crate::truth::Terrain;
@@ -55,7 +55,7 @@ Examples:
 /// Flags of `hachure compare`, as typed.
 #[derive(Debug, clap::Args)]
 #[command(after_help = reference::of(&[&methods(), EXAMPLES]), after_long_help = reference::of(&[&methods(), reference::COMPARED, EXAMPLES]))]
-pub struct CompareArguments {
+pub(crate) struct CompareArguments {
     #[command(flatten)]
     terrain: TerrainArguments,
 
@@ -78,7 +78,7 @@ pub struct CompareArguments {
     path: Option<PathBuf>,
     /// With --path: +H, metres above the ground, instead of the path's own heights
     #[arg(long, value_name = "+H|Z", value_parser = values::height, allow_hyphen_values = true, requires = "path", help_heading = "View")]
-    height: Option<Height>,
+    height: Option<GivenHeight>,
 
     /// Factor on every elevation
     #[arg(long, value_name = "X", value_parser = values::exaggeration, allow_hyphen_values = true, default_value = "1", help_heading = "Surface")]
@@ -139,7 +139,7 @@ struct Job {
 ///
 /// # Errors
 /// Whatever went wrong; no page stands in the folder then.
-pub fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
+pub(crate) fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
     let sizes = arguments.sizes();
     arguments.check(&sizes)?;
     let jobs = arguments.jobs(talk)?;
@@ -160,14 +160,14 @@ pub fn run(arguments: &CompareArguments, talk: &Talk) -> Result<()> {
     let extra = if arguments.floor { depth_draw::FEATURE } else { wgpu::Features::empty() };
     let (done, gpu) = (Cell::new(0.0), Arc::new(arguments.device.open_with(extra, talk)?));
     let drawn = RefCell::new(Vec::new());
-    let hearing = Hearing {
+    let hearing = CompareObserver {
         stage: &|stage, share| talk.progress(stage, (done.get() + share) / asked),
         warn: &|message| talk.warn(&told(message)),
         found: &|found| {
             let [said, detail] = lines(&found);
             said.iter().try_for_each(|line| talk.say(line))?;
             detail.iter().try_for_each(|line| talk.detail(line))?;
-            if let Found::Picture(name, shown) = found {
+            if let Finding::Picture(name, shown) = found {
                 drawn.borrow_mut().push(pictures::of_shown(name.to_owned(), shown)?);
             }
             Ok(())
@@ -224,7 +224,7 @@ fn view_of(named: &NamedView, size: Size, surface: &Surface, talk: &Talk) -> Res
     Ok(view)
 }
 
-fn results(gpu: &Gpu, scenes: Vec<Scene>, runs: Vec<Run>, sequences: Vec<SequenceRun>) -> Results {
+fn results(gpu: &Gpu, scenes: Vec<ComparedScene>, runs: Vec<Run>, sequences: Vec<SequenceRun>) -> Results {
     Results {
         version: SCHEMA,
         hachure: env!("CARGO_PKG_VERSION"),
@@ -320,10 +320,10 @@ impl CompareArguments {
         surface: &Surface,
         view: &View,
         found: Compared,
-    ) -> (Scene, Vec<Run>) {
+    ) -> (ComparedScene, Vec<Run>) {
         let (dem, camera) = (surface.dem(), &view.camera);
         let names: Vec<_> = files.iter().map(|file| file.to_string_lossy().into_owned()).collect();
-        let scene = Scene {
+        let scene = ComparedScene {
             name,
             command: draw_command(&names, &view.flags()),
             dem: names,
@@ -384,7 +384,7 @@ fn contents(results: &Results, pictures: &[Picture]) -> Result<Contents> {
     Ok(Contents { page: report_html(results, &plot, pictures)?, json, csv, plot })
 }
 
-fn least_sure(scenes: &[Scene]) -> TruthSummary {
+fn least_sure(scenes: &[ComparedScene]) -> TruthSummary {
     let least = scenes.iter().map(|scene| &scene.truth).min_by(|a, b| a.self_f.total_cmp(&b.self_f));
     let (level, self_f) = least.map_or((0, 0.0), |truth| (truth.level, truth.self_f));
     TruthSummary { level, self_f }

@@ -8,7 +8,7 @@ use crate::gpu::{AdapterChoice, Gpu, Int64};
 /// The flags, as typed.
 #[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "Device")]
-pub struct DeviceArguments {
+pub(crate) struct DeviceArguments {
     /// Adapter: cpu, gpu, its number in `hachure info --adapters`, where 0 is the best, or words of its name or its bus [default:
     /// the best one]
     #[arg(long, value_name = "N|NAME|cpu|gpu", value_parser = values::adapter)]
@@ -23,7 +23,7 @@ impl DeviceArguments {
     ///
     /// # Errors
     /// As [`Gpu::open_with`].
-    pub fn open_with(&self, extra: wgpu::Features, talk: &Talk) -> Result<Gpu> {
+    pub(crate) fn open_with(&self, extra: wgpu::Features, talk: &Talk) -> Result<Gpu> {
         let gpu = self.open_silently(extra)?;
         Self::tell(&gpu, talk)?;
         Ok(gpu)
@@ -33,7 +33,7 @@ impl DeviceArguments {
     ///
     /// # Errors
     /// As [`Gpu::open_with`].
-    pub fn open_silently(&self, extra: wgpu::Features) -> Result<Gpu> {
+    pub(crate) fn open_silently(&self, extra: wgpu::Features) -> Result<Gpu> {
         let int64 = if self.no_int64 { Int64::Never } else { Int64::IfPresent };
         Gpu::open_with(&self.adapter.clone().unwrap_or_default(), int64, extra)
     }
@@ -42,7 +42,7 @@ impl DeviceArguments {
     ///
     /// # Errors
     /// As [`Talk::say`].
-    pub fn tell(gpu: &Gpu, talk: &Talk) -> Result<()> {
+    pub(crate) fn tell(gpu: &Gpu, talk: &Talk) -> Result<()> {
         talk.say(&format!("adapter: {}", gpu.info.name))?;
         talk.detail(&format!("driver: {} {}", gpu.info.driver, gpu.info.driver_info))
     }

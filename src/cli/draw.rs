@@ -54,7 +54,7 @@ Examples:
 /// Flags of `hachure draw`, as typed.
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = EXAMPLES, after_long_help = reference::of(&[reference::DRAWN, EXAMPLES]))]
-pub struct DrawArguments {
+pub(crate) struct DrawArguments {
     #[command(flatten)]
     pub(super) terrain: TerrainArguments,
     #[command(flatten)]
@@ -92,7 +92,7 @@ pub struct DrawArguments {
 }
 
 /// A DEM on a device, and its page as seen from somewhere.
-struct Drawn<'a> {
+struct DrawnPage<'a> {
     renderer: &'a mut Renderer,
     view: &'a View,
     page: Page,
@@ -110,7 +110,7 @@ struct Stroked<'a> {
 ///
 /// # Errors
 /// Whatever went wrong; nothing stands under a final name then.
-pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
+pub(crate) fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     if let Some(scale) = arguments.scale() {
         return plan::run(arguments, scale, talk);
     }
@@ -133,7 +133,7 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     renderer.set_land(land.clone());
     let page = renderer.page(&illustration.plan, &view.camera, |share| talk.progress("drawing", 0.3 + 0.3 * share))?;
     cache.discard_damaged(surface.dem(), &|message| talk.warn(&told(message)));
-    let mut drawn = Drawn { renderer: &mut renderer, view: &view, page };
+    let mut drawn = DrawnPage { renderer: &mut renderer, view: &view, page };
     let (lines, drawing) = illustration.drawing(&drawn.page)?;
     let stroked = Stroked { illustration: &illustration, lines: &lines, drawing: &drawing };
     let report = outputs.want_report().then(|| arguments.report(&mut drawn, stroked, talk)).transpose()?;
@@ -152,7 +152,7 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     outputs.publish()?;
     journey::tell(&drawing, &illustration.style.plot, talk)?;
     arguments.tell(&drawn, started, talk)?;
-    let Drawn { page, .. } = drawn;
+    let DrawnPage { page, .. } = drawn;
     if drawing.layers.is_empty() && page.marks.inked() > 0 {
         talk.warn("nothing is drawn: the style leaves no stroke of the lines; give it finer pens, or --min-gap 0 --min-jump 0");
     }
@@ -162,7 +162,7 @@ pub fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
 
 impl DrawArguments {
     /// Whether one of the files is standard output.
-    pub fn fill_stdout(&self) -> bool {
+    pub(crate) fn fill_stdout(&self) -> bool {
         self.outputs.fill_stdout()
     }
 
@@ -171,7 +171,7 @@ impl DrawArguments {
     ///
     /// # Errors
     /// Those of `renamed`; [`Error::Setting`] where there is a crop already.
-    pub fn of_sheet(
+    pub(crate) fn of_sheet(
         &self,
         called: &str,
         crop: Option<[f64; 4]>,
@@ -186,7 +186,7 @@ impl DrawArguments {
     }
 
     /// The scale of a plan, where one is drawn.
-    pub fn scale(&self) -> Option<f64> {
+    pub(crate) fn scale(&self) -> Option<f64> {
         self.scale.filter(|_| self.plan)
     }
 
@@ -194,12 +194,12 @@ impl DrawArguments {
     ///
     /// # Errors
     /// As [`TerrainArguments::open`].
-    pub fn open(&self, cache: Cache) -> Result<Reading> {
+    pub(crate) fn open(&self, cache: Cache) -> Result<Reading> {
         self.terrain.open(&self.terrain.dems, self.drawing.exaggeration, cache)
     }
 
     /// What the DEM is read of, and how: the same for drawings of one surface.
-    pub fn scene(&self) -> String {
+    pub(crate) fn scene(&self) -> String {
         format!("{:?} {} {}", self.terrain.dems, self.terrain.read_as(), self.drawing.exaggeration)
     }
 
@@ -207,7 +207,7 @@ impl DrawArguments {
     ///
     /// # Errors
     /// As [`Self::check`] and [`plan::check`].
-    pub fn names(&self, dem: &Content) -> Result<[u128; 2]> {
+    pub(crate) fn names(&self, dem: &Content) -> Result<[u128; 2]> {
         let naming = Naming::new().with("dem", dem.hash()).with("read", self.terrain.read_as());
         if let Some(scale) = self.scale() {
             let of = format!("{scale} {:?} {:?} {:?}", self.area, self.drawing.page, plan::check(self)?);
@@ -220,7 +220,7 @@ impl DrawArguments {
     }
 
     /// Warns where a page of it, or land that is to be hatched, is blank.
-    pub fn warn_of_page(&self, renderer: &mut Renderer, view: &View, page: &Page, talk: &Talk) {
+    pub(crate) fn warn_of_page(&self, renderer: &mut Renderer, view: &View, page: &Page, talk: &Talk) {
         page.bare.into_iter().for_each(|bare| talk.warn(&bare::of_view(bare)));
         blank::warn(renderer, view, self.drawing.level, page, talk);
     }
@@ -229,7 +229,7 @@ impl DrawArguments {
     ///
     /// # Errors
     /// [`Error::Setting`]; as [`styles::find`](crate::ink::styles::find).
-    pub fn check(&self) -> Result<Illustration> {
+    pub(crate) fn check(&self) -> Result<Illustration> {
         if self.scale.is_some() {
             return Err(Error::setting(Setting::Scale, "goes with a plan only", message!["add ", Setting::Plan]));
         }
@@ -244,16 +244,16 @@ impl DrawArguments {
     ///
     /// # Errors
     /// As [`ViewArguments::view`].
-    pub fn look(&self, surface: &Surface, illustration: &Illustration, talk: &Talk) -> Result<View> {
+    pub(crate) fn look(&self, surface: &Surface, illustration: &Illustration, talk: &Talk) -> Result<View> {
         scene::look(&self.view, &self.drawing, surface, illustration.frame, talk)
     }
 
     /// Times more frames and says what was done.
-    fn report(&self, drawn: &mut Drawn, stroked: Stroked, talk: &Talk) -> Result<Report> {
+    fn report(&self, drawn: &mut DrawnPage, stroked: Stroked, talk: &Talk) -> Result<Report> {
         talk.progress("timing more frames", 0.6);
         let Stroked { illustration, lines, drawing } = stroked;
         let flat_earth = drawn.flat_earth();
-        let Drawn { renderer, view, page } = drawn;
+        let DrawnPage { renderer, view, page } = drawn;
         let Frame { plan, camera, pieces, .. } = &page.frame;
         let (gpu, surface) = (renderer.gpu().clone(), renderer.surface().clone());
         let pieces = pieces.iter().len();
@@ -287,8 +287,8 @@ impl DrawArguments {
     }
 
     /// The last line: what was drawn, and how long it took.
-    fn tell(&self, drawn: &Drawn, started: Instant, talk: &Talk) -> Result<()> {
-        let Drawn { renderer, view, page, .. } = drawn;
+    fn tell(&self, drawn: &DrawnPage, started: Instant, talk: &Talk) -> Result<()> {
+        let DrawnPage { renderer, view, page, .. } = drawn;
         drawn.flat_earth().map_or(Ok(()), |flat_earth| talk.say(&flat_earth.words()))?;
         talk.say(&format!(
             "{}: {} facets, {} of {} pixels inked, {:.2} s",
@@ -301,7 +301,7 @@ impl DrawArguments {
     }
 }
 
-impl Drawn<'_> {
+impl DrawnPage<'_> {
     /// Where the DEM lies on Earth.
     fn flat_earth(&self) -> Option<FlatEarth> {
         let Self { renderer, view, page, .. } = self;

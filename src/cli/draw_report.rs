@@ -11,7 +11,7 @@ use crate::dem::Dem;
 use crate::ink::plot::Journey;
 use crate::ink::style::Plot;
 use crate::ink::unstroked::Unstroked;
-use crate::ink::{Drawing, Form, Layer, Sheet};
+use crate::ink::{Drawing, Layer, Sheet, StrokeForm};
 use crate::line::{Chain, Strays};
 use crate::measure::figures::DrawnLevel;
 use crate::plan::left_out::LeftOut;
@@ -105,7 +105,7 @@ struct PlotReport {
 }
 
 impl PageReport {
-    pub fn of(sheet: &Sheet, frame: [u32; 2]) -> Self {
+    pub(super) fn of(sheet: &Sheet, frame: [u32; 2]) -> Self {
         Self {
             size_mm: sheet.size.to_array(),
             margin_mm: sheet.margin,
@@ -116,7 +116,7 @@ impl PageReport {
 
 impl LayerReport {
     /// Of each layer, drawn by such a plotter.
-    pub fn all(drawing: &Drawing, plotter: &Plot) -> Vec<Self> {
+    pub(super) fn all(drawing: &Drawing, plotter: &Plot) -> Vec<Self> {
         let plot = |layer: &Layer| {
             let journey = Journey::through(&layer.strokes);
             PlotReport {
@@ -130,20 +130,20 @@ impl LayerReport {
             name: layer.name.clone(),
             pen_mm: layer.pen.width,
             strokes: layer.strokes.len(),
-            plot: (layer.form == Form::CentreLines).then(|| plot(layer)),
+            plot: (layer.form == StrokeForm::CentreLines).then(|| plot(layer)),
         };
         drawing.layers.iter().map(of).collect()
     }
 }
 
 impl LeftOutReport {
-    pub fn of(LeftOut { what, why, saved }: LeftOut) -> Self {
+    pub(super) fn of(LeftOut { what, why, saved }: LeftOut) -> Self {
         Self { what, why: told(&why), saved }
     }
 }
 
 impl ChainsReport {
-    pub fn of(page: &Page) -> Self {
+    pub(super) fn of(page: &Page) -> Self {
         let strays = Strays::of(&page.chains, &page.marks);
         Self {
             count: page.chains.len(),
@@ -155,7 +155,7 @@ impl ChainsReport {
 }
 
 impl DemReport {
-    pub fn of(files: &[PathBuf], dem: &Dem) -> Self {
+    pub(super) fn of(files: &[PathBuf], dem: &Dem) -> Self {
         // What cannot be read fails elsewhere, with its reason.
         let surveyed = dem.survey(&|_| ()).map(|survey| survey.assumed.clone()).unwrap_or_default();
         let assumed = [dem.history().assumed(), &surveyed, dem.history().usual()];

@@ -10,13 +10,13 @@ use super::viewpoint::SIZE;
 use crate::error::{Error, Result, Setting};
 use crate::ink::Style;
 use crate::plan::detail::ERROR_PX;
-use crate::plan::{Border, Curves, Detail, LandLines, Method, Plan, Share};
+use crate::plan::{Border, Curves, Detail, LandLines, Method, Plan, SharedVertices};
 use crate::relief::LandWanted;
 use crate::render::Illustration;
 
 /// The flags, as typed.
 #[derive(Debug, Clone, clap::Args)]
-pub struct DrawingArguments {
+pub(crate) struct DrawingArguments {
     /// Factor on every elevation
     #[arg(long, value_name = "X", value_parser = values::exaggeration, allow_hyphen_values = true, default_value = "1", help_heading = "Surface")]
     pub exaggeration: f64,
@@ -39,7 +39,7 @@ pub struct DrawingArguments {
         long, value_parser = choices::share(), help_heading = "Method",
         help = format!("adjacency only: what neighbouring facets share [default: {}]", choices::default_share())
     )]
-    share: Option<Share>,
+    share: Option<SharedVertices>,
     /// Whether to draw the visible border of the DEM and of its voids
     #[arg(long, value_parser = choices::border(), default_value = choices::default_border(), help_heading = "Method")]
     border: Border,
@@ -57,7 +57,7 @@ pub struct DrawingArguments {
 
 /// What is asked for of a view.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Wanted {
+pub(crate) enum Wanted {
     /// Lines, or lines and the mask.
     Drawing,
     /// The mask alone: whatever serves strokes is left out.
@@ -69,7 +69,7 @@ impl DrawingArguments {
     ///
     /// # Errors
     /// [`Error::Setting`].
-    pub fn plan(&self, wanted: Wanted) -> Result<Plan> {
+    pub(crate) fn plan(&self, wanted: Wanted) -> Result<Plan> {
         let (method, detail) = (self.method()?, self.detail()?);
         // Strokes of the walk's mask are contours.
         let curves = match (self.style.draws_hidden(), method) {
@@ -90,7 +90,7 @@ impl DrawingArguments {
     ///
     /// # Errors
     /// [`Error::Setting`]; as [`StyleArguments::style`] and [`LandArguments::wanted`].
-    pub fn illustration(
+    pub(crate) fn illustration(
         &self,
         size: Option<Size>,
         wanted: Wanted,
@@ -116,7 +116,7 @@ impl DrawingArguments {
     ///
     /// # Errors
     /// As [`Self::plan`] and [`StyleArguments::style`].
-    pub fn left_out_of_style(&self) -> Result<Option<String>> {
+    pub(crate) fn left_out_of_style(&self) -> Result<Option<String>> {
         if self.plan(Wanted::Drawing)?.has_curves() {
             return Ok(None);
         }
@@ -152,7 +152,7 @@ impl DrawingArguments {
     ///
     /// # Errors
     /// [`Error::Setting`] for a deviation beside one level.
-    pub fn detail(&self) -> Result<Detail> {
+    pub(crate) fn detail(&self) -> Result<Detail> {
         if self.error_px.is_some() && self.level != LevelChoice::Auto {
             return Err(Error::setting(Setting::ErrorPx, "goes with --level auto only", "leave one of them out"));
         }

@@ -12,7 +12,7 @@ use crate::job::{Film, Inks};
 ///
 /// # Errors
 /// [`Error::Setting`]; as [`Film::new`].
-pub fn of(path: &Path, fps: f64, mut taken: Taken, pictures: &[PathBuf]) -> Result<Film> {
+pub(crate) fn of(path: &Path, fps: f64, mut taken: Taken, pictures: &[PathBuf]) -> Result<Film> {
     let plain = |path: &Path| crate::files::straight(&std::path::absolute(path).unwrap_or_else(|_| path.to_owned()));
     let film = plain(path);
     if pictures.iter().any(|picture| plain(picture) == film) {
@@ -27,7 +27,7 @@ pub fn of(path: &Path, fps: f64, mut taken: Taken, pictures: &[PathBuf]) -> Resu
 ///
 /// # Errors
 /// As [`Film::make`].
-pub fn make(film: &Film, pictures: &[PathBuf], inks: &Inks, progress: &Progress, talk: &Talk) -> Result<()> {
+pub(crate) fn make(film: &Film, pictures: &[PathBuf], inks: &Inks, progress: &Progress, talk: &Talk) -> Result<()> {
     film.make(pictures, inks, &|share| progress.film(share))?;
     talk.say(&film.described(pictures.len()))
 }

@@ -17,7 +17,7 @@ const FAR: f64 = 16_000.0;
 
 /// The farthest land that is drawn, and how far too high it stands.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct FlatEarth {
+pub(crate) struct FlatEarth {
     /// From the eye to it on the map, metres.
     farthest_m: f64,
     /// Metres of height, before any exaggeration.
@@ -26,7 +26,7 @@ pub struct FlatEarth {
 
 impl FlatEarth {
     /// Of what is inked on a page, `near` metres being the near plane of its depths; `None` where all of it is near.
-    pub fn of(marks: &Marks, camera: &Camera, near: f64) -> Option<Self> {
+    pub(crate) fn of(marks: &Marks, camera: &Camera, near: f64) -> Option<Self> {
         let distances = marks.ink().map(|mark| {
             let place = glam::DVec2::new(f64::from(mark.column), f64::from(mark.row)) + 0.5;
             // Depths are along the view axis.
@@ -41,7 +41,7 @@ impl FlatEarth {
     }
 
     /// One line.
-    pub fn words(&self) -> String {
+    pub(crate) fn words(&self) -> String {
         let Self { farthest_m, lifted_m } = *self;
         let farthest = length(farthest_m);
         format!("the Earth is drawn flat: the farthest land drawn, {farthest} away, stands {lifted_m:.0} m too high")

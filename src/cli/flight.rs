@@ -7,7 +7,7 @@ use glam::DVec2;
 use super::flight_keys;
 pub use super::flight_plan::FlightPlan;
 use super::flight_plan::Origin;
-use super::values::{self, Height, LookAt, MOST_FRAMES, Size};
+use super::values::{self, GivenHeight, LookAt, MOST_FRAMES, Size};
 use super::viewpoint::{FOV, SIZE};
 use crate::dem::Crs;
 use crate::error::{Error, Message, Result, Setting};
@@ -51,7 +51,7 @@ pub struct FlightArguments {
     /// +H: metres above the ground, smoothed, instead of the path's own heights; with --orbit above the ground in its middle
     /// [default there: half the radius]. Z: exaggerated metres, the same all the way
     #[arg(long, value_name = "+H|Z", value_parser = values::height, allow_hyphen_values = true)]
-    pub(super) height: Option<Height>,
+    pub(super) height: Option<GivenHeight>,
     /// Exaggerated metres that the eye keeps above the drawn surface everywhere, smoothly lifted where the way is lower
     /// [default: two cells, at most half of +H]
     #[arg(long, value_name = "M", value_parser = values::clearance, allow_hyphen_values = true)]
@@ -83,7 +83,7 @@ pub struct FlightArguments {
 
 impl FlightArguments {
     /// The flags of a path that is followed at these heights, on pages of this size.
-    pub fn along(path: &Path, height: Option<Height>, fov: f64, size: Size) -> Self {
+    pub fn along(path: &Path, height: Option<GivenHeight>, fov: f64, size: Size) -> Self {
         Self {
             path: Some(path.to_owned()),
             orbit: None,

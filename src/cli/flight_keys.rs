@@ -31,7 +31,7 @@ const SEE: &str = "see the keys in `hachure fly --help`";
 
 /// The keys of a flight.
 #[derive(Debug, Clone)]
-pub struct Keys {
+pub(super) struct Keys {
     /// The number of the system of places.
     pub crs: Option<u32>,
     /// What azimuths are counted from.
@@ -42,7 +42,7 @@ pub struct Keys {
 
 /// A place on the way.
 #[derive(Debug, Clone)]
-pub struct Key {
+pub(super) struct Key {
     /// Where the eye is.
     pub place: Standpoint,
     /// Whether that, and what is looked at, are degrees of longitude and latitude.
@@ -65,12 +65,12 @@ struct File {
     crs: Option<Spanned<String>>,
     north: Option<North>,
     #[serde(default)]
-    key: Vec<Spanned<Entry>>,
+    key: Vec<Spanned<KeyEntry>>,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Entry {
+struct KeyEntry {
     place: Option<Vec<Coordinate>>,
     lonlat: Option<Vec<Coordinate>>,
     look: Option<Vec<f64>>,
@@ -92,7 +92,7 @@ enum Coordinate {
 ///
 /// # Errors
 /// [`Error::Input`] where it cannot be read, or is none: where in it, what, and what was meant.
-pub fn read(path: &Path) -> Result<Keys> {
+pub(super) fn read(path: &Path) -> Result<Keys> {
     let text = typed::text(path)?;
     let file: File = toml::from_str(&text).map_err(|e| typed::mistake(&text, path, &e, SEE))?;
     let wrong = |span: std::ops::Range<usize>, what: String, remedy: &str| {
@@ -138,7 +138,7 @@ pub fn read(path: &Path) -> Result<Keys> {
     Ok(Keys { crs: crs.transpose()?, north: file.north, keys })
 }
 
-impl Entry {
+impl KeyEntry {
     fn key(self) -> std::result::Result<Key, String> {
         let joined = |parts: Vec<Coordinate>| parts.into_iter().map(Coordinate::text).collect::<Vec<_>>().join(",");
         let (place, lonlat) = match (self.place, self.lonlat) {

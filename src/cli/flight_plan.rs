@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use super::flight::FlightArguments;
 use super::flight_keys::{Key, Keys};
 use super::norths::Norths;
-use super::values::{Height, LookAt};
+use super::values::{GivenHeight, LookAt};
 use super::viewpoint::{FOV, above, world};
 use crate::dem::{Crs, Dem, North, Whereabouts};
 use crate::error::{Error, Result, Setting, shown};
@@ -44,7 +44,7 @@ pub struct FlightPlan {
 
 impl Keys {
     /// Seconds from the first key to the last, where they are timed.
-    pub fn seconds(&self) -> Option<f64> {
+    pub(super) fn seconds(&self) -> Option<f64> {
         Some(self.keys.last()?.time? - self.keys.first()?.time?)
     }
 }
@@ -142,7 +142,7 @@ impl FlightPlan {
     fn look(&self, surface: &Surface, level: Level, way: &Way) -> Result<Look> {
         let dem = surface.dem();
         let at = |crs: Option<&Crs>, at: LookAt, setting| {
-            let height = at.height.map_or(Height::AboveGround(0.0), Height::Absolute);
+            let height = at.height.map_or(GivenHeight::AboveGround(0.0), GivenHeight::Absolute);
             above(surface, level, world(dem, crs, at.place, setting)?, height, setting)
         };
         if let Some(typed) = self.arguments.look_at {
@@ -151,7 +151,7 @@ impl FlightPlan {
         }
         match (&self.origin, way) {
             (Origin::Orbit { .. }, Way::Around { centre, .. }) => {
-                Ok(Look::At(vec![above(surface, level, *centre, Height::AboveGround(0.0), Setting::Orbit)?]))
+                Ok(Look::At(vec![above(surface, level, *centre, GivenHeight::AboveGround(0.0), Setting::Orbit)?]))
             }
             (Origin::Keys(path, keys), Way::Through(stops)) => {
                 let looked = keys.keys.iter().filter_map(|key| Some((key, key.look?)));
@@ -296,10 +296,10 @@ impl Bytes {
         self.0.extend(text.as_bytes());
     }
 
-    fn height(&mut self, height: Option<Height>) {
+    fn height(&mut self, height: Option<GivenHeight>) {
         let [absolute, above] = match height {
-            Some(Height::Absolute(z)) => [Some(z), None],
-            Some(Height::AboveGround(h)) => [None, Some(h)],
+            Some(GivenHeight::Absolute(z)) => [Some(z), None],
+            Some(GivenHeight::AboveGround(h)) => [None, Some(h)],
             None => [None; 2],
         };
         self.perhaps(absolute);
@@ -314,10 +314,10 @@ impl Bytes {
 }
 
 /// A height as flights have it.
-fn height(height: Height) -> flight::Height {
+fn height(height: GivenHeight) -> flight::Height {
     match height {
-        Height::Absolute(z) => flight::Height::Absolute(z),
-        Height::AboveGround(h) => flight::Height::AboveGround(h),
+        GivenHeight::Absolute(z) => flight::Height::Absolute(z),
+        GivenHeight::AboveGround(h) => flight::Height::AboveGround(h),
     }
 }
 

@@ -12,7 +12,7 @@ use super::drawing::{DrawingArguments, Wanted};
 use super::film;
 use super::flight::{FlightArguments, FlightPlan};
 use super::frames::{FrameArguments, FrameFiles};
-use super::jobs::{JobArguments, Share};
+use super::jobs::{JobArguments, JobShare};
 use super::listing;
 use super::outputs::Format;
 use super::progress::Progress;
@@ -23,18 +23,18 @@ use super::talk::Talk;
 use super::terrain::{TerrainArguments, warn_of_survey};
 use super::values::Size;
 use super::words::told;
-use super::work::Work;
+use super::work::JobWork;
 use super::{bare, blank};
 use crate::cache::Cache;
 use crate::error::{Error, Result, Setting, shown};
 use crate::files::{Output, Taken};
 use crate::geo::Reading;
 use crate::ink::Preview;
-use crate::job::manifest::Sequence;
+use crate::job::manifest::SequenceKey;
 use crate::job::name::Naming;
 use crate::job::{Content, Inks, Job, Manifest};
-use crate::plan::frame::Kept;
-use crate::render::{Estimate, Found, Illustration, Renderer};
+use crate::plan::frame::KeptLattice;
+use crate::render::{Estimate, Illustration, PageFindings, Renderer};
 use crate::surface::Surface;
 use crate::view::Flight;
 
@@ -62,7 +62,7 @@ Examples:
 /// Flags of `hachure fly`, as typed.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES, after_long_help = reference::of(&[reference::FLOWN, reference::JOBS, EXAMPLES]))]
-pub struct FlyArguments {
+pub(crate) struct FlyArguments {
     #[command(flatten)]
     terrain: TerrainArguments,
     #[command(flatten)]
@@ -91,9 +91,9 @@ struct Asked {
     files: FrameFiles,
     illustration: Illustration,
     plan: FlightPlan,
-    share: Share,
+    share: JobShare,
     dem: Content,
-    sequence: Sequence,
+    sequence: SequenceKey,
 }
 
 /// A DEM on a device, and the way over it.
@@ -106,8 +106,8 @@ struct Aloft {
 /// Draws the frames.
 ///
 /// # Errors
-/// As [`Work::run`] and [`serve::run`]; whatever keeps all frames from being drawn.
-pub fn run(arguments: &FlyArguments, talk: &Talk) -> Result<()> {
+/// As [`JobWork::run`] and [`serve::run`]; whatever keeps all frames from being drawn.
+pub(crate) fn run(arguments: &FlyArguments, talk: &Talk) -> Result<()> {
     if arguments.jobs.serve {
         serve::end_unread();
     }
@@ -130,10 +130,10 @@ pub fn run(arguments: &FlyArguments, talk: &Talk) -> Result<()> {
     let folder = asked.files.folder();
     Manifest::refuse_others(&folder, &asked.sequence)?;
     let (sequence, share, dems) = (asked.sequence.clone(), asked.share.clone(), vec![asked.dem.clone()]);
-    let work = Work { sequence, share, called: "frames", jobs, folder, dems };
+    let work = JobWork { sequence, share, called: "frames", jobs, folder, dems };
     if arguments.jobs.serve {
         let mut aloft = Some(arguments.rise(&asked, &work.jobs, &cache, talk)?);
-        let make = |work: &Work, progress: &Progress, talk: &Talk| fly(&mut aloft, &asked, work, progress, talk);
+        let make = |work: &JobWork, progress: &Progress, talk: &Talk| fly(&mut aloft, &asked, work, progress, talk);
         return serve::run(&work, talk, stdin().lock(), stdout(), make);
     }
     let progress = Progress::start(talk, arguments.jobs.progress, work.jobs.len());
@@ -151,7 +151,7 @@ pub fn run(arguments: &FlyArguments, talk: &Talk) -> Result<()> {
 }
 
 /// Draws frames; with nothing where all are there.
-fn fly(aloft: &mut Option<Aloft>, asked: &Asked, work: &Work, progress: &Progress, talk: &Talk) -> Result<()> {
+fn fly(aloft: &mut Option<Aloft>, asked: &Asked, work: &JobWork, progress: &Progress, talk: &Talk) -> Result<()> {
     let Asked { files, illustration, .. } = asked;
     let adapter = aloft.as_ref().map(|aloft| aloft.adapter.clone()).unwrap_or_default();
     progress.on(&adapter);
@@ -164,7 +164,7 @@ fn fly(aloft: &mut Option<Aloft>, asked: &Asked, work: &Work, progress: &Progres
         renderer.find(&plan, &flight.camera(job.number), |_| ())
     };
     let [blank, bare] = [0, 0].map(AtomicUsize::new);
-    let finish = |job: &Job, found: Found| {
+    let finish = |job: &Job, found: PageFindings| {
         let page = found.page();
         blank.fetch_add(usize::from(page.marks.inked() == 0), Ordering::Relaxed);
         bare.fetch_add(usize::from(page.bare.is_some()), Ordering::Relaxed);
@@ -184,7 +184,7 @@ fn fly(aloft: &mut Option<Aloft>, asked: &Asked, work: &Work, progress: &Progres
 
 impl FlyArguments {
     /// Which jobs, and how they are told of.
-    pub fn jobs(&self) -> &JobArguments {
+    pub(crate) fn jobs(&self) -> &JobArguments {
         &self.jobs
     }
 
@@ -207,7 +207,7 @@ impl FlyArguments {
             .with("sequence", of_sequence.name().to_le_bytes());
         let of_mask = seen.clone().with("mask", illustration.of_mask());
         let of_job = seen.with("drawing", format!("{illustration:?}"));
-        let sequence = Sequence {
+        let sequence = SequenceKey {
             of: format!("a flight of {} frames {}", plan.count(), plan.described()),
             sequence: of_sequence.name(),
             job: of_job.name(),
@@ -268,7 +268,7 @@ impl FlyArguments {
     fn list(&self, asked: &Asked, jobs: &[Job], cache: &Cache, talk: &Talk) -> Result<()> {
         let surface = Arc::new(scene::surface(&self.terrain, self.open(cache)?, &talk.hushed())?);
         scene::prepare(&surface, cache, talk)?;
-        let (flight, mut kept) = (self.flight(&asked.plan, &surface, &talk.hushed())?, Kept::default());
+        let (flight, mut kept) = (self.flight(&asked.plan, &surface, &talk.hushed())?, KeptLattice::default());
         for job in jobs {
             let camera = flight.camera(job.number);
             let estimate = match job.is_done() {

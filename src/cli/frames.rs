@@ -7,7 +7,7 @@ use super::work;
 use crate::error::{Error, Result, Setting, shown};
 use crate::files::{Output, Taken};
 use crate::ink::{self, Seal};
-use crate::job::{Job, Made, Pattern};
+use crate::job::{Job, JobFile, Pattern};
 use crate::message;
 use crate::render::{Illustration, Page};
 
@@ -15,7 +15,7 @@ use super::drawing::Wanted;
 
 /// The flags, as typed.
 #[derive(Debug, clap::Args)]
-pub struct FrameArguments {
+pub(crate) struct FrameArguments {
     /// The drawings: .png, .svg or .pdf with the number of the frame in the name, each as often as wanted
     #[arg(short, long, value_name = "DIR/%05d.png")]
     output: Vec<String>,
@@ -25,7 +25,7 @@ pub struct FrameArguments {
 }
 
 /// Where the files of frames stand.
-pub struct FrameFiles {
+pub(crate) struct FrameFiles {
     drawings: Vec<(Format, Pattern)>,
     mask: Option<Pattern>,
 }
@@ -35,7 +35,7 @@ impl FrameArguments {
     ///
     /// # Errors
     /// [`Error::Setting`].
-    pub fn files(&self) -> Result<FrameFiles> {
+    pub(crate) fn files(&self) -> Result<FrameFiles> {
         let pattern = |setting: Setting, text: &String| {
             let named = |what: String| Error::setting(setting, format!("{text}: {what}"), "name each frame's file so");
             Pattern::parse(text).map_err(named)
@@ -61,29 +61,29 @@ impl FrameArguments {
 
 impl FrameFiles {
     /// What is asked for of each view.
-    pub fn wanted(&self) -> Wanted {
+    pub(crate) fn wanted(&self) -> Wanted {
         if self.drawings.is_empty() { Wanted::Mask } else { Wanted::Drawing }
     }
 
     /// Whether some of the files are pictures of the drawing.
-    pub fn want_picture(&self) -> bool {
+    pub(crate) fn want_picture(&self) -> bool {
         self.drawings.iter().any(|(format, _)| *format == Format::Png)
     }
 
     /// The pictures of the drawing, which a motion picture is made of.
-    pub fn pictures(&self) -> Option<&Pattern> {
+    pub(crate) fn pictures(&self) -> Option<&Pattern> {
         self.drawings.iter().find(|(format, _)| *format == Format::Png).map(|(_, pattern)| pattern)
     }
 
     /// Where the manifest stands: beside the first files.
-    pub fn folder(&self) -> PathBuf {
+    pub(crate) fn folder(&self) -> PathBuf {
         self.patterns().next().map(Pattern::folder).unwrap_or_default()
     }
 
     /// The job of a frame whose drawing and whose mask are made of what have these names.
-    pub fn job(&self, number: u32, [drawing, mask]: [u128; 2]) -> Job {
-        let drawings = self.drawings.iter().map(|(_, pattern)| Made { path: pattern.path(number), name: drawing });
-        let mask = self.mask.iter().map(|pattern| Made { path: pattern.path(number), name: mask });
+    pub(crate) fn job(&self, number: u32, [drawing, mask]: [u128; 2]) -> Job {
+        let drawings = self.drawings.iter().map(|(_, pattern)| JobFile { path: pattern.path(number), name: drawing });
+        let mask = self.mask.iter().map(|pattern| JobFile { path: pattern.path(number), name: mask });
         Job { number, called: format!("frame {number}"), files: drawings.chain(mask).collect() }
     }
 
@@ -91,11 +91,11 @@ impl FrameFiles {
     ///
     /// # Errors
     /// [`Error::Output`]; as [`Illustration::drawing`].
-    pub fn write(&self, job: &Job, page: &Page, illustration: &Illustration, adapter: &str) -> Result<()> {
-        let seal = |made: &Made| Seal { job: made.name, adapter: adapter.to_owned() };
+    pub(crate) fn write(&self, job: &Job, page: &Page, illustration: &Illustration, adapter: &str) -> Result<()> {
+        let seal = |made: &JobFile| Seal { job: made.name, adapter: adapter.to_owned() };
         let formats = self.drawings.iter().map(|(format, _)| Some(*format)).chain([None]);
         // Another process may have made them meanwhile.
-        let missing: Vec<(Option<Format>, &Made)> =
+        let missing: Vec<(Option<Format>, &JobFile)> =
             formats.zip(&job.files).filter(|(_, made)| !made.is_there()).collect();
         let mut outputs = missing.iter().map(|(_, made)| work::create(&made.path)).collect::<Result<Vec<_>>>()?;
         let of_drawing = missing.iter().find(|(format, _)| format.is_some());
@@ -124,7 +124,7 @@ impl FrameFiles {
     ///
     /// # Errors
     /// [`Error::Setting`].
-    pub fn spare(&self, mut inputs: Taken, jobs: &[Job]) -> Result<()> {
+    pub(crate) fn spare(&self, mut inputs: Taken, jobs: &[Job]) -> Result<()> {
         jobs.iter().flat_map(|job| &job.files).try_for_each(|made| inputs.take(Setting::Output, &made.path))
     }
 

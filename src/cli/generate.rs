@@ -16,7 +16,7 @@ use crate::geo;
 
 /// Flags of `hachure generate`.
 #[derive(Debug, clap::Args)]
-pub struct GenerateArguments {
+pub(crate) struct GenerateArguments {
     #[command(subcommand)]
     what: What,
 }
@@ -49,7 +49,7 @@ enum What {
 ///
 /// # Errors
 /// [`crate::error::Error::Output`] where they cannot be written.
-pub fn run(arguments: &GenerateArguments, talk: &Talk) -> Result<()> {
+pub(crate) fn run(arguments: &GenerateArguments, talk: &Talk) -> Result<()> {
     match &arguments.what {
         What::Completions { shell } => {
             let mut command = Arguments::command().bin_name("hachure");

@@ -17,7 +17,7 @@ const WGS84: u32 = 4326;
 ///
 /// # Errors
 /// [`Error::Setting`] for a DEM of which nobody knows where on Earth it lies, in a format of degrees.
-pub fn crs(format: MapFormat, dem: &Dem) -> Result<Crs> {
+pub(super) fn crs(format: MapFormat, dem: &Dem) -> Result<Crs> {
     let georeference = dem.georeference();
     if !format.is_of_globe() {
         return Ok(georeference.file().as_defined());
@@ -40,7 +40,7 @@ pub fn crs(format: MapFormat, dem: &Dem) -> Result<Crs> {
 ///
 /// # Errors
 /// As [`mapped`]; [`Error::Setting`] for lines where the system has no places.
-pub fn lines(
+pub(super) fn lines(
     lines: &Lines,
     land: Option<&Land>,
     surface: &Surface,

@@ -3,7 +3,7 @@
 use std::env;
 
 use super::choices;
-use super::progress::Form;
+use super::progress::ProgressForm;
 use crate::error::{Error, Result, Setting};
 use crate::job::{Frames, Shard};
 use crate::message;
@@ -11,7 +11,7 @@ use crate::message;
 /// The flags, as typed.
 #[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "Jobs")]
-pub struct JobArguments {
+pub(crate) struct JobArguments {
     /// Make these alone, counted from 0: numbers and ranges, every fifth with :5
     #[arg(long, value_name = "3,5-10,0-99:5", value_parser = |text: &str| text.parse::<Frames>())]
     frames: Option<Frames>,
@@ -32,12 +32,12 @@ pub struct JobArguments {
     pub serve: bool,
     /// How progress is shown: a bar on a terminal, lines for programs on standard output, or none
     #[arg(long, value_parser = choices::progress(), default_value = choices::default_progress())]
-    pub progress: Form,
+    pub progress: ProgressForm,
 }
 
 /// Which jobs a process has to do.
 #[derive(Debug, Clone)]
-pub struct Share {
+pub struct JobShare {
     /// The jobs of which it has a share, where those are not all.
     pub part: Option<Frames>,
     /// Which share.
@@ -48,15 +48,15 @@ pub struct Share {
 
 impl JobArguments {
     /// Whether standard output holds something else than lines on the work.
-    pub fn fills_stdout(&self) -> bool {
-        self.list || self.serve || matches!(self.progress, Form::Json | Form::OpenJd)
+    pub(crate) fn fills_stdout(&self) -> bool {
+        self.list || self.serve || matches!(self.progress, ProgressForm::Json | ProgressForm::OpenJd)
     }
 
     /// Which of `count` jobs are to be done; they are called `frames` or `drawings`.
     ///
     /// # Errors
     /// [`Error::Setting`] for jobs beyond the last, and where the environment names no shard.
-    pub fn share(&self, count: u32, called: &str) -> Result<Share> {
+    pub(crate) fn share(&self, count: u32, called: &str) -> Result<JobShare> {
         let all = self.frames.clone().unwrap_or_else(|| Frames::first(count));
         check(&all, count, called)?;
         let from_env = || {
@@ -69,7 +69,7 @@ impl JobArguments {
             None if self.shard_from_env => from_env()?,
             None => Shard::WHOLE,
         };
-        Ok(Share { part: self.frames.clone(), shard, frames: shard.of(&all) })
+        Ok(JobShare { part: self.frames.clone(), shard, frames: shard.of(&all) })
     }
 }
 
@@ -77,7 +77,7 @@ impl JobArguments {
 ///
 /// # Errors
 /// [`Error::Setting`].
-pub fn check(frames: &Frames, count: u32, called: &str) -> Result<()> {
+pub(crate) fn check(frames: &Frames, count: u32, called: &str) -> Result<()> {
     frames.last().filter(|last| *last >= count).map_or(Ok(()), |last| {
         let what = format!("there is no {last}; the {count} {called} count from 0 to {}", count.saturating_sub(1));
         Err(Error::setting(Setting::Frames, what, "name those that there are"))

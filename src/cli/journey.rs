@@ -5,14 +5,14 @@ use super::talk::Talk;
 use crate::error::Result;
 use crate::ink::plot::Journey;
 use crate::ink::style::Plot;
-use crate::ink::{Drawing, Form, Layer};
+use crate::ink::{Drawing, Layer, StrokeForm};
 
 /// Says what the pens of a plotter will do with the layers of lines for them, where a style is meant for plotters.
 ///
 /// # Errors
 /// As [`Talk::say`].
-pub fn tell(drawing: &Drawing, plotter: &Plot, talk: &Talk) -> Result<()> {
-    let is_line = |layer: &&Layer| layer.form == Form::CentreLines;
+pub(crate) fn tell(drawing: &Drawing, plotter: &Plot, talk: &Talk) -> Result<()> {
+    let is_line = |layer: &&Layer| layer.form == StrokeForm::CentreLines;
     let layers: Vec<&Layer> = drawing.layers.iter().filter(is_line).collect();
     if layers.is_empty() || !plotter.centre_lines {
         return Ok(());

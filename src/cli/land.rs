@@ -7,7 +7,7 @@ use super::lines::LinesArguments;
 use super::talk::Talk;
 use super::values::number;
 use super::words::told;
-use crate::cache::{Cache, Hearing};
+use crate::cache::{Cache, CacheObserver};
 use crate::error::{Error, Message, Result, Setting};
 use crate::ink::Style;
 use crate::line::Land;
@@ -17,7 +17,7 @@ use crate::surface::Surface;
 /// The flags, as typed.
 #[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "Style")]
-pub struct LandArguments {
+pub(crate) struct LandArguments {
     #[arg(
         long, value_name = "NAME,…|none", value_parser = creases,
         help = format!(
@@ -37,7 +37,7 @@ pub struct LandArguments {
 
 /// Several kinds, each once, in one order.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Creases(pub Vec<Crease>);
+pub(crate) struct Creases(pub Vec<Crease>);
 
 /// What users call them.
 fn creases_word(creases: &[Crease]) -> String {
@@ -52,7 +52,7 @@ impl LandArguments {
     ///
     /// # Errors
     /// As [`LinesArguments::open`]; [`Error::Setting`] for an area of channels that nobody draws.
-    pub fn wanted(&self, style: &Style, allow_remote: bool) -> Result<LandWanted> {
+    pub(crate) fn wanted(&self, style: &Style, allow_remote: bool) -> Result<LandWanted> {
         let creases = self.creases.as_ref().map_or(&style.creases, |creases| &creases.0).clone();
         let channel_area = self.channel_area;
         if channel_area != ChannelArea::Auto && !creases.contains(&Crease::Drainage) {
@@ -70,7 +70,7 @@ impl LandArguments {
     }
 
     /// Whether it is said which creases are drawn, or none, whatever the style has.
-    pub fn says_creases(&self) -> bool {
+    pub(crate) fn says_creases(&self) -> bool {
         self.creases.is_some()
     }
 
@@ -78,7 +78,7 @@ impl LandArguments {
     ///
     /// # Errors
     /// [`Error::Setting`].
-    pub fn refuse_for_traced(&self) -> Result<()> {
+    pub(crate) fn refuse_for_traced(&self) -> Result<()> {
         let asks = self.creases.as_ref().is_some_and(|creases| !creases.0.is_empty());
         let has_area = self.channel_area != ChannelArea::Auto;
         let given =
@@ -91,7 +91,7 @@ impl LandArguments {
     ///
     /// # Errors
     /// As [`Cache::creases`], [`Shores::of`], [`Slopes::new`] and [`LinesArguments::read`].
-    pub fn land(
+    pub(crate) fn land(
         &self,
         wanted: &LandWanted,
         surface: &Arc<Surface>,
@@ -111,7 +111,8 @@ impl LandArguments {
         let known = Crease::ALL.into_iter().filter(|crease| wanted.slopes.is_some() || wanted.creases.contains(crease));
         let (known, asked): (Vec<Crease>, Vec<FlowLines>) = known.filter_map(|c| Some((c, found(&c)?))).unzip();
         let warn = |message: &Message| talk.warn(&told(message));
-        let hearing = Hearing { warn: &warn, progress: &|done| talk.progress("looking for creases", 0.2 + 0.1 * done) };
+        let hearing =
+            CacheObserver { warn: &warn, progress: &|done| talk.progress("looking for creases", 0.2 + 0.1 * done) };
         let mut found = match asked[..] {
             // Nothing is looked at for lines of the user's own.
             [] => Vec::new(),

@@ -6,7 +6,7 @@ use super::talk::Talk;
 use super::words;
 use crate::error::{Error, Result};
 use crate::job::{Job, name};
-use crate::plan::frame::Kept;
+use crate::plan::frame::KeptLattice;
 use crate::plan::{Frame, Plan};
 use crate::render::Estimate;
 use crate::surface::Surface;
@@ -14,7 +14,7 @@ use crate::view::Camera;
 
 /// A job.
 #[derive(Serialize)]
-struct Line {
+struct JobLine {
     n: u32,
     files: Vec<String>,
     job: String,
@@ -34,7 +34,7 @@ struct Line {
 ///
 /// # Errors
 /// As [`Frame::new`] and [`Estimate::of`].
-pub fn estimate(plan: &Plan, surface: &Surface, camera: &Camera, kept: &mut Kept) -> Result<Estimate> {
+pub(crate) fn estimate(plan: &Plan, surface: &Surface, camera: &Camera, kept: &mut KeptLattice) -> Result<Estimate> {
     Estimate::of(&Frame::new(plan, surface, camera, true, kept)?, surface)
 }
 
@@ -42,10 +42,10 @@ pub fn estimate(plan: &Plan, surface: &Surface, camera: &Camera, kept: &mut Kept
 ///
 /// # Errors
 /// As [`Talk::answer`].
-pub fn tell(job: &Job, estimate: Result<Estimate>, talk: &Talk) -> Result<()> {
+pub(crate) fn tell(job: &Job, estimate: Result<Estimate>, talk: &Talk) -> Result<()> {
     let error = estimate.as_ref().err().map(words::line);
     let Estimate { samples, facets, start, seconds, memory, device } = estimate.unwrap_or(Estimate::NOTHING);
-    let line = Line {
+    let line = JobLine {
         n: job.number,
         files: job.files.iter().map(|made| made.path.to_string_lossy().into_owned()).collect(),
         job: job.files.first().map(|made| name::text(made.name)).unwrap_or_default(),

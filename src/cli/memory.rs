@@ -74,7 +74,7 @@ pub fn prepare() {
 fn end(bytes: Option<usize>) -> ! {
     static ENDING: AtomicBool = AtomicBool::new(false);
     if !ENDING.swap(true, Ordering::SeqCst) {
-        let mut line = Line::default();
+        let mut line = FixedLine::default();
         line.push(b"error: out of memory");
         if let Some(bytes) = bytes {
             line.push(b": ");
@@ -88,18 +88,18 @@ fn end(bytes: Option<usize>) -> ! {
 }
 
 /// A line made without memory of its own.
-struct Line {
+struct FixedLine {
     bytes: [u8; 256],
     length: usize,
 }
 
-impl Default for Line {
+impl Default for FixedLine {
     fn default() -> Self {
         Self { bytes: [0; 256], length: 0 }
     }
 }
 
-impl Line {
+impl FixedLine {
     fn push(&mut self, bytes: &[u8]) {
         let room = self.bytes[self.length..].iter_mut();
         self.length += room.zip(bytes).map(|(to, from)| *to = *from).count();

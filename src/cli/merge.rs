@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use super::film;
-use super::progress::{Form, Progress};
+use super::progress::{Progress, ProgressForm};
 use super::talk::Talk;
 use crate::error::{Error, Result, Setting, shown};
 use crate::files::Taken;
@@ -24,7 +24,7 @@ Example:
 /// Flags of `hachure merge`, as typed.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
-pub struct MergeArguments {
+pub(crate) struct MergeArguments {
     /// The folder into which frames or drawings were made
     #[arg(value_name = "DIR")]
     folder: PathBuf,
@@ -38,7 +38,7 @@ pub struct MergeArguments {
 ///
 /// # Errors
 /// As [`Merged::all`]; [`Error::Incomplete`] where something is missing.
-pub fn run(arguments: &MergeArguments, talk: &Talk) -> Result<()> {
+pub(crate) fn run(arguments: &MergeArguments, talk: &Talk) -> Result<()> {
     let all = Merged::all(&arguments.folder)?;
     all.iter().try_for_each(|merged| tell(merged, &arguments.folder, talk))?;
     let missing: usize = all.iter().map(Merged::missing).sum();
@@ -86,6 +86,6 @@ fn make(video: &Path, all: &[Merged], folder: &Path, talk: &Talk) -> Result<()> 
     };
     let pictures: Vec<PathBuf> = pictures.iter().map(|path| folder.join(path)).collect();
     let film = film::of(video, fps, Taken::inputs(pictures.iter().map(PathBuf::as_path)), &pictures)?;
-    let progress = Progress::start(talk, Form::Bar, 0);
+    let progress = Progress::start(talk, ProgressForm::Bar, 0);
     film::make(&film, &pictures, inks, &progress, talk)
 }

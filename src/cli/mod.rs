@@ -1,60 +1,60 @@
 //! The command line, one file a subcommand: flags as typed become options checked.
 
-pub mod bare;
-pub mod batch;
-pub mod blank;
-pub mod cache;
-pub mod cells;
+pub(crate) mod bare;
+pub(crate) mod batch;
+pub(crate) mod blank;
+pub(crate) mod cache;
+pub(crate) mod cells;
 mod channels;
-pub mod choices;
-pub mod compare;
-pub mod device;
-pub mod draw;
+pub(crate) mod choices;
+pub(crate) mod compare;
+pub(crate) mod device;
+pub(crate) mod draw;
 mod draw_report;
-pub mod drawing;
-pub mod film;
-pub mod flat_earth;
-pub mod flight;
+pub(crate) mod drawing;
+pub(crate) mod film;
+pub(crate) mod flat_earth;
+pub(crate) mod flight;
 mod flight_keys;
 mod flight_plan;
-pub mod fly;
-pub mod frames;
-pub mod generate;
+pub(crate) mod fly;
+pub(crate) mod frames;
+pub(crate) mod generate;
 mod georeferenced;
-pub mod info;
-pub mod jobs;
-pub mod journey;
-pub mod land;
-pub mod lines;
-pub mod listing;
-pub mod memory;
-pub mod merge;
-pub mod norths;
-pub mod outputs;
-pub mod page;
+pub(crate) mod info;
+pub(crate) mod jobs;
+pub(crate) mod journey;
+pub(crate) mod land;
+pub(crate) mod lines;
+pub(crate) mod listing;
+pub(crate) mod memory;
+pub(crate) mod merge;
+pub(crate) mod norths;
+pub(crate) mod outputs;
+pub(crate) mod page;
 mod peaks;
-pub mod pick;
-pub mod plan;
-pub mod progress;
-pub mod reference;
-pub mod scene;
-pub mod serve;
-pub mod style;
-pub mod styles;
-pub mod talk;
-pub mod terrain;
-pub mod threads;
-pub mod values;
-pub mod view_report;
-pub mod viewpoint;
-pub mod views;
-pub mod words;
-pub mod work;
+pub(crate) mod pick;
+pub(crate) mod plan;
+pub(crate) mod progress;
+pub(crate) mod reference;
+pub(crate) mod scene;
+pub(crate) mod serve;
+pub(crate) mod style;
+pub(crate) mod styles;
+pub(crate) mod talk;
+pub(crate) mod terrain;
+pub(crate) mod threads;
+pub(crate) mod values;
+pub(crate) mod view_report;
+pub(crate) mod viewpoint;
+pub(crate) mod views;
+pub(crate) mod words;
+pub(crate) mod work;
 
 use clap::{Parser, Subcommand};
 
 use crate::error::Result;
-use talk::{Lines, Talk, TalkArguments};
+use talk::{LinesTo, Talk, TalkArguments};
 
 /// The end of `hachure --help`.
 const EXAMPLES: &str = "\
@@ -104,12 +104,12 @@ impl Arguments {
     /// How the program talks to its user, as asked.
     pub fn talk(&self) -> Talk {
         let lines = match &self.command {
-            Command::Draw(arguments) if arguments.fill_stdout() => Lines::Stderr,
-            Command::Batch(arguments) if arguments.jobs().fills_stdout() => Lines::Stderr,
-            Command::Fly(arguments) if arguments.jobs().fills_stdout() => Lines::Stderr,
+            Command::Draw(arguments) if arguments.fill_stdout() => LinesTo::Stderr,
+            Command::Batch(arguments) if arguments.jobs().fills_stdout() => LinesTo::Stderr,
+            Command::Fly(arguments) if arguments.jobs().fills_stdout() => LinesTo::Stderr,
             // Standard output holds the answer alone.
-            Command::Pick(_) => Lines::Stderr,
-            _ => Lines::Stdout,
+            Command::Pick(_) => LinesTo::Stderr,
+            _ => LinesTo::Stdout,
         };
         Talk::new(&self.talk, lines)
     }

@@ -11,7 +11,7 @@ const DECIMALS: i32 = 4;
 
 /// The norths at an eye, and which of them is in use.
 #[derive(Debug, Clone, Copy)]
-pub struct Norths {
+pub(crate) struct Norths {
     /// The one in use.
     pub north: North,
     /// Its bearing, degrees clockwise from the world's y axis.
@@ -25,7 +25,7 @@ impl Norths {
     ///
     /// # Errors
     /// [`Error::Setting`] where the north in use is unknown there.
-    pub fn at(georeference: &Georeference, north: North, eye: DVec2) -> Result<Self> {
+    pub(crate) fn at(georeference: &Georeference, north: North, eye: DVec2) -> Result<Self> {
         let bearings = georeference.bearings(eye)?;
         match bearings.of(north) {
             Some(bearing) => Ok(Self { north, bearing, bearings }),
@@ -34,13 +34,13 @@ impl Norths {
     }
 
     /// The azimuth in the world of one that is counted from the north in use.
-    pub fn in_world(&self, azimuth: f64) -> f64 {
+    pub(crate) fn in_world(&self, azimuth: f64) -> f64 {
         // What needs no turning stays as it is to the last bit.
         if self.bearing == 0.0 { azimuth } else { (azimuth + self.bearing).rem_euclid(360.0) }
     }
 
     /// An azimuth of the world counted from the north in use, so rounded that it prints short.
-    pub fn counted(&self, azimuth: f64) -> f64 {
+    pub(crate) fn counted(&self, azimuth: f64) -> f64 {
         if self.bearing == 0.0 {
             return azimuth;
         }
@@ -49,7 +49,7 @@ impl Norths {
     }
 
     /// How far the two norths are apart, where that is worth a line.
-    pub fn words(&self) -> Option<String> {
+    pub(crate) fn words(&self) -> Option<String> {
         let apart = convergence_in_words(self.bearings.convergence()?)?;
         let Self { north, .. } = self;
         Some(format!("azimuths are counted from {north} north; at the eye {apart} (--north {})", north.other()))

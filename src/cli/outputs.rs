@@ -14,7 +14,7 @@ use crate::render::Page;
 
 /// Flags that name files; `-` is standard output, for one of them.
 #[derive(Debug, Clone, clap::Args)]
-pub struct OutputArguments {
+pub(crate) struct OutputArguments {
     /// The drawing: a .png, .svg or .pdf, each as often as wanted; - is standard output, a PNG
     #[arg(short, long, value_name = "OUT.png|.svg|.pdf|-", required = true)]
     output: Vec<PathBuf>,
@@ -36,7 +36,7 @@ pub struct OutputArguments {
 
 /// How a drawing is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Format {
+pub(crate) enum Format {
     /// As a picture.
     Png,
     /// As vectors, a group a layer.
@@ -46,7 +46,7 @@ pub enum Format {
 }
 
 /// The files to write.
-pub struct Outputs {
+pub(crate) struct Outputs {
     drawings: Vec<(Format, Output)>,
     mask: Option<Output>,
     /// What made the mask, where it is to tell.
@@ -57,17 +57,17 @@ pub struct Outputs {
 
 impl OutputArguments {
     /// The drawing as the user named it, each of its files.
-    pub fn drawing(&self) -> String {
+    pub(crate) fn drawing(&self) -> String {
         self.output.iter().map(|path| shown(path)).collect::<Vec<_>>().join(", ")
     }
 
     /// Whether one of the drawings is a picture.
-    pub fn want_picture(&self) -> bool {
+    pub(crate) fn want_picture(&self) -> bool {
         self.output.iter().any(|path| Format::of(path) == Some(Format::Png))
     }
 
     /// The files of the drawing, and that of the mask.
-    pub fn files(&self) -> (&[PathBuf], Option<&Path>) {
+    pub(crate) fn files(&self) -> (&[PathBuf], Option<&Path>) {
         (&self.output, self.mask.as_deref())
     }
 
@@ -75,7 +75,7 @@ impl OutputArguments {
     ///
     /// # Errors
     /// Those of `renamed`.
-    pub fn renamed(&self, renamed: impl Fn(&Path) -> Result<PathBuf>) -> Result<Self> {
+    pub(crate) fn renamed(&self, renamed: impl Fn(&Path) -> Result<PathBuf>) -> Result<Self> {
         Ok(Self {
             output: self.output.iter().map(|path| renamed(path)).collect::<Result<_>>()?,
             mask: self.mask.as_deref().map(&renamed).transpose()?,
@@ -85,12 +85,12 @@ impl OutputArguments {
     }
 
     /// Whether the mask is asked for.
-    pub fn want_mask(&self) -> bool {
+    pub(crate) fn want_mask(&self) -> bool {
         self.mask.is_some()
     }
 
     /// Whether one of the files is standard output.
-    pub fn fill_stdout(&self) -> bool {
+    pub(crate) fn fill_stdout(&self) -> bool {
         self.output.iter().chain(&self.mask).chain(&self.json).any(|path| is_stdout(path))
     }
 
@@ -98,7 +98,7 @@ impl OutputArguments {
     ///
     /// # Errors
     /// [`Error::Setting`] for a name that cannot be meant.
-    pub fn check(&self) -> Result<()> {
+    pub(crate) fn check(&self) -> Result<()> {
         for path in &self.output {
             if Format::of(path).is_none() {
                 let what = format!("{} does not end in .png, .svg or .pdf", shown(path));
@@ -127,7 +127,7 @@ impl OutputArguments {
     ///
     /// # Errors
     /// [`Error::Setting`] for a name that is taken, [`Error::Output`] where a file cannot be written.
-    pub fn open(&self, mut taken: Taken) -> Result<Outputs> {
+    pub(crate) fn open(&self, mut taken: Taken) -> Result<Outputs> {
         let drawings = self.output.iter().map(|path| (Setting::Output, path));
         let beside = [
             (Setting::Mask, self.mask.as_ref()),
@@ -172,17 +172,17 @@ impl OutputArguments {
 
 impl Outputs {
     /// The same, the mask of which tells what made it.
-    pub fn with_mask_of(self, seal: Seal) -> Self {
+    pub(crate) fn with_mask_of(self, seal: Seal) -> Self {
         Self { of_mask: Some(seal), ..self }
     }
 
     /// Whether the report is asked for.
-    pub fn want_report(&self) -> bool {
+    pub(crate) fn want_report(&self) -> bool {
         self.json.is_some()
     }
 
     /// In which format the lines on the map are asked for, if they are.
-    pub fn map_format(&self) -> Option<MapFormat> {
+    pub(crate) fn map_format(&self) -> Option<MapFormat> {
         self.map.as_ref().map(|(format, _)| *format)
     }
 
@@ -190,7 +190,7 @@ impl Outputs {
     ///
     /// # Errors
     /// [`Error::Output`] where they cannot be written.
-    pub fn write_map(&mut self, crs: &Crs, lines: &[MapLine]) -> Result<()> {
+    pub(crate) fn write_map(&mut self, crs: &Crs, lines: &[MapLine]) -> Result<()> {
         self.map
             .as_mut()
             .map_or(Ok(()), |(format, file)| file.write(|out| out.write_all(&geo::write_lines(*format, crs, lines)?)))
@@ -201,7 +201,7 @@ impl Outputs {
     ///
     /// # Errors
     /// [`Error::Output`] where one cannot be written.
-    pub fn write(
+    pub(crate) fn write(
         &mut self,
         drawing: &ink::Drawing,
         px_per_mm: f64,
@@ -229,7 +229,7 @@ impl Outputs {
     ///
     /// # Errors
     /// [`Error::Output`] where one cannot be named.
-    pub fn publish(self) -> Result<()> {
+    pub(crate) fn publish(self) -> Result<()> {
         let drawings = self.drawings.into_iter().map(|(_, file)| file);
         let map = self.map.into_iter().map(|(_, file)| file);
         let mut outputs: Vec<_> = drawings.chain(self.mask).chain(map).chain(self.json).collect();
@@ -248,7 +248,7 @@ impl Format {
     ///
     /// # Errors
     /// Those of the writer.
-    pub fn write(self, drawing: &ink::Drawing, px_per_mm: f64, out: impl Write) -> io::Result<()> {
+    pub(crate) fn write(self, drawing: &ink::Drawing, px_per_mm: f64, out: impl Write) -> io::Result<()> {
         match self {
             Self::Png => ink::write_png(drawing, px_per_mm, out),
             Self::Svg => ink::write_svg(drawing, out),
@@ -257,7 +257,7 @@ impl Format {
     }
 
     /// The format that a name asks for.
-    pub fn of(path: &Path) -> Option<Self> {
+    pub(crate) fn of(path: &Path) -> Option<Self> {
         let ends_in = |extension: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(extension));
         let known = [("png", Self::Png), ("svg", Self::Svg), ("pdf", Self::Pdf)];
         let named = known.into_iter().find(|(extension, _)| ends_in(extension)).map(|(_, format)| format);

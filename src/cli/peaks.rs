@@ -10,7 +10,7 @@ use crate::relief::{Base, Peak, peaks};
 ///
 /// # Errors
 /// As [`peaks()`] and [`Georeference::lonlat`](crate::dem::Georeference::lonlat).
-pub fn told(dem: &Dem, count: usize) -> Result<String> {
+pub(super) fn told(dem: &Dem, count: usize) -> Result<String> {
     let peaks = peaks(dem, count, 1.0)?;
     let mut lines = match peaks.len() {
         0 => "peaks      none: all samples are level, or void".to_owned(),

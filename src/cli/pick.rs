@@ -41,7 +41,7 @@ Examples:
 /// Flags of `hachure pick`, as typed.
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = EXAMPLES)]
-pub struct PickArguments {
+pub(crate) struct PickArguments {
     #[command(flatten)]
     terrain: TerrainArguments,
     /// The pixel that is asked about: its column and row in the frame, counted from 0,0 at the top left
@@ -78,7 +78,7 @@ trait Answer: Serialize {
 ///
 /// # Errors
 /// Whatever went wrong; [`Error::Setting`](crate::error::Error::Setting) for a pixel beside the page and a place without land.
-pub fn run(arguments: &PickArguments, talk: &Talk) -> Result<()> {
+pub(crate) fn run(arguments: &PickArguments, talk: &Talk) -> Result<()> {
     match arguments.of {
         // It may be given in --crs alone.
         Some(_) => arguments.view.crs().map(drop)?,

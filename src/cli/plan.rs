@@ -45,7 +45,7 @@ struct PlanReport {
 }
 
 /// A plan, drawn.
-pub struct Planned {
+pub(crate) struct Planned {
     /// Its strokes.
     pub drawing: Drawing,
     /// Pixels of pictures for each millimetre.
@@ -59,7 +59,7 @@ pub struct Planned {
 ///
 /// # Errors
 /// [`Error::Setting`]; as [`styles::find`](crate::ink::styles::find).
-pub fn check(arguments: &DrawArguments) -> Result<(Style, LandWanted)> {
+pub(crate) fn check(arguments: &DrawArguments) -> Result<(Style, LandWanted)> {
     arguments.outputs.check()?;
     if arguments.outputs.want_mask() {
         let what = "a mask is of what an eye sees, and a plan has none";
@@ -76,7 +76,13 @@ pub fn check(arguments: &DrawArguments) -> Result<(Style, LandWanted)> {
 ///
 /// # Errors
 /// As [`check`] and [`Overhead::land`]; [`Error::Setting`] for a scale that fits no page.
-pub fn draw(arguments: &DrawArguments, scale: f64, dem: &Dem, land: Option<&Land>, talk: &Talk) -> Result<Planned> {
+pub(crate) fn draw(
+    arguments: &DrawArguments,
+    scale: f64,
+    dem: &Dem,
+    land: Option<&Land>,
+    talk: &Talk,
+) -> Result<Planned> {
     let (style, wanted) = check(arguments)?;
     let area = arguments.area.unwrap_or(dem.extent());
     let layout = layout(area, scale, inset(style.broadest()) + style.wobble.reach, arguments)?;
@@ -101,7 +107,7 @@ pub fn draw(arguments: &DrawArguments, scale: f64, dem: &Dem, land: Option<&Land
 ///
 /// # Errors
 /// Whatever went wrong; nothing stands under a final name then.
-pub fn run(arguments: &DrawArguments, scale: f64, talk: &Talk) -> Result<()> {
+pub(crate) fn run(arguments: &DrawArguments, scale: f64, talk: &Talk) -> Result<()> {
     let (_, wanted) = check(arguments)?;
     let started = Instant::now();
     let cache = arguments.cache.cache();

@@ -25,7 +25,7 @@ const SILENCE: Duration = Duration::from_secs(25);
 
 /// How it is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Form {
+pub enum ProgressForm {
     /// As a bar on a terminal.
     #[default]
     Bar,
@@ -37,7 +37,7 @@ pub enum Form {
     None,
 }
 
-impl Form {
+impl ProgressForm {
     /// Tells a farm why the work ended, were it before it began; what else reads lines hears of that on standard error.
     pub fn told(self, done: Result<()>) -> Result<()> {
         if let (Self::OpenJd, Err(error)) = (self, &done) {
@@ -50,10 +50,10 @@ impl Form {
 /// How far the jobs have come.
 pub struct Progress<'a> {
     talk: &'a Talk,
-    form: Form,
+    form: ProgressForm,
     jobs: usize,
     began: Instant,
-    counts: Mutex<Counts>,
+    counts: Mutex<JobCounts>,
     adapter: Mutex<Option<String>>,
     spoken: Arc<Mutex<Instant>>,
     /// Dropped with this, it ends who breaks silences.
@@ -62,7 +62,7 @@ pub struct Progress<'a> {
 
 /// What became of jobs.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
-pub struct Counts {
+pub struct JobCounts {
     /// Made.
     pub made: usize,
     /// There already.
@@ -71,7 +71,7 @@ pub struct Counts {
     pub failed: usize,
 }
 
-impl Counts {
+impl JobCounts {
     fn all(self) -> usize {
         self.made + self.skipped + self.failed
     }
@@ -79,9 +79,9 @@ impl Counts {
 
 impl<'a> Progress<'a> {
     /// Begins so many jobs.
-    pub fn start(talk: &'a Talk, form: Form, jobs: usize) -> Self {
+    pub fn start(talk: &'a Talk, form: ProgressForm, jobs: usize) -> Self {
         let spoken = Arc::new(Mutex::new(Instant::now()));
-        let silence = (form == Form::Json).then(|| break_silences(&spoken));
+        let silence = (form == ProgressForm::Json).then(|| break_silences(&spoken));
         let progress = Self {
             talk,
             form,
@@ -100,7 +100,7 @@ impl<'a> Progress<'a> {
     /// The end: all was done, or an error ended it.
     pub fn end(&self, error: Option<&Error>) {
         let counts = self.counts();
-        let Counts { made, skipped, failed } = counts;
+        let JobCounts { made, skipped, failed } = counts;
         let (left, s) = (self.jobs.saturating_sub(counts.all()), rounded(self.began.elapsed().as_secs_f64()));
         let error = error.map(words::line);
         self.line(|| {
@@ -150,9 +150,9 @@ impl<'a> Progress<'a> {
         let share = counts.all() as f64 / self.jobs.max(1) as f64;
         match (self.form, event) {
             // The end is told with the last line.
-            (Form::Bar, _) => self.talk.progress(&stage(), share.min(0.999)),
+            (ProgressForm::Bar, _) => self.talk.progress(&stage(), share.min(0.999)),
             // Thousands may be skipped in a second, each a message to a farm.
-            (Form::OpenJd, Event::Made(..) | Event::Failed(..)) => {
+            (ProgressForm::OpenJd, Event::Made(..) | Event::Failed(..)) => {
                 self.openjd("progress", rounded(share * 100.0));
                 self.openjd("status", stage());
             }
@@ -161,26 +161,26 @@ impl<'a> Progress<'a> {
     }
 
     /// What became of the jobs so far.
-    pub fn counts(&self) -> Counts {
+    pub fn counts(&self) -> JobCounts {
         *lock(&self.counts)
     }
 
     /// A motion picture is made of the frames, of which a share is done.
     pub fn film(&self, share: f64) {
-        if self.form == Form::Bar {
+        if self.form == ProgressForm::Bar {
             self.talk.progress("making the motion picture", share.min(0.999));
         }
     }
 
     /// A message of one line.
     fn openjd(&self, key: &str, value: impl Display) {
-        if self.form == Form::OpenJd {
+        if self.form == ProgressForm::OpenJd {
             say(&format!("openjd_{key}: {value}"));
         }
     }
 
     fn line(&self, line: impl FnOnce() -> Value) {
-        if self.form == Form::Json {
+        if self.form == ProgressForm::Json {
             *lock(&self.spoken) = Instant::now();
             say(&line());
         }
@@ -215,12 +215,12 @@ fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
 }
 
 /// With three decimals.
-pub fn rounded(number: f64) -> f64 {
+pub(crate) fn rounded(number: f64) -> f64 {
     (number * 1e3).round() / 1e3
 }
 
 /// Seconds in words.
-pub fn duration(seconds: f64) -> String {
+pub(crate) fn duration(seconds: f64) -> String {
     let whole = seconds.round() as u64;
     match (whole / 3600, whole / 60 % 60, whole % 60) {
         (0, 0, seconds) => format!("{seconds} s"),

@@ -3,12 +3,12 @@
 //! A paragraph is one line, which help wraps; items of lists begin with spaces, so that man pages keep them apart.
 
 /// What stands below the flags in long help, with empty lines between.
-pub fn of(parts: &[&str]) -> String {
+pub(crate) fn of(parts: &[&str]) -> String {
     parts.join("\n\n")
 }
 
 /// Of every subcommand.
-pub const ALL: &str = "\
+pub(crate) const ALL: &str = "\
 Exit codes: 0 done; 1 failed, with one line that says what, where and the remedy; 2 wrong usage; 75 ended by a signal, or the \
 device was lost: try again.
 
@@ -20,7 +20,7 @@ One output may be `-`: standard output, which then gets the whole file and nothi
 error. A reader that goes away is no error.";
 
 /// Of `hachure info`: what is read.
-pub const READ: &str = "\
+pub(crate) const READ: &str = "\
 Formats, with what each was tested in:
   - GeoTIFF, BigTIFF: metres, feet, degrees; int16, float32, float64; Deflate, LZW; tiles, masks, scale and offset
   - Esri ASCII grid: .asc, .asc.gz; with and without .prj
@@ -81,7 +81,7 @@ HDF5 files that keep samples in another local file. Sizes and memory are checked
 reads a part, and nothing else is touched. How DEMs that do not fit --memory are read, `hachure cache --help` says.";
 
 /// Of `hachure cache`: large DEMs.
-pub const KEPT: &str = "\
+pub(crate) const KEPT: &str = "\
 Kept are truths, drainage and ridges, slope lines of first views, and of a DEM that stays in its files what takes a look at \
 every sample; on Linux in ~/.cache/hachure. A file may be removed at any time; one that is damaged, or no plain file, is noticed \
 and made anew. One process makes what others wait for. Beyond --cache-size what is in use or just made stays.
@@ -103,7 +103,7 @@ file that changes or breaks while it is drawn fails the frame.
 once: warp it to a map first (gdalwarp), or fill it (gdal_fillnodata.py). Tiled files come in best.";
 
 /// Of `hachure draw`: what its files hold.
-pub const DRAWN: &str = "\
+pub(crate) const DRAWN: &str = "\
 A drawing is a sheet with layers; a layer has one pen and strokes, all in millimetres. From bottom to top, which is the order of \
 plotting, stand hidden lines, hachures, lines of the land (shores, drainage, ridges, your own), the border, and silhouettes; \
 --split parts each by distance, pens of one width part it by width. Names begin with the number: `2 silhouette 0.5 mm`. No \
@@ -125,7 +125,7 @@ A page without a line is warned of, with flags of a view that has lines. Of land
 high on a flat Earth: d^2 / 2R, 196 m at 50 km (`flat_earth` in --json).";
 
 /// Of `hachure styles`: files of styles, and what they draw.
-pub const STYLES: &str = "\
+pub(crate) const STYLES: &str = "\
 A style of your own is a TOML file, which may say as little as
   base = \"atlas\"
   min-gap = 0.6            # millimetres, as all lengths
@@ -169,14 +169,14 @@ shorter is left; they stand in an order with little travel. What the pen will do
 before and after, and the time at the style's speeds.";
 
 /// Of `hachure fly`: the way.
-pub const FLOWN: &str = "\
+pub(crate) const FLOWN: &str = "\
 The way is a centripetal Catmull-Rom spline, flown at constant ground speed or in the times of its keys; heights above ground \
 follow the smoothed land, and the eye is lifted smoothly where it would come nearer to the drawn surface than --clearance. A \
 camera depends on the flight and its number alone, so that frames drawn on different machines agree. Motion pictures are made \
 of the frames' files, which stay: .gif with the ramps from the paper to each pen as its palette and delays that add up.";
 
 /// Of `hachure batch`: its file.
-pub const LIST: &str = "\
+pub(crate) const LIST: &str = "\
 The file is TOML. Its keys are the flags of `hachure draw` without their dashes, its paths count from the folder in which the \
 command runs:
 
@@ -194,7 +194,7 @@ command runs:
 A drawing that says false to a key leaves the default out. The manifest stands in the folder of the first drawing.";
 
 /// Of subcommands that make many drawings.
-pub const JOBS: &str = "\
+pub(crate) const JOBS: &str = "\
 Each file bears the name of all that it is made of: what the DEM's files hold, how they are read, way or view, style, page, and \
 the program's sources (PNG: text chunks, SVG: metadata, PDF: document information). A file that is whole and bears the right \
 name is not made again, without a look at the DEM: a run that was cut off goes on where it ended. The adapter is noted there, \
@@ -210,7 +210,7 @@ standard input, by itself when nobody reads its answers any more, and with 75 wh
 are sent to another. What --list says holds for two cores and a software driver.";
 
 /// Of `hachure compare`: truth and figures.
-pub const COMPARED: &str = "\
+pub(crate) const COMPARED: &str = "\
 Each drawing is measured against truth, an independent reference, and by its time. report.html needs no network: the plot of \
 error against time, which method to use when, a table that sorts, every picture at full size to lay over another, how sure truth \
 is of itself. Beside it stand results.json, results.csv, error-time.svg, the mask of each run (_mask.png), its difference from \

@@ -24,7 +24,7 @@ use crate::surface::Surface;
 ///
 /// # Errors
 /// As [`TerrainArguments::read`]; where there is nothing to draw.
-pub fn surface(terrain: &TerrainArguments, reading: Reading, talk: &Talk) -> Result<Surface> {
+pub(crate) fn surface(terrain: &TerrainArguments, reading: Reading, talk: &Talk) -> Result<Surface> {
     let dem = terrain.read(reading, talk)?;
     // The renderer holds all samples on the device.
     talk.progress("computing normals", 0.1);
@@ -38,7 +38,7 @@ pub fn surface(terrain: &TerrainArguments, reading: Reading, talk: &Talk) -> Res
 ///
 /// # Errors
 /// As [`Cache::prepare`]; where there is nothing to draw.
-pub fn prepare(surface: &Surface, cache: &Cache, talk: &Talk) -> Result<()> {
+pub(crate) fn prepare(surface: &Surface, cache: &Cache, talk: &Talk) -> Result<()> {
     cache.prepare(surface, &|message| talk.warn(&told(message)), &|done| {
         talk.progress("looking at every sample, once for this file", 0.1 + 0.1 * done);
     })?;
@@ -49,7 +49,7 @@ pub fn prepare(surface: &Surface, cache: &Cache, talk: &Talk) -> Result<()> {
 ///
 /// # Errors
 /// As [`ViewArguments::view`].
-pub fn look(
+pub(crate) fn look(
     view: &ViewArguments,
     drawing: &DrawingArguments,
     surface: &Surface,
@@ -72,7 +72,7 @@ pub fn look(
 ///
 /// # Errors
 /// As [`LandArguments::land`](super::land::LandArguments::land).
-pub fn land(
+pub(crate) fn land(
     drawing: &DrawingArguments,
     wanted: &LandWanted,
     terrain: &TerrainArguments,
@@ -93,7 +93,7 @@ pub fn land(
 ///
 /// # Errors
 /// As [`prepare`].
-pub fn prepare_and_open(
+pub(crate) fn prepare_and_open(
     surface: &Surface,
     cache: &Cache,
     device: &DeviceArguments,

@@ -13,10 +13,10 @@ use std::time::Instant;
 use serde::Serialize;
 use serde_json::Value;
 
-use super::progress::{Counts, Form, Progress, rounded};
+use super::progress::{JobCounts, Progress, ProgressForm, rounded};
 use super::talk::Talk;
 use super::words;
-use super::work::Work;
+use super::work::JobWork;
 use crate::error::{Error, Result};
 use crate::files::{reader, signals};
 use crate::job::serve::{self, Refusal, Request, WANTED};
@@ -27,7 +27,7 @@ struct Answer {
     id: Value,
     ok: bool,
     #[serde(flatten)]
-    counts: Counts,
+    counts: JobCounts,
     ms: f64,
     /// None where nothing was drawn.
     adapter: Option<String>,
@@ -40,7 +40,7 @@ struct Answer {
 
 /// From here on the process ends when nobody is left to read its answers, for nobody else would end it: at once where none is
 /// due, as at the end of standard input, else as a signal ends it.
-pub fn end_unread() {
+pub(crate) fn end_unread() {
     let watch = || {
         reader::wait_until_gone();
         // Who was asked already is about to end.
@@ -58,11 +58,11 @@ pub fn end_unread() {
 /// What ends the process: [`Error::DeviceLost`], [`Error::Ended`]; [`Error::Input`] where requests cannot be read,
 /// [`Error::Output`] where no job can write its files, or the answers cannot be written.
 pub fn run(
-    work: &Work,
+    work: &JobWork,
     talk: &Talk,
     mut requests: impl BufRead,
     mut answers: impl Write,
-    mut make: impl FnMut(&Work, &Progress, &Talk) -> Result<()>,
+    mut make: impl FnMut(&JobWork, &Progress, &Talk) -> Result<()>,
 ) -> Result<()> {
     work.prepare()?;
     talk.say(&format!("jobs are awaited on standard input, a line each: {WANTED}"))?;
@@ -71,7 +71,7 @@ pub fn run(
         let began = Instant::now();
         let (answer, done) = match request {
             Ok(Request { id, frames }) => {
-                let progress = Progress::start(&talk, Form::None, frames.numbers().len());
+                let progress = Progress::start(&talk, ProgressForm::None, frames.numbers().len());
                 let done = work.part(&frames).and_then(|part| make(&part, &progress, &talk));
                 (Answer::of(id, &progress, began, done.as_ref().err()), done)
             }
@@ -103,7 +103,7 @@ impl Answer {
 
     /// That a line is no job.
     fn refusing(Refusal { id, why }: Refusal) -> Self {
-        let (counts, exit) = (Counts::default(), Some(words::USAGE));
+        let (counts, exit) = (JobCounts::default(), Some(words::USAGE));
         Self { id, ok: false, counts, ms: 0.0, adapter: None, exit, error: Some(why) }
     }
 

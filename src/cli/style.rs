@@ -11,7 +11,7 @@ use crate::plan::Tone;
 /// The flags, as typed.
 #[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "Style")]
-pub struct StyleArguments {
+pub(crate) struct StyleArguments {
     #[arg(
         long, value_name = "NAME|FILE.toml",
         help = format!("The look: {}, or a file; see `hachure styles --help` [default: {}]",
@@ -51,7 +51,7 @@ pub struct StyleArguments {
 
 /// What becomes of lines that nearer land hides.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Hidden {
+pub(crate) enum Hidden {
     /// They are left out.
     #[default]
     Off,
@@ -68,19 +68,19 @@ impl StyleArguments {
     ///
     /// # Errors
     /// As [`styles::find`].
-    pub fn style(&self) -> Result<Style> {
+    pub(crate) fn style(&self) -> Result<Style> {
         let mut style = self.style.as_deref().map_or_else(|| Ok(Style::default()), styles::find)?;
         style.hachures.tone = self.hachures.unwrap_or(style.hachures.tone);
         Ok(style)
     }
 
     /// Whether hidden lines are drawn.
-    pub fn draws_hidden(&self) -> bool {
+    pub(crate) fn draws_hidden(&self) -> bool {
         self.hidden == Hidden::Dashed
     }
 
     /// Distances that part layers, metres.
-    pub fn split(&self) -> &[f64] {
+    pub(crate) fn split(&self) -> &[f64] {
         self.split.as_ref().map_or(&[], |split| &split.0)
     }
 
@@ -88,7 +88,7 @@ impl StyleArguments {
     ///
     /// # Errors
     /// [`Error::Setting`].
-    pub fn refuse_for_traced(&self) -> Result<()> {
+    pub(crate) fn refuse_for_traced(&self) -> Result<()> {
         let given = [
             (Setting::MinJump, self.min_jump.is_some()),
             (Setting::MinGap, self.min_gap.is_some()),
@@ -100,7 +100,7 @@ impl StyleArguments {
     }
 
     /// How sparing contours are where a frame has so many pixels for each millimetre.
-    pub fn economy(&self, style: &Style, px_per_mm: f64) -> Economy {
+    pub(crate) fn economy(&self, style: &Style, px_per_mm: f64) -> Economy {
         let Economy { min_jump, min_gap } = style.economy(px_per_mm);
         let given = self.min_gap.map(|gap| match gap {
             Gap::Px(px) => px,

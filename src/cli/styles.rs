@@ -16,7 +16,7 @@ Examples:
 /// Flags of `hachure styles`.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES, after_long_help = reference::of(&[reference::STYLES, EXAMPLES]))]
-pub struct StylesArguments {
+pub(crate) struct StylesArguments {
     /// Print this style, whole: a name, or a file that ends in .toml
     #[arg(value_name = "NAME|FILE.toml", conflicts_with = "schema")]
     style: Option<String>,
@@ -29,7 +29,7 @@ pub struct StylesArguments {
 ///
 /// # Errors
 /// As [`styles::find`].
-pub fn run(arguments: &StylesArguments, talk: &Talk) -> Result<()> {
+pub(crate) fn run(arguments: &StylesArguments, talk: &Talk) -> Result<()> {
     if arguments.schema {
         let schema = schemars::schema_for!(Style);
         return talk.answer(&serde_json::to_string_pretty(&schema).map_err(|e| Error::mistake(e.to_string()))?);

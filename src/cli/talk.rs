@@ -57,7 +57,7 @@ enum Loudness {
 
 /// Where lines go.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Lines {
+pub enum LinesTo {
     /// To standard output.
     Stdout,
     /// To standard error: standard output holds a file.
@@ -68,14 +68,14 @@ pub enum Lines {
 #[derive(Debug)]
 pub struct Talk {
     loudness: Loudness,
-    lines: Lines,
+    lines: LinesTo,
     began: Instant,
     bar: Mutex<Option<ProgressBar>>,
 }
 
 impl Talk {
     /// As loud as the flags ask.
-    pub fn new(arguments: &TalkArguments, lines: Lines) -> Self {
+    pub fn new(arguments: &TalkArguments, lines: LinesTo) -> Self {
         // clap sees a conflict of the two only where they stand together: in `-q draw -v` the quiet one wins.
         let loudness = match arguments {
             TalkArguments { quiet: true, .. } => Loudness::Quiet,
@@ -115,8 +115,8 @@ impl Talk {
     pub fn say(&self, line: &str) -> Result<()> {
         match self.lines {
             _ if self.loudness <= Loudness::Hushed => Ok(()),
-            Lines::Stdout => self.answer(&plain(line.to_owned())),
-            Lines::Stderr => {
+            LinesTo::Stdout => self.answer(&plain(line.to_owned())),
+            LinesTo::Stderr => {
                 self.aside(&plain(line.to_owned()));
                 Ok(())
             }

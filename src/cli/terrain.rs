@@ -8,13 +8,13 @@ use super::words::told;
 use crate::cache::Cache;
 use crate::dem::Dem;
 use crate::error::{Error, Result, Setting, shown};
-use crate::geo::{ElevationUnit, Encoding, Nodata, Order, ReadOptions, Reading, Stage};
+use crate::geo::{ElevationUnit, Encoding, Nodata, Order, ReadOptions, ReadStage, Reading};
 use crate::job::Content;
 use crate::job::name::Naming;
 
 /// Which files, and what of them.
 #[derive(Debug, Clone, clap::Args)]
-pub struct TerrainArguments {
+pub(crate) struct TerrainArguments {
     /// The DEM: any raster; several are laid together, the finest on top, of those on one grid the last
     ///
     /// `hachure info --help` says which formats are read, and what is done with a file.
@@ -82,12 +82,12 @@ pub struct TerrainArguments {
 
 impl TerrainArguments {
     /// Whether files on a network may be opened.
-    pub fn allows_remote(&self) -> bool {
+    pub(crate) fn allows_remote(&self) -> bool {
         self.allow_remote
     }
 
     /// How to read, with this exaggeration; what is found of steps is kept in `cache`.
-    pub fn options(&self, exaggeration: f64, cache: Cache) -> ReadOptions {
+    pub(crate) fn options(&self, exaggeration: f64, cache: Cache) -> ReadOptions {
         ReadOptions {
             crop: self.crop,
             exaggeration,
@@ -110,7 +110,7 @@ impl TerrainArguments {
     }
 
     /// How the DEM is read, as far as its heights depend on it.
-    pub fn read_as(&self) -> String {
+    pub(crate) fn read_as(&self) -> String {
         let Self { crop, band, cell, order, cell_of, resample, no_warp, fill_voids, .. } = self;
         let Self { elevation_unit, nodata, encoding, keep_steps, generalise, .. } = self;
         let grid = (crop, band, cell, order, cell_of, resample, no_warp, fill_voids);
@@ -123,7 +123,7 @@ impl TerrainArguments {
 
     /// Which files are read, wherever from they are named; of which some may lie outside a crop, but not of sheets, which
     /// share them.
-    pub fn asked(&self) -> u128 {
+    pub(crate) fn asked(&self) -> u128 {
         let absolute = |path: &PathBuf| std::path::absolute(path).unwrap_or_else(|_| path.clone());
         let dems: Vec<PathBuf> = self.dems.iter().map(absolute).collect();
         let crop = self.crop.filter(|_| !self.is_sheet);
@@ -134,7 +134,7 @@ impl TerrainArguments {
     ///
     /// # Errors
     /// As [`Self::open`] where it is not known, and [`Cache::content`].
-    pub fn content(&self, exaggeration: f64, cache: &Cache, talk: &Talk) -> Result<Content> {
+    pub(crate) fn content(&self, exaggeration: f64, cache: &Cache, talk: &Talk) -> Result<Content> {
         let of = self.dems.iter().map(|dem| shown(dem)).collect::<Vec<_>>().join(", ");
         let files = || {
             let whole = Self { crop: self.crop.filter(|_| !self.is_sheet), ..self.clone() };
@@ -148,7 +148,7 @@ impl TerrainArguments {
     ///
     /// # Errors
     /// [`Error::Setting`] where it is a part already.
-    pub fn cropped(&self, crop: [f64; 4]) -> Result<Self> {
+    pub(crate) fn cropped(&self, crop: [f64; 4]) -> Result<Self> {
         match self.crop {
             None => Ok(Self { crop: Some(crop), is_sheet: true, ..self.clone() }),
             Some(_) => Err(Error::setting(Setting::Crop, "each sheet is a part by itself", "leave it out")),
@@ -159,7 +159,7 @@ impl TerrainArguments {
     ///
     /// # Errors
     /// As [`Reading::new`].
-    pub fn open(&self, files: &[PathBuf], exaggeration: f64, cache: Cache) -> Result<Reading> {
+    pub(crate) fn open(&self, files: &[PathBuf], exaggeration: f64, cache: Cache) -> Result<Reading> {
         Reading::new(files, &self.options(exaggeration, cache))
     }
 
@@ -167,7 +167,7 @@ impl TerrainArguments {
     ///
     /// # Errors
     /// As [`Reading::finish`].
-    pub fn read(&self, reading: Reading, talk: &Talk) -> Result<Dem> {
+    pub(crate) fn read(&self, reading: Reading, talk: &Talk) -> Result<Dem> {
         let dem = reading.finish(&|stage, share| talk.progress(words(stage), share))?;
         dem.history().assumed().iter().for_each(|clause| talk.warn(&format!("assumed that {}", told(clause))));
         dem.history().converted().iter().try_for_each(|clause| talk.say(&format!("converted: {}", told(clause))))?;
@@ -181,7 +181,7 @@ impl TerrainArguments {
 ///
 /// # Errors
 /// As [`Dem::survey`], which looks where nobody has looked before.
-pub fn warn_of_survey(dem: &Dem, talk: &Talk) -> Result<()> {
+pub(crate) fn warn_of_survey(dem: &Dem, talk: &Talk) -> Result<()> {
     if dem.is_filed() {
         let survey = dem.survey(&|_| ())?;
         survey.assumed.iter().for_each(|clause| talk.warn(&format!("assumed that {}", told(clause))));
@@ -190,12 +190,12 @@ pub fn warn_of_survey(dem: &Dem, talk: &Talk) -> Result<()> {
 }
 
 /// A stage of reading, for its progress bar.
-pub fn words(stage: Stage) -> &'static str {
+pub(crate) fn words(stage: ReadStage) -> &'static str {
     match stage {
-        Stage::Read => "reading the DEM",
-        Stage::Warp => "warping it to metres",
-        Stage::Fill => "filling voids",
-        Stage::Look => "looking for steps",
-        Stage::Smooth => "smoothing heights, once for this file",
+        ReadStage::Read => "reading the DEM",
+        ReadStage::Warp => "warping it to metres",
+        ReadStage::Fill => "filling voids",
+        ReadStage::Look => "looking for steps",
+        ReadStage::Smooth => "smoothing heights, once for this file",
     }
 }

@@ -25,12 +25,12 @@ pub struct Standpoint {
     /// East and north, in the units of the CRS it is given in.
     pub place: DVec2,
     /// Above what, metres.
-    pub height: Height,
+    pub height: GivenHeight,
 }
 
 /// A height in exaggerated metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Height {
+pub enum GivenHeight {
     /// Above the zero of the DEM.
     Absolute(f64),
     /// Above the drawn surface at that place.
@@ -122,7 +122,7 @@ pub fn lonlat(text: &str) -> Result<Standpoint, String> {
 fn standpoint(text: &str, form: &str) -> Result<Standpoint, String> {
     let [x, y, z] = numbers(text, form)?;
     let above = text.rsplit(',').next().is_some_and(|z| z.trim().starts_with('+'));
-    let height = if above { Height::AboveGround(z) } else { Height::Absolute(z) };
+    let height = if above { GivenHeight::AboveGround(z) } else { GivenHeight::Absolute(z) };
     Ok(Standpoint { place: DVec2::new(x, y), height })
 }
 
@@ -151,9 +151,9 @@ pub fn pixel(text: &str) -> Result<[u32; 2], String> {
 }
 
 /// `Z` or `+H`.
-pub fn height(text: &str) -> Result<Height, String> {
+pub fn height(text: &str) -> Result<GivenHeight, String> {
     let metres = number(text)?;
-    Ok(if text.trim().starts_with('+') { Height::AboveGround(metres) } else { Height::Absolute(metres) })
+    Ok(if text.trim().starts_with('+') { GivenHeight::AboveGround(metres) } else { GivenHeight::Absolute(metres) })
 }
 
 /// Metres that are kept free.

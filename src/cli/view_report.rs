@@ -7,7 +7,7 @@ use crate::dem::{Georeference, North};
 
 /// A view, its eye on the map and on the globe, and its projection.
 #[derive(Serialize)]
-pub struct ViewReport {
+pub(crate) struct ViewReport {
     eye: [f64; 3],
     lonlat: Option<[f64; 2]>,
     /// What `azimuth` is counted from.
@@ -21,7 +21,7 @@ pub struct ViewReport {
     fov: f64,
     size: [u32; 2],
     projection: &'static str,
-    page: Page,
+    page: PageReport,
     /// Name and number of the CRS whose coordinates, times `axes` and `metres_per_unit`, are the world's.
     crs: String,
     crs_wkt: String,
@@ -36,7 +36,7 @@ pub struct ViewReport {
 
 /// The numbers of the projection: unit vectors of the world, and pixels.
 #[derive(Serialize)]
-struct Page {
+struct PageReport {
     right: [f64; 3],
     up: [f64; 3],
     forward: [f64; 3],
@@ -54,7 +54,7 @@ struct FileReport {
 
 impl ViewReport {
     /// Of a view of a DEM that lies there, with heights times `exaggeration`.
-    pub fn of(view: &View, georeference: &Georeference, exaggeration: f64) -> Self {
+    pub(crate) fn of(view: &View, georeference: &Georeference, exaggeration: f64) -> Self {
         let (camera, norths) = (&view.camera, &view.norths);
         let [right, up, forward] = camera.axes().map(|axis| axis.to_array());
         let (world, file) = (georeference.world(), georeference.file());
@@ -70,7 +70,7 @@ impl ViewReport {
             size: [camera.width, camera.height],
             projection: "central: with d = world - eye the place on the page, px from its top left corner, \
                          is centre + focal / (d . forward) * (d . right, -(d . up))",
-            page: Page {
+            page: PageReport {
                 right,
                 up,
                 forward,

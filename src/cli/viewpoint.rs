@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use super::choices;
 use super::norths::Norths;
 use super::talk::Talk;
-use super::values::{self, Height, LookAt, Size, Standpoint};
+use super::values::{self, GivenHeight, LookAt, Size, Standpoint};
 use super::words::flag;
 use crate::dem::{Crs, Dem, Georeference, North, Whereabouts};
 use crate::error::{Error, Result, Setting};
@@ -34,7 +34,7 @@ pub const SIZE: Size = Size { width: 1920, height: 1080 };
 /// The flags, as typed.
 #[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "View")]
-pub struct ViewArguments {
+pub(crate) struct ViewArguments {
     /// Eye: easting, northing (x first, degrees too) in the CRS of the first DEM; exaggerated height in metres, or +H above the ground
     #[arg(long, value_name = "E,N,Z|E,N,+H", value_parser = values::eye, allow_hyphen_values = true, group = "standpoint")]
     eye: Option<Standpoint>,
@@ -69,7 +69,7 @@ pub struct ViewArguments {
 }
 
 /// A view found, with its eye in the coordinates of the DEM's file and on the globe.
-pub struct View {
+pub(crate) struct View {
     /// In the world.
     pub camera: Camera,
     /// Of the camera, from the north in use.
@@ -88,7 +88,7 @@ pub struct View {
 
 impl ViewArguments {
     /// The flags of a view that a file gives.
-    pub fn of_file(
+    pub(crate) fn of_file(
         eye: Option<Standpoint>,
         lonlat: Option<Standpoint>,
         north: North,
@@ -100,22 +100,22 @@ impl ViewArguments {
     }
 
     /// Pixels across and down, as typed.
-    pub fn typed_size(&self) -> Option<Size> {
+    pub(crate) fn typed_size(&self) -> Option<Size> {
         self.size
     }
 
     /// The same flags with a page of this size.
-    pub fn sized(&self, size: Size) -> Self {
+    pub(crate) fn sized(&self, size: Size) -> Self {
         Self { size: Some(size), ..self.clone() }
     }
 
     /// Pixels across and down.
-    pub fn size(&self) -> Size {
+    pub(crate) fn size(&self) -> Size {
         self.size.unwrap_or(SIZE)
     }
 
     /// What says where the eye is or looks, if anything is given.
-    pub fn given(&self) -> Option<Setting> {
+    pub(crate) fn given(&self) -> Option<Setting> {
         let given = [
             (Setting::Eye, self.eye.is_some()),
             (Setting::LonLat, self.lonlat.is_some()),
@@ -127,7 +127,7 @@ impl ViewArguments {
     }
 
     /// Horizontal field of view, degrees.
-    pub fn fov(&self) -> f64 {
+    pub(crate) fn fov(&self) -> f64 {
         self.fov
     }
 
@@ -135,7 +135,7 @@ impl ViewArguments {
     ///
     /// # Errors
     /// As [`Crs::from_epsg`].
-    pub fn crs(&self) -> Result<Option<Crs>> {
+    pub(crate) fn crs(&self) -> Result<Option<Crs>> {
         self.crs.map(Crs::from_epsg).transpose()
     }
 
@@ -143,7 +143,7 @@ impl ViewArguments {
     ///
     /// # Errors
     /// [`Error::Setting`].
-    pub fn check(&self) -> Result<()> {
+    pub(crate) fn check(&self) -> Result<()> {
         if self.crs.is_some() && self.eye.is_none() && self.look_at.is_none() {
             return Err(Error::setting(
                 Setting::Crs,
@@ -158,7 +158,7 @@ impl ViewArguments {
     ///
     /// # Errors
     /// [`Error::Setting`] for a place that the DEM's map does not have, or without ground where a height above it is asked.
-    pub fn view(&self, surface: &Surface, level: Level) -> Result<View> {
+    pub(crate) fn view(&self, surface: &Surface, level: Level) -> Result<View> {
         let georeference = surface.dem().georeference();
         let place = self.standpoint(surface.dem())?;
         let eye = match (place, self.eye.or(self.lonlat)) {
@@ -240,20 +240,20 @@ impl ViewArguments {
     fn towards(&self, surface: &Surface, level: Level, look_at: LookAt) -> Result<DVec3> {
         let crs = self.crs()?;
         let place = world(surface.dem(), crs.as_ref(), look_at.place, Setting::LookAt)?;
-        let height = look_at.height.map_or(Height::AboveGround(0.0), Height::Absolute);
+        let height = look_at.height.map_or(GivenHeight::AboveGround(0.0), GivenHeight::Absolute);
         above(surface, level, place, height, Setting::LookAt)
     }
 }
 
 impl View {
     /// The flags that repeat it.
-    pub fn flags(&self) -> String {
+    pub(crate) fn flags(&self) -> String {
         let DVec2 { x, y } = self.file;
         self.flags_from(&format!("--eye {x},{y},{}", self.camera.eye.z))
     }
 
     /// The same with the eye on the globe, where the DEM's CRS is known and some degrees lead to the very eye.
-    pub fn lonlat_flags(&self) -> Option<String> {
+    pub(crate) fn lonlat_flags(&self) -> Option<String> {
         let DVec2 { x, y } = self.typed?;
         Some(self.flags_from(&format!("--lonlat {x},{y},{}", self.camera.eye.z)))
     }
@@ -266,14 +266,14 @@ impl View {
     }
 
     /// The same eye, looking elsewhere: to an azimuth of the world.
-    pub fn turned(&self, azimuth: f64, altitude: f64) -> Self {
+    pub(crate) fn turned(&self, azimuth: f64, altitude: f64) -> Self {
         let counted = self.norths.counted(azimuth);
         let camera = Camera { azimuth: self.norths.in_world(counted), altitude, ..self.camera };
         Self { camera, azimuth: counted, ..*self }
     }
 
     /// Warns where the eye is below the ground of that level, by more than eyes are rounded.
-    pub fn warn_below_ground(&self, surface: &Surface, level: Level, talk: &Talk) {
+    pub(crate) fn warn_below_ground(&self, surface: &Surface, level: Level, talk: &Talk) {
         let eye = self.camera.eye;
         let below = surface.height_below(eye.truncate(), level).map(|ground| ground - eye.z);
         if let Some(depth) = below.filter(|depth| *depth > ROUNDED) {
@@ -284,7 +284,7 @@ impl View {
     }
 
     /// Whether the DEM's CRS says where on Earth it lies.
-    pub fn is_on_earth(&self) -> bool {
+    pub(crate) fn is_on_earth(&self) -> bool {
         self.on_earth && self.lonlat.is_some()
     }
 }
@@ -367,10 +367,16 @@ fn rounded(place: DVec2, decimals: i32) -> DVec2 {
 }
 
 /// A map place at a height.
-pub(super) fn above(surface: &Surface, level: Level, place: DVec2, height: Height, setting: Setting) -> Result<DVec3> {
+pub(super) fn above(
+    surface: &Surface,
+    level: Level,
+    place: DVec2,
+    height: GivenHeight,
+    setting: Setting,
+) -> Result<DVec3> {
     match height {
-        Height::Absolute(z) => Ok(place.extend(z)),
-        Height::AboveGround(h) => match surface.height_below(place, level) {
+        GivenHeight::Absolute(z) => Ok(place.extend(z)),
+        GivenHeight::AboveGround(h) => match surface.height_below(place, level) {
             Some(ground) => Ok(place.extend(to_millimetre(ground, h))),
             None => Err(no_ground(surface, place, setting)),
         },

@@ -16,7 +16,7 @@ use crate::error::{Error, Result};
 
 /// A view of the file, with the flags that give it.
 #[derive(Debug)]
-pub struct NamedView {
+pub(crate) struct NamedView {
     /// In letters, digits, `-` and `_`, so that files can be named after it.
     pub name: String,
     /// Name of its DEM, without folders.
@@ -27,12 +27,12 @@ pub struct NamedView {
 
 #[derive(Deserialize)]
 struct File {
-    views: Vec<Entry>,
+    views: Vec<ViewEntry>,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Entry {
+struct ViewEntry {
     name: String,
     dem: PathBuf,
     eye: Option<[Coordinate; 3]>,
@@ -56,7 +56,7 @@ enum Coordinate {
 ///
 /// # Errors
 /// [`Error::Input`] where the file is missing or no such file, or a view in it is none.
-pub fn read(path: &Path, fov: f64, size: Size) -> Result<Vec<NamedView>> {
+pub(crate) fn read(path: &Path, fov: f64, size: Size) -> Result<Vec<NamedView>> {
     let wrong = |what: String| Error::input(path, what, "see `hachure compare --help` for what a file of views holds");
     let text = fs::read_to_string(path).map_err(|e| wrong(e.to_string()))?;
     let file: File = serde_json::from_str(&text).map_err(|e| wrong(e.to_string()))?;
@@ -72,7 +72,7 @@ pub fn read(path: &Path, fov: f64, size: Size) -> Result<Vec<NamedView>> {
     }
 }
 
-impl Entry {
+impl ViewEntry {
     fn view(self, fov: f64, size: Size) -> std::result::Result<NamedView, String> {
         let place = |of: Option<[Coordinate; 3]>, parse: fn(&str) -> std::result::Result<Standpoint, String>| {
             of.map(|parts| parse(&parts.map(|part| part.text()).join(","))).transpose()
@@ -106,7 +106,7 @@ impl Coordinate {
 }
 
 /// A name that every file system takes.
-pub fn file_name(name: &str) -> String {
+pub(crate) fn file_name(name: &str) -> String {
     let plain = |c: char| if c.is_ascii_alphanumeric() || c == '-' || c == '_' { c } else { '-' };
     let name: String = name.chars().map(plain).take(60).collect();
     if name.is_empty() { "view".into() } else { name }

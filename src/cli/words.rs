@@ -5,7 +5,7 @@ use std::io::ErrorKind;
 use clap::CommandFactory;
 
 use super::Arguments;
-use crate::error::{Error, Form, Message, Setting, shown};
+use crate::error::{Error, Message, Setting, SettingForm, shown};
 
 /// Exit code for "failed".
 pub const FAILED: u8 = 1;
@@ -106,10 +106,10 @@ fn placeholder(setting: Setting) -> String {
 /// A message with flags.
 pub fn told(message: &Message) -> String {
     message.told(|setting, form| match form {
-        Form::Name => flag(setting).to_owned(),
-        Form::At(value) => format!("{} {value}", flag(setting)),
-        Form::WithValue => format!("{} {}", flag(setting), placeholder(setting)),
-        Form::Value => placeholder(setting),
+        SettingForm::Name => flag(setting).to_owned(),
+        SettingForm::At(value) => format!("{} {value}", flag(setting)),
+        SettingForm::WithValue => format!("{} {}", flag(setting), placeholder(setting)),
+        SettingForm::Value => placeholder(setting),
     })
 }
 

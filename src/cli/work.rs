@@ -6,24 +6,24 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use super::jobs::{self, Share};
-use super::progress::{Counts, Progress, duration};
+use super::jobs::{self, JobShare};
+use super::progress::{JobCounts, Progress, duration};
 use super::talk::Talk;
 use super::words;
 use crate::error::{Error, Result, shown};
 use crate::files::{Output, output, signals};
-use crate::job::manifest::Sequence;
-use crate::job::{self, Content, Event, Frames, Job, Made, Manifest, Shard};
+use crate::job::manifest::SequenceKey;
+use crate::job::{self, Content, Event, Frames, Job, JobFile, Manifest, Shard};
 
 /// How often the manifest is written while the work goes on.
 const OFTEN: Duration = Duration::from_secs(10);
 
 /// Jobs to do.
-pub struct Work<'a> {
+pub struct JobWork<'a> {
     /// Of which they are.
-    pub sequence: Sequence,
+    pub sequence: SequenceKey,
     /// Which of them.
-    pub share: Share,
+    pub share: JobShare,
     /// They, in words.
     pub called: &'a str,
     /// They.
@@ -41,7 +41,7 @@ const LEFT: Duration = Duration::from_secs(600);
 ///
 /// # Errors
 /// [`Error::Output`].
-pub fn create(path: &Path) -> Result<Output> {
+pub(crate) fn create(path: &Path) -> Result<Output> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     folder.map_or(Ok(()), |folder| fs::create_dir_all(folder).map_err(|error| Error::output(folder, &error)))?;
     Output::create(path)
@@ -53,17 +53,17 @@ struct Noted<'a> {
     folder: &'a Path,
 }
 
-impl Work<'_> {
+impl JobWork<'_> {
     /// Some of it as work of its own: it holds all jobs there are.
     ///
     /// # Errors
     /// As [`jobs::check`].
-    pub fn part(&self, frames: &Frames) -> Result<Work<'_>> {
+    pub fn part(&self, frames: &Frames) -> Result<JobWork<'_>> {
         jobs::check(frames, self.jobs.len() as u32, self.called)?;
         let jobs = frames.numbers().iter().filter_map(|n| self.jobs.get(*n as usize).cloned()).collect();
-        let share = Share { part: Some(frames.clone()), shard: Shard::WHOLE, frames: frames.clone() };
+        let share = JobShare { part: Some(frames.clone()), shard: Shard::WHOLE, frames: frames.clone() };
         let (sequence, folder, dems) = (self.sequence.clone(), self.folder.clone(), self.dems.clone());
-        Ok(Work { sequence, share, called: self.called, jobs, folder, dems })
+        Ok(JobWork { sequence, share, called: self.called, jobs, folder, dems })
     }
 
     /// Does the jobs in folders that are [prepared](Self::prepare): `draw` makes of each what `finish` writes to its files; both
@@ -113,7 +113,7 @@ impl Work<'_> {
     /// # Errors
     /// [`Error::Output`] where no job can write all its files: else those fail that cannot.
     pub fn prepare(&self) -> Result<()> {
-        fn folder_of(made: &Made) -> &Path {
+        fn folder_of(made: &JobFile) -> &Path {
             made.path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
         }
         let ready = |folder: &Path| {
@@ -133,7 +133,7 @@ impl Work<'_> {
     }
 
     fn noted(&self) -> Result<Noted<'_>> {
-        let Share { part, shard, .. } = &self.share;
+        let JobShare { part, shard, .. } = &self.share;
         let mut manifest = Manifest::new(&self.sequence, *shard, part.as_ref(), &self.jobs, &self.folder);
         manifest = manifest.after(&self.folder);
         manifest.dems = self.dems.clone();
@@ -141,7 +141,7 @@ impl Work<'_> {
         Ok(Noted { manifest: Mutex::new((manifest, Instant::now())), folder: &self.folder })
     }
 
-    fn tell(&self, Counts { made, skipped, failed }: Counts, began: Instant, talk: &Talk) -> Result<()> {
+    fn tell(&self, JobCounts { made, skipped, failed }: JobCounts, began: Instant, talk: &Talk) -> Result<()> {
         let failed = if failed > 0 { format!(", {failed} failed") } else { String::new() };
         talk.say(&format!(
             "{}: {made} {} drawn, {skipped} were there{failed}, {}",

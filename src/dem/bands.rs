@@ -20,6 +20,10 @@ pub struct Band<'a> {
     pub samples: Cow<'a, Samples>,
 }
 
+impl Dem {}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
 impl Dem {
     /// All rows once, in order, with `halo` rows above and below each band. A held DEM is one band; those of a filed one
     /// are read as the iterator comes to them, on several threads where that is faster, each of its rows unpacked once.

@@ -27,7 +27,7 @@ pub(super) struct Filed {
     /// Bytes of memory that all work with the samples may take.
     budget: usize,
     stamp: OnceLock<Option<u128>>,
-    kept: Mutex<Kept>,
+    kept: Mutex<KeptTiles>,
     overviews: OnceLock<Overviews>,
     failure: OnceLock<Error>,
     /// How many samples were read from the files.
@@ -35,19 +35,19 @@ pub(super) struct Filed {
 }
 
 /// Exaggerated metres of a tile, NaN at voids, once they are read.
-type Tile = Arc<Mutex<Option<Arc<[f32]>>>>;
+type TileHeights = Arc<Mutex<Option<Arc<[f32]>>>>;
 
 /// Tiles by their spacing and first samples, each with the number of the request that came last, and the bytes of all.
 #[derive(Default)]
-struct Kept {
-    tiles: HashMap<(usize, [usize; 2]), (Tile, u64, usize)>,
+struct KeptTiles {
+    tiles: HashMap<(usize, [usize; 2]), (TileHeights, u64, usize)>,
     requests: u64,
     bytes: usize,
 }
 
 impl Filed {
     /// All of `tiles`, of which up to half of `budget` bytes are kept, [`MOST_KEPT`] at most.
-    pub fn new(tiles: Arc<dyn Tiles>, exaggeration: f64, budget: usize) -> Self {
+    pub(super) fn new(tiles: Arc<dyn Tiles>, exaggeration: f64, budget: usize) -> Self {
         let tiling = tiles.tiling();
         Self {
             tiles,
@@ -63,53 +63,53 @@ impl Filed {
     }
 
     /// The same samples without exaggeration, nothing read yet.
-    pub fn plain(&self) -> Self {
+    pub(super) fn plain(&self) -> Self {
         Self::new(self.tiles.clone(), 1.0, self.budget)
     }
 
     /// Where the samples come from.
-    pub fn tiles(&self) -> &dyn Tiles {
+    pub(super) fn tiles(&self) -> &dyn Tiles {
         &*self.tiles
     }
 
     /// Rows of a tile.
-    pub fn tile_rows(&self) -> usize {
+    pub(super) fn tile_rows(&self) -> usize {
         self.tiling.size[1]
     }
 
     /// Whether several threads gain by reading at once.
-    pub fn is_parallel(&self) -> bool {
+    pub(super) fn is_parallel(&self) -> bool {
         self.tiles.is_parallel()
     }
 
     /// Bytes of memory that all work with the samples may take.
-    pub fn budget(&self) -> usize {
+    pub(super) fn budget(&self) -> usize {
         self.budget
     }
 
     /// Factor on every elevation.
-    pub fn exaggeration(&self) -> f64 {
+    pub(super) fn exaggeration(&self) -> f64 {
         self.exaggeration
     }
 
     /// The stamp of the tiles, whatever the exaggeration. Cost: the first time, a look into each file.
-    pub fn stamp(&self) -> Option<u128> {
+    pub(super) fn stamp(&self) -> Option<u128> {
         *self.stamp.get_or_init(|| self.tiles.stamp())
     }
 
     /// Exaggerated metres of `window`, counted from the first sample, NaN at voids. `progress` hears the share done.
-    pub fn read(&self, window: Window, progress: &dyn Fn(f64)) -> Result<Vec<f32>> {
+    pub(super) fn read(&self, window: Window, progress: &dyn Fn(f64)) -> Result<Vec<f32>> {
         let tiles = self.tiling.tiles(window);
         gather(window, &tiles, self.tiles.is_parallel(), |tile| self.tile(tile), progress)
     }
 
     /// The same on this thread alone, for whoever works inside a reading.
-    pub fn read_alone(&self, window: Window) -> Result<Vec<f32>> {
+    pub(super) fn read_alone(&self, window: Window) -> Result<Vec<f32>> {
         gather(window, &self.tiling.tiles(window), false, |tile| self.tile(tile), &|_| ())
     }
 
     /// Exaggerated metres of one sample, NaN at a void.
-    pub fn height(&self, at: [usize; 2]) -> Result<f32> {
+    pub(super) fn height(&self, at: [usize; 2]) -> Result<f32> {
         let window = self.tiling.tile(at);
         let [c, r] = [0, 1].map(|i| at[i] - window.first[i]);
         Ok(self.tile(window)?[r * window.size[0] + c])
@@ -117,7 +117,7 @@ impl Filed {
 
     /// Exaggerated metres of `window` of every `spacing`-th sample and row, NaN at voids; `None` where no overviews have
     /// them, or damaged ones. Overviews themselves are not exaggerated.
-    pub fn overview(&self, spacing: usize, window: Window) -> Option<Vec<f32>> {
+    pub(super) fn overview(&self, spacing: usize, window: Window) -> Option<Vec<f32>> {
         let overviews = self.overviews()?;
         let tiles = overviews.tiling(spacing)?.tiles(window);
         let load = |tile: Window| {
@@ -131,27 +131,27 @@ impl Filed {
     }
 
     /// Takes overviews, unless there are some.
-    pub fn remember(&self, overviews: Overviews) {
+    pub(super) fn remember(&self, overviews: Overviews) {
         let _ = self.overviews.set(overviews);
     }
 
     /// What was taken.
-    pub fn overviews(&self) -> Option<&Overviews> {
+    pub(super) fn overviews(&self) -> Option<&Overviews> {
         self.overviews.get()
     }
 
     /// How many samples were read from the files so far, each as often as it was.
-    pub fn samples_read(&self) -> u64 {
+    pub(super) fn samples_read(&self) -> u64 {
         self.samples_read.load(Ordering::Relaxed)
     }
 
     /// Keeps the first error of those who could not return it.
-    pub fn fail(&self, error: Error) {
+    pub(super) fn fail(&self, error: Error) {
         let _ = self.failure.set(error);
     }
 
     /// The first error of those who could not return it, and whether the files are still those that were opened.
-    pub fn check(&self) -> Result<()> {
+    pub(super) fn check(&self) -> Result<()> {
         let noticed = self.failure.get().cloned().map_or_else(|| self.tiles.check(), Err);
         noticed.inspect_err(|error| self.fail(error.clone()))
     }
@@ -176,16 +176,16 @@ impl Filed {
     }
 }
 
-impl Kept {
+impl KeptTiles {
     /// The tile of a window, new ones in the place of old ones beyond `budget` bytes.
-    fn tile(&mut self, spacing: usize, window: Window, budget: usize) -> Tile {
+    fn tile(&mut self, spacing: usize, window: Window, budget: usize) -> TileHeights {
         self.requests += 1;
         let place = (spacing, window.first);
         if let Some((tile, request, _)) = self.tiles.get_mut(&place) {
             *request = self.requests;
             return tile.clone();
         }
-        let (tile, bytes) = (Tile::default(), window.samples() as usize * size_of::<f32>());
+        let (tile, bytes) = (TileHeights::default(), window.samples() as usize * size_of::<f32>());
         while self.bytes + bytes > budget {
             let oldest = self.tiles.iter().min_by_key(|(_, (_, request, _))| *request).map(|(place, _)| *place);
             // The last one stays, however large: whoever asks sample by sample would read it for each.
@@ -220,14 +220,14 @@ mod tests {
     #[test]
     fn the_tile_asked_for_longest_ago_makes_room() {
         let tile = |c: usize| Window { first: [c, 0], size: [100, 10] };
-        let mut kept = Kept::default();
+        let mut kept = KeptTiles::default();
         let tiles: Vec<_> = (0..3).map(|c| kept.tile(1, tile(c), 12_000)).collect();
         assert!(Arc::ptr_eq(&tiles[0], &kept.tile(1, tile(0), 12_000)), "all three fit");
         let _ = kept.tile(1, tile(3), 12_000);
         assert_eq!(kept.bytes, 12_000);
         assert!(Arc::ptr_eq(&tiles[0], &kept.tile(1, tile(0), 12_000)), "asked for since");
         assert!(!Arc::ptr_eq(&tiles[1], &kept.tile(1, tile(1), 12_000)), "gone");
-        let mut one = Kept::default();
+        let mut one = KeptTiles::default();
         let last = [0, 1].map(|c| one.tile(1, tile(c), 3_999));
         assert!(Arc::ptr_eq(&last[1], &one.tile(1, tile(1), 3_999)), "the last one, though larger than the budget");
         assert_eq!((one.bytes, one.tiles.len()), (4_000, 1), "but no other");

@@ -17,7 +17,7 @@ use super::stored::{Found, Stored, bytes_of, key};
 use super::tiles::Tiles;
 use super::tiling::{Tiling, copy};
 use super::window::Window;
-use crate::cache::{Cache, Hearing, Sheet};
+use crate::cache::{Cache, CacheObserver, NewEntry};
 use crate::error::{Error, Message, Result, Setting};
 use crate::message;
 
@@ -34,7 +34,7 @@ const TOGETHER: usize = 16 << 20;
 ///
 /// A height must come out the same, bit for bit, whatever window is worked on, with the halo around it: fewer samples only
 /// at the grid's own edge.
-pub trait Focal: Debug + Send + Sync {
+pub(crate) trait Focal: Debug + Send + Sync {
     /// Samples around a window on which the heights in it depend.
     fn halo(&self) -> usize;
 
@@ -50,7 +50,7 @@ pub trait Focal: Debug + Send + Sync {
 
 /// Tiles with work done on them.
 #[derive(Debug)]
-pub struct Worked<F> {
+pub(crate) struct Worked<F> {
     of: Filed,
     by: F,
     tiling: Tiling,
@@ -60,7 +60,7 @@ pub struct Worked<F> {
 
 impl<F: Focal> Worked<F> {
     /// All of `tiles`; half of `budget` bytes is for the tiles at work, a quarter for what is read of the grid and kept.
-    pub fn new(tiles: Arc<dyn Tiles>, by: F, budget: usize) -> Self {
+    pub(crate) fn new(tiles: Arc<dyn Tiles>, by: F, budget: usize) -> Self {
         let side = (HALOS * by.halo()).max(SIDE);
         let tiling = Tiling::whole([side; 2], tiles.size());
         let places = Places::new(budget / 2 / (WORK_BYTES * (side + 2 * by.halo()).pow(2)));
@@ -69,7 +69,7 @@ impl<F: Focal> Worked<F> {
 
     /// What is wrong with keeping what comes of the work in the cache, where that has no room for it: then the work is done
     /// whenever heights are read.
-    pub fn too_large_for(&self, cache: &Cache) -> Option<Message> {
+    pub(crate) fn too_large_for(&self, cache: &Cache) -> Option<Message> {
         let bytes = bytes_of(&[self.whole()]);
         let needed =
             format!("smoothed heights are worked out anew in each run: they take {} MiB, ", bytes.div_ceil(1 << 20));
@@ -82,12 +82,12 @@ impl<F: Focal> Worked<F> {
     ///
     /// # Errors
     /// Those of reading the tiles, and of the work.
-    pub fn kept_in(self, cache: &Cache, of: String, progress: &dyn Fn(f64)) -> Result<Self> {
+    pub(crate) fn kept_in(self, cache: &Cache, of: String, progress: &dyn Fn(f64)) -> Result<Self> {
         let folder = cache.folder().filter(|_| self.too_large_for(cache).is_none());
         let Some(stamp) = folder.and_then(|_| self.stamp()) else { return Ok(self) };
         let tiles = self.tiling().tiles(self.whole());
         // What is damaged is made anew; where nothing can be kept, those who keep more tell so.
-        let hearing = Hearing { warn: &|_| (), progress };
+        let hearing = CacheObserver { warn: &|_| (), progress };
         let stored = cache.get(
             &key(stamp, of),
             hearing,
@@ -103,7 +103,7 @@ impl<F: Focal> Worked<F> {
     }
 
     /// Works on all `tiles` and keeps what comes of it; `None` where it cannot be kept.
-    fn make(&self, mut sheet: Sheet, tiles: &[Window], progress: &dyn Fn(f64)) -> Result<Option<Stored>> {
+    fn make(&self, mut sheet: NewEntry, tiles: &[Window], progress: &dyn Fn(f64)) -> Result<Option<Stored>> {
         let mut hashes = Vec::with_capacity(tiles.len());
         for run in self.runs(tiles) {
             let width = run.iter().map(|tile| tile.size[0]).sum();

@@ -52,7 +52,7 @@ impl Georeference {
     }
 
     /// World places in metres of many places in `crs`, each `None` as for [`Self::world_place`].
-    pub fn world_places(&self, crs: &Crs, places: &[DVec2]) -> Vec<Option<DVec2>> {
+    pub(crate) fn world_places(&self, crs: &Crs, places: &[DVec2]) -> Vec<Option<DVec2>> {
         let one_system = *crs == self.world;
         let (Some(unit), Some(transform), false) = (self.world.metres_per_unit(), &self.transform, one_system) else {
             return places.iter().map(|place| self.world_place(crs, *place)).collect();
@@ -61,7 +61,7 @@ impl Georeference {
     }
 
     /// Places in `crs` of many world places in metres, each `None` as for [`Self::world_place`].
-    pub fn places_in(&self, crs: &Crs, places: &[DVec2]) -> Vec<Option<DVec2>> {
+    pub(crate) fn places_in(&self, crs: &Crs, places: &[DVec2]) -> Vec<Option<DVec2>> {
         let one_system = *crs == self.world;
         let (Some(unit), Some(transform), false) = (self.world.metres_per_unit(), &self.transform, one_system) else {
             return places.iter().map(|place| self.place_in(crs, *place)).collect();
@@ -73,15 +73,6 @@ impl Georeference {
     /// Place in `crs` of a world place in metres; `None` as for [`Self::world_place`].
     pub fn place_in(&self, crs: &Crs, world: DVec2) -> Option<DVec2> {
         self.carried(&self.world, crs, world / self.world.metres_per_unit()?)
-    }
-
-    /// Longitude and latitude on the DEM's body: WGS 84 on Earth, the DEM's own ellipsoid elsewhere; `None` where the DEM
-    /// lies on no globe, or nobody says where.
-    ///
-    /// # Errors
-    /// Those of [`Transform::lonlat`].
-    pub fn globe(&self) -> Result<Option<Crs>> {
-        self.transform.as_ref().map_or(Ok(None), |transform| transform.lonlat(&self.world))
     }
 
     /// Degrees of longitude and latitude of a world place in metres, in [`Self::globe`]; `None` where there is none.
@@ -98,5 +89,18 @@ impl Georeference {
             return place.is_finite().then_some(place);
         }
         self.transform.as_ref()?.place(from, to, place)
+    }
+}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
+impl Georeference {
+    /// Longitude and latitude on the DEM's body: WGS 84 on Earth, the DEM's own ellipsoid elsewhere; `None` where the DEM
+    /// lies on no globe, or nobody says where.
+    ///
+    /// # Errors
+    /// Those of [`Transform::lonlat`].
+    pub fn globe(&self) -> Result<Option<Crs>> {
+        self.transform.as_ref().map_or(Ok(None), |transform| transform.lonlat(&self.world))
     }
 }

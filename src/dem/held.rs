@@ -1,6 +1,6 @@
 //! How large a DEM may be, and what is said where its samples would have to be in memory.
 
-use crate::error::{Error, Message, Part, Setting};
+use crate::error::{Error, Message, MessagePart, Setting};
 use crate::message;
 
 /// Most samples of a DEM held in memory: 128 MiB of heights, the largest buffer that every GPU binds.
@@ -9,12 +9,12 @@ pub const MAX_SAMPLES: usize = 1 << 25;
 pub const LARGEST_SIDE: usize = 131_000;
 
 /// Bytes of so many samples with their normals: a height, a bit and two gradients each.
-pub fn held_bytes(samples: u64) -> u64 {
+pub(crate) fn held_bytes(samples: u64) -> u64 {
     samples * (4 + 8) + samples / 8
 }
 
 /// The error of those who need samples in memory that stay in their files.
-pub fn not_held([columns, rows]: [usize; 2]) -> Error {
+pub(crate) fn not_held([columns, rows]: [usize; 2]) -> Error {
     let samples = columns as u64 * rows as u64;
     let more = held_bytes(samples).div_ceil(1 << 20);
     let mut remedy = message!["use ", Setting::Crop, " to take a part"];
@@ -42,6 +42,6 @@ pub(super) fn to_fill([columns, rows]: [usize; 2], is_filed: bool) -> Message {
 }
 
 /// So much memory, as one sets it.
-pub fn mebibytes(memory: u64) -> Part {
+pub(crate) fn mebibytes(memory: u64) -> MessagePart {
     Setting::Memory.at(format!("{memory}MiB"))
 }

@@ -25,11 +25,6 @@ impl History {
         &self.assumed
     }
 
-    /// What the files do not say but few files do, and was taken as given: nothing to warn of.
-    pub fn usual(&self) -> &[Message] {
-        &self.usual
-    }
-
     /// Metres of the step of which each file's heights are multiples, 0 where there is none, in the order of the files; empty
     /// where the heights are as the files have them.
     pub fn steps(&self) -> &[f64] {
@@ -42,17 +37,17 @@ impl History {
     }
 
     /// One more clause on what was changed.
-    pub fn convert(&mut self, clause: impl Into<Message>) {
+    pub(crate) fn convert(&mut self, clause: impl Into<Message>) {
         self.converted.push(clause.into().plain());
     }
 
     /// One more clause on what was taken as given.
-    pub fn assume(&mut self, clause: impl Into<Message>) {
+    pub(crate) fn assume(&mut self, clause: impl Into<Message>) {
         self.assumed.push(clause.into().plain());
     }
 
     /// One more on what few files say.
-    pub fn assume_as_usual(&mut self, clause: impl Into<Message>) {
+    pub(crate) fn assume_as_usual(&mut self, clause: impl Into<Message>) {
         self.usual.push(clause.into());
     }
 
@@ -68,5 +63,14 @@ impl History {
         add(&mut self.converted, of_file.converted);
         add(&mut self.assumed, of_file.assumed);
         add(&mut self.usual, of_file.usual);
+    }
+}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
+impl History {
+    /// What the files do not say but few files do, and was taken as given: nothing to warn of.
+    pub fn usual(&self) -> &[Message] {
+        &self.usual
     }
 }

@@ -15,7 +15,7 @@ const BAND: usize = 1 << 23;
 ///
 /// # Errors
 /// Those of `work`.
-pub fn in_bands(
+pub(crate) fn in_bands(
     heights: &mut [f32],
     size: [usize; 2],
     halo: usize,

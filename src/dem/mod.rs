@@ -3,26 +3,26 @@
 
 mod bands;
 pub(crate) mod filed;
-pub mod focal;
+pub(crate) mod focal;
 pub mod fractal;
-pub mod generalise;
+pub(crate) mod generalise;
 mod georeference;
-mod held;
+pub(crate) mod held;
 mod history;
 pub(crate) mod in_bands;
 mod north;
 mod overviews;
 mod places;
 mod samples;
-pub mod scale;
-pub mod smoothest;
+pub(crate) mod scale;
+pub(crate) mod smoothest;
 mod stored;
 mod survey;
 mod systems;
 mod tiles;
 pub(crate) mod tiling;
-mod validity;
-pub mod water;
+pub(crate) mod validity;
+pub(crate) mod water;
 mod whereabouts;
 mod window;
 
@@ -33,19 +33,20 @@ use glam::{DVec2, DVec3};
 use crate::error::{Error, Result};
 use filed::Filed;
 
-pub use bands::Band;
+pub(crate) use bands::Band;
 pub use georeference::Georeference;
-pub use held::{LARGEST_SIDE, MAX_SAMPLES, held_bytes, mebibytes, not_held};
+pub(crate) use held::{LARGEST_SIDE, MAX_SAMPLES, held_bytes, mebibytes, not_held};
 pub use history::History;
-pub use north::{Bearings, North, convergence_in_words};
-pub use overviews::{Entry, OverviewBuilder, Overviews};
-pub use samples::Samples;
-pub use survey::{Survey, SurveyBuilder};
+pub(crate) use north::convergence_in_words;
+pub use north::{Bearings, North};
+pub(crate) use overviews::{OverviewBuilder, OverviewEntry, Overviews};
+pub(crate) use samples::Samples;
+pub(crate) use survey::{Survey, SurveyBuilder};
 pub use systems::{Crs, Transform, Unit};
 pub use tiles::Tiles;
 pub use tiling::Tiling;
-pub use validity::{BLOCK_SIDE, Validity};
-pub use whereabouts::Whereabouts;
+pub(crate) use validity::{BLOCK_SIDE, Validity};
+pub(crate) use whereabouts::Whereabouts;
 pub use window::Window;
 
 /// A north-up grid of elevations in metres.
@@ -116,13 +117,8 @@ impl Dem {
         }
     }
 
-    /// The same grid with where it lies on Earth and how it came about.
-    pub fn with_source(self, georeference: Georeference, history: History) -> Self {
-        Self { georeference, history, ..self }
-    }
-
     /// The same, read from this, in words for people.
-    pub fn with_label(self, label: String) -> Self {
+    pub(crate) fn with_label(self, label: String) -> Self {
         Self { label, ..self }
     }
 
@@ -156,33 +152,9 @@ impl Dem {
         &self.history
     }
 
-    /// All samples, which a held DEM has in memory.
-    ///
-    /// # Errors
-    /// [`Error::Limit`] for a filed DEM.
-    pub fn held(&self) -> Result<&Samples> {
-        match &self.store {
-            Store::Held(samples) => Ok(samples),
-            Store::Filed(_) => Err(self.not_held()),
-        }
-    }
-
     /// The error of those who need all samples in memory.
     pub(crate) fn not_held(&self) -> Error {
         held::not_held([self.columns, self.rows])
-    }
-
-    /// Whether the samples stay in their files.
-    pub fn is_filed(&self) -> bool {
-        matches!(self.store, Store::Filed(_))
-    }
-
-    /// Whether several threads gain by reading samples at once: not where they come from a file that one thread must read.
-    pub fn is_parallel(&self) -> bool {
-        match &self.store {
-            Store::Held(_) => true,
-            Store::Filed(filed) => filed.is_parallel(),
-        }
     }
 
     /// The samples of a window of `size` columns and rows, cut to the DEM.
@@ -221,18 +193,6 @@ impl Dem {
         }
     }
 
-    /// The first error of those who gave a void in the place of a sample, and whether the files are still those that
-    /// were opened: where they are not, what was read of them may not belong together.
-    ///
-    /// # Errors
-    /// [`Error::Input`]; the first of samples that could not be read is kept.
-    pub fn check(&self) -> Result<()> {
-        match &self.store {
-            Store::Held(_) => Ok(()),
-            Store::Filed(filed) => filed.check(),
-        }
-    }
-
     /// What was read, or nothing: then the error is kept for [`Self::check`].
     pub(crate) fn kept<T>(&self, read: Result<T>) -> Option<T> {
         match (read, &self.store) {
@@ -242,6 +202,77 @@ impl Dem {
                 None
             }
             (Err(_), Store::Held(_)) => None,
+        }
+    }
+
+    /// The same DEM of land whose heights were exaggerated by this factor, without it: of a held one to the last bit but one.
+    pub(crate) fn lowered(&self, exaggeration: f64) -> Self {
+        match &self.store {
+            Store::Filed(_) => self.plain().map_or_else(|| self.clone(), |(plain, _)| plain),
+            Store::Held(samples) => {
+                let lower =
+                    |height: Option<f32>| height.map_or(f32::NAN, |height| (f64::from(height) / exaggeration) as f32);
+                let rows = (0..self.rows).flat_map(|r| samples.row_from(0, r).map(lower)).collect();
+                let whole = Window { first: [0, 0], size: [self.columns, self.rows] };
+                self.with_samples(Samples::new(whole, rows))
+            }
+        }
+    }
+
+    /// World position of sample (c, r): easting, northing, exaggerated height, metres. Height 0 where there is none.
+    pub fn position(&self, c: usize, r: usize) -> DVec3 {
+        let xy = self.origin + DVec2::new(c as f64, -(r as f64)) * self.cell;
+        xy.extend(f64::from(self.height(c, r).unwrap_or(0.0)))
+    }
+
+    /// West, south, east and north of the outermost samples, metres.
+    pub fn extent(&self) -> [f64; 4] {
+        let far = self.origin + DVec2::new((self.columns - 1) as f64, -((self.rows - 1) as f64)) * self.cell;
+        [self.origin.x, far.y, far.x, self.origin.y]
+    }
+}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
+impl Dem {
+    /// The same grid with where it lies on Earth and how it came about.
+    pub fn with_source(self, georeference: Georeference, history: History) -> Self {
+        Self { georeference, history, ..self }
+    }
+
+    /// All samples, which a held DEM has in memory.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] for a filed DEM.
+    pub fn held(&self) -> Result<&Samples> {
+        match &self.store {
+            Store::Held(samples) => Ok(samples),
+            Store::Filed(_) => Err(self.not_held()),
+        }
+    }
+
+    /// Whether the samples stay in their files.
+    pub fn is_filed(&self) -> bool {
+        matches!(self.store, Store::Filed(_))
+    }
+
+    /// Whether several threads gain by reading samples at once: not where they come from a file that one thread must read.
+    pub fn is_parallel(&self) -> bool {
+        match &self.store {
+            Store::Held(_) => true,
+            Store::Filed(filed) => filed.is_parallel(),
+        }
+    }
+
+    /// The first error of those who gave a void in the place of a sample, and whether the files are still those that
+    /// were opened: where they are not, what was read of them may not belong together.
+    ///
+    /// # Errors
+    /// [`Error::Input`]; the first of samples that could not be read is kept.
+    pub fn check(&self) -> Result<()> {
+        match &self.store {
+            Store::Held(_) => Ok(()),
+            Store::Filed(filed) => filed.check(),
         }
     }
 
@@ -263,20 +294,6 @@ impl Dem {
         }
     }
 
-    /// The same DEM of land whose heights were exaggerated by this factor, without it: of a held one to the last bit but one.
-    pub fn lowered(&self, exaggeration: f64) -> Self {
-        match &self.store {
-            Store::Filed(_) => self.plain().map_or_else(|| self.clone(), |(plain, _)| plain),
-            Store::Held(samples) => {
-                let lower =
-                    |height: Option<f32>| height.map_or(f32::NAN, |height| (f64::from(height) / exaggeration) as f32);
-                let rows = (0..self.rows).flat_map(|r| samples.row_from(0, r).map(lower)).collect();
-                let whole = Window { first: [0, 0], size: [self.columns, self.rows] };
-                self.with_samples(Samples::new(whole, rows))
-            }
-        }
-    }
-
     /// The same samples of a filed DEM without exaggeration, and the factor that they lack; `None` for a held DEM, and where
     /// that is 1.
     pub fn plain(&self) -> Option<(Self, f64)> {
@@ -288,20 +305,8 @@ impl Dem {
         (filed.exaggeration() != 1.0).then(|| (plain, filed.exaggeration()))
     }
 
-    /// World position of sample (c, r): easting, northing, exaggerated height, metres. Height 0 where there is none.
-    pub fn position(&self, c: usize, r: usize) -> DVec3 {
-        let xy = self.origin + DVec2::new(c as f64, -(r as f64)) * self.cell;
-        xy.extend(f64::from(self.height(c, r).unwrap_or(0.0)))
-    }
-
     /// Column and row, fractional, of a world place in metres; outside the grid they run on.
     pub fn grid_place(&self, place: DVec2) -> DVec2 {
         (place - self.origin) * DVec2::new(1.0, -1.0) / self.cell
-    }
-
-    /// West, south, east and north of the outermost samples, metres.
-    pub fn extent(&self) -> [f64; 4] {
-        let far = self.origin + DVec2::new((self.columns - 1) as f64, -((self.rows - 1) as f64)) * self.cell;
-        [self.origin.x, far.y, far.x, self.origin.y]
     }
 }

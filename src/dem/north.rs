@@ -34,6 +34,10 @@ pub enum North {
     True,
 }
 
+impl North {}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
 impl North {
     /// The other one.
     pub fn other(self) -> Self {
@@ -106,7 +110,7 @@ impl Georeference {
 }
 
 /// How grid north lies to true north, where it is worth a line: off by over 1 degree.
-pub fn convergence_in_words(degrees: f64) -> Option<String> {
+pub(crate) fn convergence_in_words(degrees: f64) -> Option<String> {
     let side = if degrees > 0.0 { "east" } else { "west" };
     (degrees.abs() > SMALL).then(|| format!("grid north lies {:.1} degrees {side} of true north", degrees.abs()))
 }

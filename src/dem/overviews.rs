@@ -29,30 +29,30 @@ const SIDE: usize = 256;
 
 /// Blocks in their file.
 #[derive(Debug)]
-pub struct Overviews {
+pub(crate) struct Overviews {
     path: PathBuf,
     file: Mutex<File>,
     grid: Blocks,
-    index: Vec<Entry>,
+    index: Vec<OverviewEntry>,
     damaged: AtomicBool,
 }
 
 /// Where a block lies in the file, and the hash of its bytes.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
-pub struct Entry {
+pub(crate) struct OverviewEntry {
     offset: u64,
     hash: u64,
 }
 
 /// Makes the blocks of a DEM from its bands.
-pub struct OverviewBuilder {
+pub(crate) struct OverviewBuilder {
     grid: Blocks,
     /// Of each spacing the rows that fill no row of blocks yet.
     rows: [Vec<f32>; SPACINGS.len()],
     /// Of each spacing how many blocks are made.
     made: [usize; SPACINGS.len()],
-    index: Vec<Entry>,
+    index: Vec<OverviewEntry>,
     end: u64,
 }
 
@@ -77,14 +77,14 @@ impl Blocks {
 
 impl Overviews {
     /// Of a DEM, from blocks in the file at `path`; `None` where there are not as many as it has.
-    pub fn new(dem: &Dem, path: &Path, file: File, index: Vec<Entry>) -> Option<Self> {
+    pub(crate) fn new(dem: &Dem, path: &Path, file: File, index: Vec<OverviewEntry>) -> Option<Self> {
         let (grid, damaged) = (Blocks { samples: [dem.columns(), dem.rows()] }, AtomicBool::new(false));
         let whole = index.len() == grid.before(SPACINGS.len());
         whole.then(|| Self { path: path.to_owned(), file: Mutex::new(file), grid, index, damaged })
     }
 
     /// How many blocks those of a DEM are.
-    pub fn blocks(dem: &Dem) -> usize {
+    pub(crate) fn blocks(dem: &Dem) -> usize {
         Blocks { samples: [dem.columns(), dem.rows()] }.before(SPACINGS.len())
     }
 
@@ -106,7 +106,7 @@ impl Overviews {
         let k = SPACINGS.iter().position(|known| *known == spacing).ok_or(io::ErrorKind::NotFound)?;
         let [x, y] = block.first.map(|at| at / SIDE);
         let place = self.grid.before(k) + y * self.grid.size(k)[0].div_ceil(SIDE) + x;
-        let Entry { offset, hash } = *self.index.get(place).ok_or(io::ErrorKind::NotFound)?;
+        let OverviewEntry { offset, hash } = *self.index.get(place).ok_or(io::ErrorKind::NotFound)?;
         let mut samples = vec![0.0_f32; block.samples() as usize];
         let bytes: &mut [u8] = bytemuck::cast_slice_mut(&mut samples);
         let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
@@ -123,15 +123,15 @@ impl Overviews {
 
 impl OverviewBuilder {
     /// Of a DEM, nothing made yet. Its blocks will be the first in their file.
-    pub fn new(dem: &Dem) -> Self {
+    pub(crate) fn new(dem: &Dem) -> Self {
         let grid = Blocks { samples: [dem.columns(), dem.rows()] };
-        let index = vec![Entry::zeroed(); grid.before(SPACINGS.len())];
+        let index = vec![OverviewEntry::zeroed(); grid.before(SPACINGS.len())];
         Self { grid, rows: Default::default(), made: [0; SPACINGS.len()], index, end: 0 }
     }
 
     /// Takes the next rows, which `samples` holds, and gives `write` the bytes of each block that is whole, in the order of
     /// the file.
-    pub fn take(&mut self, samples: &Samples, rows: Range<usize>, write: &mut impl FnMut(&[u8])) {
+    pub(crate) fn take(&mut self, samples: &Samples, rows: Range<usize>, write: &mut impl FnMut(&[u8])) {
         for (k, spacing) in SPACINGS.into_iter().enumerate() {
             let taken = rows.clone().into_par_iter().filter(|r| r.is_multiple_of(spacing));
             let thinned = |r| samples.row_from(0, r).step_by(spacing).map(|height| height.unwrap_or(f32::NAN));
@@ -147,7 +147,7 @@ impl OverviewBuilder {
     }
 
     /// Where the blocks lie, when all rows have been taken.
-    pub fn into_index(self) -> Vec<Entry> {
+    pub(crate) fn into_index(self) -> Vec<OverviewEntry> {
         self.index
     }
 
@@ -159,13 +159,24 @@ impl OverviewBuilder {
             let block: Vec<f32> = rows.chunks_exact(width).flat_map(|row| &row[first..end]).copied().collect();
             let bytes: &[u8] = bytemuck::cast_slice(&block);
             write(bytes);
-            self.index[self.grid.before(k) + self.made[k]] = Entry { offset: self.end, hash: xxh3_64(bytes) };
+            self.index[self.grid.before(k) + self.made[k]] = OverviewEntry { offset: self.end, hash: xxh3_64(bytes) };
             self.made[k] += 1;
             self.end += bytes.len() as u64;
         }
     }
 }
 
+impl Dem {
+    /// Gives a filed DEM the overviews that were made of it, as [`Dem::stamp`] tells, unless it has some.
+    pub(crate) fn remember_overviews(&self, overviews: Overviews) {
+        if let Store::Filed(filed) = &self.store {
+            filed.remember(overviews);
+        }
+    }
+}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
 impl Dem {
     /// Exaggerated metres of every `spacing`-th sample of every `spacing`-th row, `size` of them from sample `first` on,
     /// whose column and row are multiples of the spacing; row-major, NaN at voids and outside.
@@ -206,13 +217,6 @@ impl Dem {
             }
         }
         Ok(spaced)
-    }
-
-    /// Gives a filed DEM the overviews that were made of it, as [`Dem::stamp`] tells, unless it has some.
-    pub fn remember_overviews(&self, overviews: Overviews) {
-        if let Store::Filed(filed) = &self.store {
-            filed.remember(overviews);
-        }
     }
 
     /// Whether a block of its overviews was found damaged; samples come from the DEM's own files since.

@@ -14,29 +14,29 @@ pub(super) struct Places {
 }
 
 /// One that is taken, until it is dropped. Whoever has it must wait for nobody who may wait for one.
-pub(super) struct Place<'a>(&'a Places);
+pub(super) struct Permit<'a>(&'a Places);
 
 impl Places {
     /// So many, one at least.
-    pub fn new(places: usize) -> Self {
+    pub(super) fn new(places: usize) -> Self {
         let all = places.max(1);
         Self { all, free: Mutex::new(all), freed: Condvar::new() }
     }
 
     /// One of them; waits until there is one.
-    pub fn take(&self) -> Place<'_> {
+    pub(super) fn take(&self) -> Permit<'_> {
         let none = |free: &mut usize| *free == 0;
         *self.freed.wait_while(self.free(), none).unwrap_or_else(PoisonError::into_inner) -= 1;
-        Place(self)
+        Permit(self)
     }
 
     /// How much work is best given to all cores together: some for each, unless they lack places.
-    pub fn together(&self) -> usize {
+    pub(super) fn together(&self) -> usize {
         if self.are_short() { self.all } else { TILES_A_CORE * rayon::current_num_threads() }
     }
 
     /// Whether there are fewer than cores.
-    pub fn are_short(&self) -> bool {
+    pub(super) fn are_short(&self) -> bool {
         self.all < rayon::current_num_threads()
     }
 
@@ -45,7 +45,7 @@ impl Places {
     }
 }
 
-impl Drop for Place<'_> {
+impl Drop for Permit<'_> {
     fn drop(&mut self) {
         *self.0.free() += 1;
         self.0.freed.notify_one();

@@ -14,7 +14,7 @@ const FORMAT: u32 = 1;
 
 /// A scale at which heights are smoothed, and the grid on which they lie.
 #[derive(Debug, Clone, Copy)]
-pub struct Scale {
+pub(crate) struct Scale {
     /// Of what is smoothed away.
     pub metres: f64,
     /// Metres between columns and between rows.
@@ -26,7 +26,7 @@ impl Scale {
     ///
     /// # Errors
     /// None: those of work that has none.
-    pub fn smooth(&self, heights: &mut [f32], size: [usize; 2]) -> Result<()> {
+    pub(crate) fn smooth(&self, heights: &mut [f32], size: [usize; 2]) -> Result<()> {
         in_bands(heights, size, self.halo(), |heights, window| {
             generalise(heights, window, self.cell, self.metres, true);
             Ok(())

@@ -15,13 +15,16 @@ use std::sync::{Mutex, PoisonError};
 use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
 use super::window::Window;
-use crate::cache::{Kept, Key, Kind, Sheet};
+use crate::cache::{CacheKey, CacheKind, KeptEntry, NewEntry};
 use crate::error::Message;
 
 /// Raise it when the bytes mean something else.
 const FORMAT: u32 = 3;
-const KIND: Kind =
-    Kind { name: "smooth", format: FORMAT, words: ["what was made of the heights", "what was kept of the heights"] };
+const KIND: CacheKind = CacheKind {
+    name: "smooth",
+    format: FORMAT,
+    words: ["what was made of the heights", "what was kept of the heights"],
+};
 
 /// Tiles in their file.
 #[derive(Debug)]
@@ -40,8 +43,8 @@ pub(super) struct Found {
 }
 
 /// What the heights of tiles with this stamp depend on.
-pub(super) fn key(stamp: u128, of: String) -> Key {
-    Key { kind: KIND, hash: stamp, of }
+pub(super) fn key(stamp: u128, of: String) -> CacheKey {
+    CacheKey { kind: KIND, hash: stamp, of }
 }
 
 /// Bytes of the heights of some tiles.
@@ -51,14 +54,14 @@ pub(super) fn bytes_of(tiles: &[Window]) -> u64 {
 
 impl Stored {
     /// Writes the heights of the next tile, and gives their hash.
-    pub fn write(sheet: &mut Sheet, heights: &[f32]) -> u64 {
+    pub(super) fn write(sheet: &mut NewEntry, heights: &[f32]) -> u64 {
         let bytes = bytemuck::cast_slice(heights);
         sheet.write(bytes);
         xxh3_64(bytes)
     }
 
     /// The file of all `tiles` when they are written, each with its hash; `None` where it cannot be kept.
-    pub fn finish(mut sheet: Sheet, hashes: Vec<u64>, tiles: &[Window], found: Found) -> Option<Self> {
+    pub(super) fn finish(mut sheet: NewEntry, hashes: Vec<u64>, tiles: &[Window], found: Found) -> Option<Self> {
         // Words are always JSON; a file without them is damaged, and made anew.
         let words = serde_json::to_vec(&found).unwrap_or_default();
         let mut hash = Xxh3::new();
@@ -67,12 +70,12 @@ impl Stored {
             sheet.write(bytes);
         }
         sheet.write(&hash.digest().to_le_bytes());
-        let Kept { file, .. } = sheet.publish().ok()?;
+        let KeptEntry { file, .. } = sheet.publish().ok()?;
         Some(Self::new(file, tiles, &hashes, found))
     }
 
     /// Reads what was kept of `tiles`. Fails where the bytes behind them are not those that were written.
-    pub fn recall(Kept { mut file, bytes, .. }: Kept, tiles: &[Window]) -> io::Result<Self> {
+    pub(super) fn recall(KeptEntry { mut file, bytes, .. }: KeptEntry, tiles: &[Window]) -> io::Result<Self> {
         let damaged = || io::Error::from(ErrorKind::InvalidData);
         let begin = bytes_of(tiles);
         let mut rest = vec![0; bytes.checked_sub(begin).ok_or_else(damaged)? as usize];
@@ -103,12 +106,12 @@ impl Stored {
     }
 
     /// What was found when they were made.
-    pub fn found(&self) -> &Found {
+    pub(super) fn found(&self) -> &Found {
         &self.found
     }
 
     /// The heights of a tile; `None` where it is none, or damaged.
-    pub fn read(&self, tile: Window) -> Option<Vec<f32>> {
+    pub(super) fn read(&self, tile: Window) -> Option<Vec<f32>> {
         let (size, place, hash) = *self.tiles.get(&tile.first)?;
         let mut heights = vec![0.0_f32; tile.samples() as usize];
         let bytes: &mut [u8] = bytemuck::cast_slice_mut(&mut heights);

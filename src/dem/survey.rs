@@ -36,7 +36,7 @@ pub struct Survey {
 }
 
 /// A survey in the making, from bands of the DEM.
-pub struct SurveyBuilder<'a> {
+pub(crate) struct SurveyBuilder<'a> {
     dem: &'a Dem,
     figures: Figures,
     thinned: Vec<f32>,
@@ -65,12 +65,12 @@ impl Figures {
 
 impl<'a> SurveyBuilder<'a> {
     /// Of a DEM, no row seen yet.
-    pub fn new(dem: &'a Dem) -> Self {
+    pub(crate) fn new(dem: &'a Dem) -> Self {
         Self { dem, figures: Figures::NONE, thinned: Vec::new(), validity: ValidityBuilder::new(dem) }
     }
 
     /// Takes the next rows, which `samples` holds with the one below them.
-    pub fn take(&mut self, samples: &Samples, rows: Range<usize>) {
+    pub(crate) fn take(&mut self, samples: &Samples, rows: Range<usize>) {
         let of_rows = rows.clone().into_par_iter().map(|r| Figures::of_row(samples, r));
         self.figures = self.figures.with(of_rows.reduce(|| Figures::NONE, Figures::with));
         self.validity.take(samples, rows.clone());
@@ -85,7 +85,7 @@ impl<'a> SurveyBuilder<'a> {
     ///
     /// # Errors
     /// [`Error::Input`] for a filed DEM that is all void.
-    pub fn finish(self) -> Result<Survey> {
+    pub(crate) fn finish(self) -> Result<Survey> {
         let Self { figures: Figures(range, voids, patches), thinned, validity, dem } = self;
         let (range, validity) = (Some(range).filter(|[low, high]| low <= high), validity.finish());
         let Store::Filed(filed) = &dem.store else {
@@ -122,7 +122,7 @@ impl Dem {
 
     /// Takes a survey made before of the same samples without exaggeration, as [`Dem::stamp`] tells, in the place of one of
     /// its own.
-    pub fn remember(&self, mut survey: Survey) {
+    pub(crate) fn remember(&self, mut survey: Survey) {
         if let Store::Filed(filed) = &self.store {
             survey.range.iter_mut().for_each(|range| exaggerate(range, filed.exaggeration()));
             exaggerate(&mut survey.thinned, filed.exaggeration());
@@ -142,16 +142,11 @@ impl Dem {
         self.surveyed().map_or(0, |survey| survey.voids)
     }
 
-    /// How many patches exist, see [`Survey::patches`]; 0 where samples cannot be read, see [`Dem::check`].
-    pub fn patches(&self) -> u64 {
-        self.surveyed().map_or(0, |survey| survey.patches)
-    }
-
     /// Whether there is anything to draw: one patch at least.
     ///
     /// # Errors
     /// [`Error::Scene`] where no three neighbouring samples hold an elevation; as [`Dem::survey`].
-    pub fn check_patches(&self) -> Result<()> {
+    pub(crate) fn check_patches(&self) -> Result<()> {
         let Survey { voids, patches: 0, .. } = self.survey(&|_| ())? else { return Ok(()) };
         let [west, south, east, north] = self.extent();
         Err(Error::Scene {
@@ -166,8 +161,21 @@ impl Dem {
     }
 
     /// Which samples hold an elevation; `None` where samples cannot be read, see [`Dem::check`].
-    pub fn known_validity(&self) -> Option<&Validity> {
+    pub(crate) fn known_validity(&self) -> Option<&Validity> {
         self.surveyed().map(|survey| &survey.validity)
+    }
+
+    fn surveyed(&self) -> Option<&Survey> {
+        self.kept(self.survey(&|_| ()))
+    }
+}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
+impl Dem {
+    /// How many patches exist, see [`Survey::patches`]; 0 where samples cannot be read, see [`Dem::check`].
+    pub fn patches(&self) -> u64 {
+        self.surveyed().map_or(0, |survey| survey.patches)
     }
 
     /// The DEM itself if it is held; else a held one of every k-th sample and row, k being [`Dem::thinning`].
@@ -192,9 +200,5 @@ impl Dem {
         // Of a narrow strip two rows or columns at least.
         let most = self.columns().min(self.rows()) - 1;
         if self.is_filed() { share.clamp(1, most) } else { 1 }
-    }
-
-    fn surveyed(&self) -> Option<&Survey> {
-        self.kept(self.survey(&|_| ()))
     }
 }

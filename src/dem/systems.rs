@@ -55,19 +55,13 @@ impl Crs {
     }
 
     /// The same with coordinates turned and flipped: `axes` holds 0, 1 and -1, each row and column one that is not 0.
-    pub fn with_axes(self, axes: DMat2) -> Self {
+    pub(crate) fn with_axes(self, axes: DMat2) -> Self {
         // No -0 is written.
         Self { axes: axes + DMat2::ZERO, ..self }
     }
 
-    /// What leads from the coordinates of the definition to these: one by default, another where the map's own axes run
-    /// west or south, so that x is east and y north.
-    pub fn axes(&self) -> DMat2 {
-        self.axes
-    }
-
     /// The same with the coordinates of its definition.
-    pub fn as_defined(&self) -> Self {
+    pub(crate) fn as_defined(&self) -> Self {
         self.clone().with_axes(DMat2::IDENTITY)
     }
 
@@ -111,6 +105,16 @@ impl Crs {
             Unit::Length(metres, _) if (metres - 1.0).abs() <= METRE_EPSILON => Some(1.0),
             Unit::Length(metres, _) => Some(metres),
         }
+    }
+}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
+impl Crs {
+    /// What leads from the coordinates of the definition to these: one by default, another where the map's own axes run
+    /// west or south, so that x is east and y north.
+    pub fn axes(&self) -> DMat2 {
+        self.axes
     }
 
     /// The unit of its coordinates in words, plural: `degrees`, `metres`, or as the file calls it.

@@ -39,16 +39,6 @@ impl Tiling {
         Self { size, before: [0; 2], whole }
     }
 
-    /// The tile that holds sample (c, r).
-    pub fn tile(&self, at: [usize; 2]) -> Window {
-        let borders = [0, 1].map(|i| {
-            let first = (at[i] + self.before[i]) / self.size[i] * self.size[i];
-            let end = (first + self.size[i] - self.before[i]).min(self.whole[i]);
-            [first.saturating_sub(self.before[i]), end]
-        });
-        Window { first: borders.map(|[first, _]| first), size: borders.map(|[first, end]| end - first) }
-    }
-
     /// The tiles that a window meets, row by row.
     pub fn tiles(&self, window: Window) -> Vec<Window> {
         let starts = |i: usize| {
@@ -60,6 +50,20 @@ impl Tiling {
             std::iter::successors(Some(window.first[i]), next).filter(move |at| *at < end)
         };
         starts(1).flat_map(|r| starts(0).map(move |c| self.tile([c, r]))).collect()
+    }
+}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
+impl Tiling {
+    /// The tile that holds sample (c, r).
+    pub fn tile(&self, at: [usize; 2]) -> Window {
+        let borders = [0, 1].map(|i| {
+            let first = (at[i] + self.before[i]) / self.size[i] * self.size[i];
+            let end = (first + self.size[i] - self.before[i]).min(self.whole[i]);
+            [first.saturating_sub(self.before[i]), end]
+        });
+        Window { first: borders.map(|[first, _]| first), size: borders.map(|[first, end]| end - first) }
     }
 }
 

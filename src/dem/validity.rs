@@ -154,13 +154,13 @@ fn bits_between(start: usize, end: usize, x: usize) -> u64 {
 
 impl ValidityBuilder {
     /// Of a DEM, no row seen yet.
-    pub fn new(dem: &Dem) -> Self {
+    pub(super) fn new(dem: &Dem) -> Self {
         let blocks = Blocks { samples: [dem.columns(), dem.rows()] };
         Self { blocks, rows: Vec::new(), made: 0, words: vec![NONE; blocks.count()] }
     }
 
     /// Takes the next rows, which `samples` holds.
-    pub fn take(&mut self, samples: &Samples, rows: Range<usize>) {
+    pub(super) fn take(&mut self, samples: &Samples, rows: Range<usize>) {
         for r in rows {
             self.rows.extend((0..self.blocks.across()).map(|x| samples.valid_from(x * BLOCK_SIDE, r)));
             if (r + 1).is_multiple_of(BLOCK_SIDE) || r + 1 == self.blocks.samples[1] {
@@ -170,7 +170,7 @@ impl ValidityBuilder {
     }
 
     /// Validity, when all rows have been taken.
-    pub fn finish(self) -> Validity {
+    pub(super) fn finish(self) -> Validity {
         Validity { blocks: self.blocks, words: self.words }
     }
 
@@ -195,6 +195,10 @@ impl ValidityBuilder {
     }
 }
 
+impl Dem {}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
 impl Dem {
     /// Which samples hold an elevation.
     ///

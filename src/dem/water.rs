@@ -19,7 +19,7 @@ use super::Window;
 
 /// Which samples of a window are flat water: runs of columns, row by row.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Water {
+pub(crate) struct Water {
     /// First column and that beyond the last.
     runs: Vec<[u32; 2]>,
     /// Where the runs of each row begin, and where they end.
@@ -27,17 +27,17 @@ pub struct Water {
 }
 
 /// It in the making, from the rows of a window.
-pub struct WaterBuilder {
+pub(crate) struct WaterBuilder {
     width: usize,
     row: u32,
-    above: Vec<Run>,
+    above: Vec<EqualHeights>,
     columns: Vec<Column>,
     regions: Regions,
 }
 
 /// Equal heights side by side; NaN: voids.
 #[derive(Debug, Clone, Copy)]
-struct Run {
+struct EqualHeights {
     first: u32,
     end: u32,
     height: f32,
@@ -67,7 +67,7 @@ enum Before {
 
 impl Water {
     /// Sets `half` to 0 at the water of `window`, row-major.
-    pub fn level(&self, window: Window, half: &mut [f32]) {
+    pub(crate) fn level(&self, window: Window, half: &mut [f32]) {
         let [from, to] = [window.first[0], window.first[0] + window.size[0]];
         for (r, half) in half.chunks_exact_mut(window.size[0].max(1)).enumerate() {
             for [first, end] in
@@ -79,17 +79,17 @@ impl Water {
     }
 
     /// First columns of the water of a row, and those beyond its last ones.
-    pub fn row(&self, r: usize) -> &[[u32; 2]] {
+    pub(crate) fn row(&self, r: usize) -> &[[u32; 2]] {
         self.rows.get(r..r + 2).map_or(&[], |rows| &self.runs[rows[0] as usize..rows[1] as usize])
     }
 
     /// Where the runs of each row begin, and the runs.
-    pub fn parts(&self) -> (&[u32], &[[u32; 2]]) {
+    pub(crate) fn parts(&self) -> (&[u32], &[[u32; 2]]) {
         (&self.rows, &self.runs)
     }
 
     /// From [`Self::parts`]; `None` where they are none.
-    pub fn from_parts(rows: Vec<u32>, runs: Vec<[u32; 2]>) -> Option<Self> {
+    pub(crate) fn from_parts(rows: Vec<u32>, runs: Vec<[u32; 2]>) -> Option<Self> {
         let sound = rows.is_sorted() && rows.last().copied().unwrap_or(0) as usize == runs.len();
         sound.then_some(Self { runs, rows })
     }
@@ -97,20 +97,20 @@ impl Water {
 
 impl WaterBuilder {
     /// Of a window so many columns wide, no row seen yet.
-    pub fn new(width: usize) -> Self {
+    pub(crate) fn new(width: usize) -> Self {
         let columns = vec![Column { first: 0, before: Before::Nothing }; width];
         Self { width, row: 0, above: Vec::new(), columns, regions: Regions::default() }
     }
 
     /// Takes the next rows, whole ones: metres, NaN at voids.
-    pub fn take(&mut self, heights: &[f32]) {
+    pub(crate) fn take(&mut self, heights: &[f32]) {
         heights.chunks_exact(self.width).for_each(|row| self.take_row(row));
     }
 
     /// The water, when all rows have been taken.
-    pub fn finish(mut self) -> Water {
+    pub(crate) fn finish(mut self) -> Water {
         for over in std::mem::take(&mut self.above) {
-            let beyond = Run { height: f32::NAN, region: NONE, ..over };
+            let beyond = EqualHeights { height: f32::NAN, region: NONE, ..over };
             self.regions.shore([&over, &beyond], over.end - over.first);
             self.below(&over, &beyond);
             self.regions.close_before(over.region, self.row);
@@ -128,7 +128,7 @@ impl WaterBuilder {
             run.region = self.regions.add(self.row, *run);
         }
         if self.row == 0 {
-            let edges = here.iter().map(|run| (run, Run { height: f32::NAN, region: NONE, ..*run }));
+            let edges = here.iter().map(|run| (run, EqualHeights { height: f32::NAN, region: NONE, ..*run }));
             edges.for_each(|(run, beyond)| self.regions.shore([run, &beyond], run.end - run.first));
         }
         self.meet(&here);
@@ -142,7 +142,7 @@ impl WaterBuilder {
     }
 
     /// Runs of this row and of the one above: equal heights become one region, others are each other's shore.
-    fn meet(&mut self, here: &[Run]) {
+    fn meet(&mut self, here: &[EqualHeights]) {
         let (mut above, mut below) = (0, 0);
         while let (Some(&over), Some(&run)) = (self.above.get(above), here.get(below)) {
             let edges = over.end.min(run.end) - over.first.max(run.first);
@@ -160,7 +160,7 @@ impl WaterBuilder {
     }
 
     /// In the columns of both `run` lies below `over`, which is another height: the higher one is a terrace.
-    fn below(&mut self, over: &Run, run: &Run) {
+    fn below(&mut self, over: &EqualHeights, run: &EqualHeights) {
         for c in over.first.max(run.first)..over.end.min(run.end) {
             let Column { first, before } = self.columns[c as usize];
             let length = self.row - first;
@@ -190,16 +190,16 @@ impl WaterBuilder {
     }
 
     /// Runs beside each other in a row: each is the other's shore, and the higher one a terrace.
-    fn beside(&mut self, here: &[Run]) {
-        let beyond = Run { first: 0, end: 0, height: f32::NAN, region: NONE };
+    fn beside(&mut self, here: &[EqualHeights]) {
+        let beyond = EqualHeights { first: 0, end: 0, height: f32::NAN, region: NONE };
         for run in here.first().into_iter().chain(here.last()) {
             self.regions.shore([run, &beyond], 1);
         }
         for (i, pair) in here.windows(2).enumerate() {
             let [west, east] = [&pair[0], &pair[1]];
             self.regions.shore([west, east], 1);
-            let is_seen = |beyond: Option<&Run>| beyond.is_some_and(|run| !run.height.is_nan());
-            let ending = |run: &Run, terrace: &Run, beyond| {
+            let is_seen = |beyond: Option<&EqualHeights>| beyond.is_some_and(|run| !run.height.is_nan());
+            let ending = |run: &EqualHeights, terrace: &EqualHeights, beyond| {
                 let [length, width] = [run, terrace].map(|run| run.end - run.first);
                 Ending { length, width, is_seen: is_seen(beyond) }
             };
@@ -214,11 +214,11 @@ impl WaterBuilder {
 }
 
 /// The runs of a row, from its first column to its last.
-fn runs(heights: &[f32]) -> Vec<Run> {
+fn runs(heights: &[f32]) -> Vec<EqualHeights> {
     let same = |a: &f32, b: &f32| a == b || a.is_nan() && b.is_nan();
     let mut first = 0;
     let run = |part: &[f32]| {
-        let run = Run { first, end: first + part.len() as u32, height: part[0], region: NONE };
+        let run = EqualHeights { first, end: first + part.len() as u32, height: part[0], region: NONE };
         first = run.end;
         run
     };

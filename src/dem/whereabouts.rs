@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 
 /// The system of a DEM, and where in it the DEM lies, in words.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Whereabouts {
+pub(crate) struct Whereabouts {
     /// The name of the system, in quotes.
     pub named: String,
     /// `between X,Y and X,Y metres`, or another unit.
@@ -18,7 +18,7 @@ pub struct Whereabouts {
 
 impl Whereabouts {
     /// Of a DEM, in the system of its file.
-    pub fn of(dem: &Dem) -> Self {
+    pub(crate) fn of(dem: &Dem) -> Self {
         let ([west, south, east, north], georeference) = (dem.extent(), dem.georeference());
         let file = georeference.file();
         let corner = |x, y| georeference.place_in(file, DVec2::new(x, y)).unwrap_or(DVec2::new(x, y));
@@ -36,7 +36,7 @@ impl Whereabouts {
     ///
     /// # Errors
     /// [`Error::Input`] of `path`; those of [`Georeference::globe`](super::Georeference::globe).
-    pub fn check_way(dem: &Dem, path: &Path, given: &Crs, noun: &str) -> Result<()> {
+    pub(crate) fn check_way(dem: &Dem, path: &Path, given: &Crs, noun: &str) -> Result<()> {
         let georeference = dem.georeference();
         if given == georeference.file() || georeference.globe()?.is_some() {
             return Ok(());

@@ -16,7 +16,7 @@ impl Window {
     }
 
     /// With so many more samples on every side as a grid of `whole` columns and rows has.
-    pub fn with_halo(self, halo: usize, whole: [usize; 2]) -> Self {
+    pub(crate) fn with_halo(self, halo: usize, whole: [usize; 2]) -> Self {
         let first = self.first.map(|first| first.saturating_sub(halo));
         let end = [0, 1].map(|i| (self.first[i] + self.size[i] + halo).min(whole[i]));
         Self { first, size: [0, 1].map(|i| end[i] - first[i]) }

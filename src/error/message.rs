@@ -180,24 +180,24 @@ settings! {
 
 impl Setting {
     /// The setting at this value.
-    pub fn at(self, value: impl Display) -> Part {
-        Part::Setting(self, Form::At(value.to_string()))
+    pub fn at(self, value: impl Display) -> MessagePart {
+        MessagePart::Setting(self, SettingForm::At(value.to_string()))
     }
 
     /// The setting at a value of the user's own.
-    pub fn with_value(self) -> Part {
-        Part::Setting(self, Form::WithValue)
+    pub(crate) fn with_value(self) -> MessagePart {
+        MessagePart::Setting(self, SettingForm::WithValue)
     }
 
     /// A value of the user's own for the setting, which is not named.
-    pub fn value(self) -> Part {
-        Part::Setting(self, Form::Value)
+    pub fn value(self) -> MessagePart {
+        MessagePart::Setting(self, SettingForm::Value)
     }
 }
 
 /// How much of a setting stands in a message.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-pub enum Form {
+pub enum SettingForm {
     /// Itself.
     Name,
     /// Itself, at this value.
@@ -210,16 +210,16 @@ pub enum Form {
 
 /// A piece of a message.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-pub enum Part {
+pub enum MessagePart {
     /// As they are.
     Words(String),
     /// A setting, and how much of it is said.
-    Setting(Setting, Form),
+    Setting(Setting, SettingForm),
 }
 
 /// Words and settings in the order of a sentence; see [`message!`](crate::message).
 #[derive(Debug, Clone, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
-pub struct Message(Vec<Part>);
+pub struct Message(Vec<MessagePart>);
 
 impl Message {
     /// Adds another at the end.
@@ -230,18 +230,20 @@ impl Message {
     /// The same on one line that moves nothing on a terminal.
     pub(crate) fn plain(self) -> Self {
         let piece = |part| match part {
-            Part::Words(words) => Part::Words(plain(words)),
-            Part::Setting(setting, Form::At(value)) => Part::Setting(setting, Form::At(plain(value))),
-            other @ Part::Setting(..) => other,
+            MessagePart::Words(words) => MessagePart::Words(plain(words)),
+            MessagePart::Setting(setting, SettingForm::At(value)) => {
+                MessagePart::Setting(setting, SettingForm::At(plain(value)))
+            }
+            other @ MessagePart::Setting(..) => other,
         };
         Self(self.0.into_iter().map(piece).collect())
     }
 
     /// The sentence, with `spelled` in the place of settings.
-    pub fn told(&self, spelled: impl Fn(Setting, &Form) -> String) -> String {
-        let piece = |part: &Part| match part {
-            Part::Words(words) => words.clone(),
-            Part::Setting(setting, form) => spelled(*setting, form),
+    pub fn told(&self, spelled: impl Fn(Setting, &SettingForm) -> String) -> String {
+        let piece = |part: &MessagePart| match part {
+            MessagePart::Words(words) => words.clone(),
+            MessagePart::Setting(setting, form) => spelled(*setting, form),
         };
         self.0.iter().map(piece).collect()
     }
@@ -251,21 +253,21 @@ impl Message {
 impl Display for Message {
     fn fmt(&self, to: &mut Formatter<'_>) -> fmt::Result {
         to.write_str(&self.told(|setting, form| match form {
-            Form::At(value) => format!("{setting} {value}"),
-            Form::Name | Form::WithValue | Form::Value => setting.to_string(),
+            SettingForm::At(value) => format!("{setting} {value}"),
+            SettingForm::Name | SettingForm::WithValue | SettingForm::Value => setting.to_string(),
         }))
     }
 }
 
-impl From<Part> for Message {
-    fn from(part: Part) -> Self {
+impl From<MessagePart> for Message {
+    fn from(part: MessagePart) -> Self {
         Self(vec![part])
     }
 }
 
 impl From<String> for Message {
     fn from(words: String) -> Self {
-        Part::Words(words).into()
+        MessagePart::Words(words).into()
     }
 }
 
@@ -277,11 +279,12 @@ impl From<&str> for Message {
 
 impl From<Setting> for Message {
     fn from(setting: Setting) -> Self {
-        Part::Setting(setting, Form::Name).into()
+        MessagePart::Setting(setting, SettingForm::Name).into()
     }
 }
 
 /// A [`Message`](crate::error::Message) of words, settings and other messages: `message!["use a smaller ", Setting::Size]`.
+#[doc(hidden)]
 #[macro_export]
 macro_rules! message {
     ($($part:expr),+ $(,)?) => {{

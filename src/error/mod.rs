@@ -6,7 +6,7 @@ mod message;
 use std::io;
 use std::path::{Path, PathBuf};
 
-pub use message::{Form, Message, Part, Setting};
+pub use message::{Message, MessagePart, Setting, SettingForm};
 
 /// `Result` with this crate's [`Error`].
 pub type Result<T> = std::result::Result<T, Error>;
@@ -122,7 +122,7 @@ impl Error {
     }
 
     /// Work of which a part was not done: how much, and what to do.
-    pub fn incomplete(what: impl Into<Message>, remedy: impl Into<Message>) -> Self {
+    pub(crate) fn incomplete(what: impl Into<Message>, remedy: impl Into<Message>) -> Self {
         Self::Incomplete { what: what.into(), remedy: remedy.into() }
     }
 
@@ -132,7 +132,7 @@ impl Error {
     }
 
     /// A mistake of ours in the making of a report: which part, and what it lacks.
-    pub fn no_report(what: impl std::fmt::Display) -> Self {
+    pub(crate) fn no_report(what: impl std::fmt::Display) -> Self {
         Self::mistake(format!("the report cannot be made: {what}"))
     }
 
@@ -148,7 +148,7 @@ thread_local! {
 }
 
 /// Does work that copes where memory ends: it is told so, as by `try_reserve`, in the place of an end of the process.
-pub fn without_end<T>(work: impl FnOnce() -> T) -> T {
+pub(crate) fn without_end<T>(work: impl FnOnce() -> T) -> T {
     let before = COPES.replace(true);
     let done = work();
     COPES.set(before);
@@ -156,12 +156,13 @@ pub fn without_end<T>(work: impl FnOnce() -> T) -> T {
 }
 
 /// Whether the present work does.
-pub fn copes_without() -> bool {
+pub(crate) fn copes_without() -> bool {
     COPES.try_with(std::cell::Cell::get).unwrap_or(false)
 }
 
 /// A path as it is printed, everywhere: on one line, with what would move the cursor of a terminal or turn its text
 /// around escaped, as `\n`, `\x1b` or `\u{202e}`, and bytes that are no UTF-8 as `\xff`.
+#[doc(hidden)]
 pub fn shown(path: &Path) -> String {
     let mut text = String::new();
     for part in path.as_os_str().as_encoded_bytes().utf8_chunks() {

@@ -15,23 +15,23 @@ use crate::error::{Error, Result, Setting, shown};
 
 /// What a name means; equal for all names of one file.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
-pub enum Identity {
+pub(crate) enum Identity {
     /// A file that is there, links followed.
-    File(Node),
+    File(FileNode),
     /// A file that would be made: its folder and its name there.
-    New(Node, OsString),
+    New(FileNode, OsString),
 }
 
 /// A file or folder as the system tells it from all others.
 #[cfg(unix)]
-pub type Node = (u64, u64);
+pub(crate) type FileNode = (u64, u64);
 /// A file or folder as the system tells it from all others.
 #[cfg(not(unix))]
-pub type Node = PathBuf;
+pub type FileNode = PathBuf;
 
 impl Identity {
     /// Of the file called `path`, be it there or not; `None` where not even its folder is.
-    pub fn of(path: &Path) -> Option<Self> {
+    pub(crate) fn of(path: &Path) -> Option<Self> {
         if let Ok(node) = node(path) {
             return Some(Self::File(node));
         }
@@ -59,25 +59,25 @@ impl Identity {
 }
 
 #[cfg(unix)]
-fn node(path: &Path) -> io::Result<Node> {
+fn node(path: &Path) -> io::Result<FileNode> {
     use std::os::unix::fs::MetadataExt;
     fs::metadata(path).map(|found| (found.dev(), found.ino()))
 }
 
 #[cfg(not(unix))]
-fn node(path: &Path) -> io::Result<Node> {
+fn node(path: &Path) -> io::Result<FileNode> {
     fs::canonicalize(path)
 }
 
 /// What outputs must not replace, and the outputs so far: each name is compared with all before it.
 #[derive(Debug, Default)]
-pub struct Taken {
+pub(crate) struct Taken {
     names: HashMap<Identity, (PathBuf, Use)>,
 }
 
 /// What a file is to a run of the program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Use {
+pub(crate) enum Use {
     /// It is read.
     Input,
     /// It will be written.
@@ -86,7 +86,7 @@ pub enum Use {
 
 impl Taken {
     /// Files that are read. What is not there cannot be replaced.
-    pub fn inputs<'a>(files: impl IntoIterator<Item = &'a Path>) -> Self {
+    pub(crate) fn inputs<'a>(files: impl IntoIterator<Item = &'a Path>) -> Self {
         let known = |file: &'a Path| Some((Identity::of(file)?, (file.to_owned(), Use::Input)));
         Self { names: files.into_iter().filter_map(known).collect() }
     }
@@ -95,7 +95,7 @@ impl Taken {
     ///
     /// # Errors
     /// [`Error::Setting`] where it is a file that is read, or another output.
-    pub fn take(&mut self, setting: Setting, path: &Path) -> Result<()> {
+    pub(crate) fn take(&mut self, setting: Setting, path: &Path) -> Result<()> {
         Identity::of(path).map_or(Ok(()), |identity| self.take_as(setting, path, identity))
     }
 
@@ -103,7 +103,7 @@ impl Taken {
     ///
     /// # Errors
     /// As [`Self::take`].
-    pub fn take_stdout(&mut self, setting: Setting) -> Result<()> {
+    pub(crate) fn take_stdout(&mut self, setting: Setting) -> Result<()> {
         Identity::of_stdout().map_or(Ok(()), |identity| self.take_as(setting, Path::new("standard output"), identity))
     }
 

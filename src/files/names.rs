@@ -3,7 +3,7 @@
 use std::path::{Component, Path, PathBuf, absolute};
 
 /// A path without `.` and `..`. Not handled: links to folders that are left by `..`.
-pub fn straight(path: &Path) -> PathBuf {
+pub(crate) fn straight(path: &Path) -> PathBuf {
     path.components().fold(PathBuf::new(), |mut path, part| {
         match part {
             Component::ParentDir => drop(path.pop()),
@@ -15,7 +15,7 @@ pub fn straight(path: &Path) -> PathBuf {
 }
 
 /// The way from a folder to a file; the absolute path where there is none.
-pub fn relative(folder: &Path, file: &Path) -> PathBuf {
+pub(crate) fn relative(folder: &Path, file: &Path) -> PathBuf {
     let plain = |path: &Path| straight(&absolute(path).unwrap_or_else(|_| path.to_owned()));
     let (folder, file) = (plain(folder), plain(file));
     let shared = folder.components().zip(file.components()).take_while(|(a, b)| a == b).count();

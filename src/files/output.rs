@@ -25,11 +25,11 @@ const TEMPORARY: &str = ".hachure-";
 pub struct Output {
     /// As the user named it, for messages.
     path: PathBuf,
-    place: Place,
+    place: Destination,
 }
 
 #[derive(Debug)]
-enum Place {
+enum Destination {
     File {
         /// Where it goes: `path` with links followed, so that a link stays one.
         target: PathBuf,
@@ -78,19 +78,19 @@ impl Output {
         let (file, temporary) = builder.tempfile_in(folder).map_err(failed)?.into_parts();
         under_way.push(temporary.to_path_buf());
         drop(under_way);
-        Ok(Self { path: path.to_owned(), place: Place::File { target, file: Some(file), temporary } })
+        Ok(Self { path: path.to_owned(), place: Destination::File { target, file: Some(file), temporary } })
     }
 
     /// Collects bytes for standard output.
     pub fn stdout() -> Self {
-        Self { path: "standard output".into(), place: Place::Stdout(Vec::new()) }
+        Self { path: "standard output".into(), place: Destination::Stdout(Vec::new()) }
     }
 
     /// The file it will be, with links followed; `None` for standard output.
     pub fn target(&self) -> Option<&Path> {
         match &self.place {
-            Place::File { target, .. } => Some(target),
-            Place::Stdout(_) => None,
+            Destination::File { target, .. } => Some(target),
+            Destination::Stdout(_) => None,
         }
     }
 
@@ -99,12 +99,12 @@ impl Output {
     /// [`Error::Output`] where writing fails.
     pub fn write(&mut self, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
         let written = match &mut self.place {
-            Place::File { file: Some(file), .. } => {
+            Destination::File { file: Some(file), .. } => {
                 let mut buffer = BufWriter::new(file);
                 write(&mut buffer).and_then(|()| buffer.flush())
             }
-            Place::File { file: None, .. } => Err(io::Error::other("it is closed")),
-            Place::Stdout(bytes) => write(bytes),
+            Destination::File { file: None, .. } => Err(io::Error::other("it is closed")),
+            Destination::Stdout(bytes) => write(bytes),
         };
         written.map_err(|why| Error::output(&self.path, &why))
     }
@@ -115,8 +115,8 @@ impl Output {
     pub fn write_by_name(&mut self, write: impl FnOnce(&Path) -> io::Result<()>) -> Result<()> {
         self.close();
         let written = match &self.place {
-            Place::File { temporary, .. } => write(temporary),
-            Place::Stdout(_) => Err(io::Error::other("it has no name")),
+            Destination::File { temporary, .. } => write(temporary),
+            Destination::Stdout(_) => Err(io::Error::other("it has no name")),
         };
         written.map_err(|why| Error::output(&self.path, &why))
     }
@@ -127,14 +127,14 @@ impl Output {
     /// The system's, and where it is closed or standard output.
     pub fn duplicate(&self) -> io::Result<File> {
         match &self.place {
-            Place::File { file: Some(file), .. } => file.try_clone(),
-            Place::File { .. } | Place::Stdout(_) => Err(io::Error::other("it is closed")),
+            Destination::File { file: Some(file), .. } => file.try_clone(),
+            Destination::File { .. } | Destination::Stdout(_) => Err(io::Error::other("it is closed")),
         }
     }
 
     /// Closes the file: for many outputs that wait for each other, of which a system lets only so many be open.
     pub fn close(&mut self) {
-        if let Place::File { file, .. } = &mut self.place {
+        if let Destination::File { file, .. } = &mut self.place {
             *file = None;
         }
     }
@@ -145,13 +145,13 @@ impl Output {
     /// [`Error::Output`] where renaming fails (then the older file still stands) or standard output takes no more.
     pub fn publish(self) -> Result<()> {
         let published = match self.place {
-            Place::File { target, temporary, .. } => {
+            Destination::File { target, temporary, .. } => {
                 let path = temporary.to_path_buf();
                 let named = temporary.persist(target).map_err(|e| e.error);
                 forget(&path);
                 named
             }
-            Place::Stdout(bytes) => print(&bytes),
+            Destination::Stdout(bytes) => print(&bytes),
         };
         published.map_err(|why| Error::output(&self.path, &why))
     }

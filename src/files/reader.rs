@@ -7,16 +7,8 @@ use std::io::stdout;
 #[cfg(unix)]
 use std::os::fd::AsRawFd;
 
-/// Whether there is a reader now.
-pub fn is_there() -> bool {
-    #[cfg(unix)]
-    return !is_gone_within(0);
-    #[cfg(not(unix))]
-    true
-}
-
 /// Waits until there is none; for ever where that cannot be told.
-pub fn wait_until_gone() {
+pub(crate) fn wait_until_gone() {
     #[cfg(unix)]
     while !is_gone_within(-1) {
         // A signal came between, or the system cannot tell of such a file.

@@ -17,7 +17,7 @@ const ALIKE: f64 = 0.75;
 ///
 /// # Errors
 /// [`Error::Input`] where it cannot be read, is no regular file, or is larger than a mebibyte.
-pub fn text(path: &Path) -> Result<String> {
+pub(crate) fn text(path: &Path) -> Result<String> {
     let unreadable = |e: io::Error| Error::input(path, e.to_string(), "name a file of TOML that can be read");
     let wrong = |what: String| Error::input(path, what, "name a file of TOML");
     // A pipe would be waited for.
@@ -33,7 +33,7 @@ pub fn text(path: &Path) -> Result<String> {
 }
 
 /// A mistake with its place and what was meant, `otherwise` a remedy for what is no wrong key or type.
-pub fn mistake(text: &str, path: &Path, error: &toml::de::Error, otherwise: &str) -> Error {
+pub(crate) fn mistake(text: &str, path: &Path, error: &toml::de::Error, otherwise: &str) -> Error {
     let place = error.span().map_or_else(String::new, |span| place(text, &span));
     let message = error.message().trim().replace('\n', " ");
     let (what, expected) = message.split_once(", expected ").unwrap_or((&message, ""));
@@ -53,7 +53,7 @@ pub fn mistake(text: &str, path: &Path, error: &toml::de::Error, otherwise: &str
 }
 
 /// Where a piece of a text begins, in words that end in a colon.
-pub fn place(text: &str, span: &Range<usize>) -> String {
+pub(crate) fn place(text: &str, span: &Range<usize>) -> String {
     text.get(..span.start).map_or_else(String::new, |before| {
         let line = before.rsplit('\n').next().unwrap_or_default();
         format!("line {}, column {}: ", before.matches('\n').count() + 1, line.chars().count() + 1)
@@ -61,7 +61,7 @@ pub fn place(text: &str, span: &Range<usize>) -> String {
 }
 
 /// The known name that comes nearest, else all.
-pub fn meant(name: &str, known: &[&str]) -> String {
+pub(crate) fn meant(name: &str, known: &[&str]) -> String {
     let likeness = |known: &&&str| strsim::jaro_winkler(&name.to_lowercase(), known);
     let nearest = known.iter().max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
     match nearest.filter(|nearest| likeness(nearest) >= ALIKE) {

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use glam::{DMat2, DVec2};
 
-use super::{ReadOptions, Reading, Stage};
+use super::{ReadOptions, ReadStage, Reading};
 use crate::dem::{Crs, Dem, History, convergence_in_words};
 use crate::error::{Message, Result, shown};
 
@@ -62,7 +62,7 @@ impl Info {
 ///
 /// # Errors
 /// Those of [`read_all`](super::read_all()).
-pub fn info(paths: &[PathBuf], options: &ReadOptions, progress: &dyn Fn(Stage, f64)) -> Result<Info> {
+pub fn info(paths: &[PathBuf], options: &ReadOptions, progress: &dyn Fn(ReadStage, f64)) -> Result<Info> {
     info_and_dem(paths, options, progress).map(|(info, _)| info)
 }
 
@@ -70,11 +70,15 @@ pub fn info(paths: &[PathBuf], options: &ReadOptions, progress: &dyn Fn(Stage, f
 ///
 /// # Errors
 /// Those of [`info()`].
-pub fn info_and_dem(paths: &[PathBuf], options: &ReadOptions, progress: &dyn Fn(Stage, f64)) -> Result<(Info, Dem)> {
+pub(crate) fn info_and_dem(
+    paths: &[PathBuf],
+    options: &ReadOptions,
+    progress: &dyn Fn(ReadStage, f64),
+) -> Result<(Info, Dem)> {
     let reading = Reading::new(paths, options)?;
     let (driver, source) = (reading.format().to_owned(), reading.warped_from());
     let dem = reading.finish_as_read(progress)?;
-    let survey = dem.survey(&|done| progress(Stage::Read, done))?;
+    let survey = dem.survey(&|done| progress(ReadStage::Read, done))?;
     let mut history = dem.history().clone();
     survey.assumed.iter().for_each(|clause| history.assume(clause.clone()));
     let [west, south, east, north] = dem.extent();

@@ -46,7 +46,7 @@ impl MapFormat {
     }
 
     /// Whether it holds degrees of WGS 84 alone.
-    pub fn is_of_globe(self) -> bool {
+    pub(crate) fn is_of_globe(self) -> bool {
         self != Self::GeoPackage
     }
 }

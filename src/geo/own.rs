@@ -73,7 +73,11 @@ impl OwnLines {
         }
         words
     }
+}
 
+/// What other stages and tests look into.
+#[doc(hidden)]
+impl OwnLines {
     /// A hash of all that lines on a DEM depend on.
     pub fn hash(&self) -> u128 {
         let mut hash = Xxh3::new();

@@ -107,7 +107,7 @@ impl Default for ReadOptions {
 
 /// What is being done, for a progress bar.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Stage {
+pub enum ReadStage {
     /// Samples come from the files.
     Read,
     /// They are warped to a north-up grid in metres.
@@ -150,6 +150,6 @@ pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Dem> {
 /// [`Error::Setting`](crate::error::Error::Setting) for options that make no sense,
 /// [`Error::Limit`](crate::error::Error::Limit) for more samples than fit, [`Error::Input`](crate::error::Error::Input) for a
 /// file that is missing, damaged, no raster, nowhere, without elevations, not to be trusted, or outside the crop.
-pub fn read_all(paths: &[PathBuf], options: &ReadOptions, progress: &dyn Fn(Stage, f64)) -> Result<Dem> {
+pub fn read_all(paths: &[PathBuf], options: &ReadOptions, progress: &dyn Fn(ReadStage, f64)) -> Result<Dem> {
     Reading::new(paths, options)?.finish(progress)
 }

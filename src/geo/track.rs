@@ -8,7 +8,7 @@ use crate::dem::Crs;
 
 /// The points of a line, or points in order, and how high they lie.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Track {
+pub(crate) struct Track {
     /// The system of the places; `None` where the file names none.
     pub crs: Option<Crs>,
     /// X first, at least two.

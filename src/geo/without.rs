@@ -4,7 +4,7 @@ use std::io;
 use std::iter::Empty;
 use std::path::{Path, PathBuf};
 
-use super::{MapFormat, MapLine, OwnLines, ReadOptions, Stage, Track};
+use super::{MapFormat, MapLine, OwnLines, ReadOptions, ReadStage, Track};
 use crate::dem::{Crs, Dem};
 use crate::error::{Error, Result};
 
@@ -14,30 +14,30 @@ const WITHOUT: &str = "this hachure was built without GDAL";
 const REMEDY: &str = "build it with its default features: `cargo build --release`";
 
 /// Files opened and understood: there are none.
-pub enum Reading {}
+pub(crate) enum Reading {}
 
 impl Reading {
     /// Opens nothing.
     ///
     /// # Errors
     /// [`Error::Input`], always.
-    pub fn new(paths: &[PathBuf], _: &ReadOptions) -> Result<Self> {
+    pub(crate) fn new(paths: &[PathBuf], _: &ReadOptions) -> Result<Self> {
         let path = paths.first().map_or(Path::new("DEM"), PathBuf::as_path);
         Err(Error::input(path, format!("cannot be read, {WITHOUT}"), REMEDY))
     }
 
     /// Every file on the disk that the DEM is made of.
-    pub fn files(&self) -> Empty<&Path> {
+    pub(crate) fn files(&self) -> Empty<&Path> {
         match *self {}
     }
 
     /// The format of the first file.
-    pub fn format(&self) -> &str {
+    pub(crate) fn format(&self) -> &str {
         match *self {}
     }
 
     /// The files' own grid in words, where the DEM is warped from it or its axes are turned.
-    pub fn warped_from(&self) -> Option<String> {
+    pub(crate) fn warped_from(&self) -> Option<String> {
         match *self {}
     }
 
@@ -45,7 +45,7 @@ impl Reading {
     ///
     /// # Errors
     /// None: nobody has one.
-    pub fn finish(self, _: &dyn Fn(Stage, f64)) -> Result<Dem> {
+    pub(crate) fn finish(self, _: &dyn Fn(ReadStage, f64)) -> Result<Dem> {
         match self {}
     }
 
@@ -53,7 +53,7 @@ impl Reading {
     ///
     /// # Errors
     /// None: nobody has one.
-    pub fn finish_as_read(self, _: &dyn Fn(Stage, f64)) -> Result<Dem> {
+    pub(crate) fn finish_as_read(self, _: &dyn Fn(ReadStage, f64)) -> Result<Dem> {
         match self {}
     }
 
@@ -61,7 +61,7 @@ impl Reading {
     ///
     /// # Errors
     /// None: nobody has one.
-    pub fn check_held(&self) -> Result<()> {
+    pub(crate) fn check_held(&self) -> Result<()> {
         match *self {}
     }
 }
@@ -96,7 +96,7 @@ pub fn available() -> Result<()> {
 ///
 /// # Errors
 /// [`Error::Input`], always.
-pub fn track(path: &Path, _: bool) -> Result<Track> {
+pub(crate) fn track(path: &Path, _: bool) -> Result<Track> {
     Err(Error::input(path, format!("cannot be read, {WITHOUT}"), REMEDY))
 }
 

@@ -50,16 +50,16 @@ impl Buffers {
     ///
     /// # Errors
     /// [`Error::Limit`] when it would exceed what every device binds.
-    pub fn create(&mut self, gpu: &Gpu, name: &'static str, size: u64) -> Result<Made> {
+    pub fn create(&mut self, gpu: &Gpu, name: &'static str, size: u64) -> Result<Creation> {
         fits(name, size)?;
         let size = rounded(size);
         if self.find(name).is_some_and(|there| there.size() == size) {
-            return Ok(Made::WasThere);
+            return Ok(Creation::WasThere);
         }
         let copied = wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
         let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::INDIRECT | copied;
         let descriptor = wgpu::BufferDescriptor { label: Some(name), size, usage, mapped_at_creation: false };
-        Ok(Made::Anew(self.0.insert(name, gpu.device.create_buffer(&descriptor))))
+        Ok(Creation::Anew(self.0.insert(name, gpu.device.create_buffer(&descriptor))))
     }
 
     /// Forgets a buffer.
@@ -69,7 +69,7 @@ impl Buffers {
 }
 
 /// What became of a buffer that was asked for.
-pub enum Made {
+pub enum Creation {
     /// It is the one that was there.
     WasThere,
     /// It is new, in the place of this one.
@@ -77,7 +77,7 @@ pub enum Made {
 }
 
 /// A buffer of these bytes.
-pub fn upload(gpu: &Gpu, name: &'static str, bytes: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
+pub(crate) fn upload(gpu: &Gpu, name: &'static str, bytes: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(name),
         size: rounded(bytes.len() as u64),

@@ -61,7 +61,7 @@ impl Capacity {
 }
 
 /// Tiles on their way into buffers of another capacity.
-pub struct Moves {
+pub(crate) struct Moves {
     /// What the old buffers have room for.
     pub before: Capacity,
     /// What the new ones have.
@@ -71,14 +71,20 @@ pub struct Moves {
 impl Moves {
     /// Of each kind of tiles, those with gradients and the others, whether all are still there, each in its place; whether
     /// heights are copied.
-    pub fn stays(&self, heights_move: bool) -> [bool; 2] {
+    pub(crate) fn stays(&self, heights_move: bool) -> [bool; 2] {
         let Self { before, after } = self;
         let behind_the_same = before.patched == after.patched;
         [after.patched >= before.patched, after.bare() >= before.bare() && (heights_move || behind_the_same)]
     }
 
     /// Records the copies of tiles that stay from one buffer to another of this name.
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, name: &str, old: &wgpu::Buffer, new: &wgpu::Buffer) {
+    pub(crate) fn record(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        name: &str,
+        old: &wgpu::Buffer,
+        new: &wgpu::Buffer,
+    ) {
         let Self { before, after } = self;
         let [patched, bare] = self.stays(true);
         let (copies_patched, copies_bare) = match name {

@@ -100,7 +100,7 @@ impl FrameTime {
 }
 
 /// Times the passes of one frame.
-pub enum Timer {
+pub(crate) enum Timer {
     /// Waits for each.
     Waits(FrameTime),
     /// Has the device stamp them.
@@ -109,7 +109,7 @@ pub enum Timer {
 
 impl Timer {
     /// A timer by the device's clock.
-    pub fn new(gpu: &Gpu) -> Self {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
         match gpu.clock {
             Clock::Wall => Self::Waits(FrameTime::default()),
             Clock::Timestamps => Self::Stamps(Stamps::default()),
@@ -117,7 +117,7 @@ impl Timer {
     }
 
     /// What the next pass writes.
-    pub fn writes(&mut self, gpu: &Gpu, name: &'static str) -> Option<wgpu::ComputePassTimestampWrites<'_>> {
+    pub(crate) fn writes(&mut self, gpu: &Gpu, name: &'static str) -> Option<wgpu::ComputePassTimestampWrites<'_>> {
         match self {
             Self::Waits(_) => None,
             Self::Stamps(stamps) => Some(stamps.writes(gpu, name)),
@@ -128,7 +128,7 @@ impl Timer {
     ///
     /// # Errors
     /// Whatever `submit` or the driver reports.
-    pub fn wait(&mut self, gpu: &Gpu, name: &'static str, submit: impl FnOnce() -> Result<()>) -> Result<()> {
+    pub(crate) fn wait(&mut self, gpu: &Gpu, name: &'static str, submit: impl FnOnce() -> Result<()>) -> Result<()> {
         if let Self::Waits(time) = self {
             let start = Instant::now();
             submit()?;
@@ -142,7 +142,7 @@ impl Timer {
     ///
     /// # Errors
     /// As [`Stamps::read`].
-    pub fn read(self, gpu: &Gpu) -> Result<FrameTime> {
+    pub(crate) fn read(self, gpu: &Gpu) -> Result<FrameTime> {
         match self {
             Self::Waits(time) => Ok(time),
             Self::Stamps(stamps) => stamps.read(gpu),
@@ -155,7 +155,7 @@ impl Timer {
 ///
 /// # Errors
 /// Whatever `record` or the driver reports.
-pub fn time_of(gpu: &Gpu, record: impl FnOnce(&mut wgpu::CommandEncoder) -> Result<()>) -> Result<Option<f64>> {
+pub(crate) fn time_of(gpu: &Gpu, record: impl FnOnce(&mut wgpu::CommandEncoder) -> Result<()>) -> Result<Option<f64>> {
     let start = Instant::now();
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     let mut stamps = Stamps::default();

@@ -26,7 +26,7 @@ pub(super) struct Compiled {
 
 impl Compiled {
     /// The pass of this shader and these constants, compiled if nobody has asked for it yet.
-    pub fn pass(
+    pub(super) fn pass(
         &self,
         gpu: &Gpu,
         name: &'static str,
@@ -49,12 +49,12 @@ impl Compiled {
     }
 
     /// How many passes were compiled so far.
-    pub fn count(&self) -> usize {
+    pub(super) fn count(&self) -> usize {
         self.count.load(Ordering::Relaxed)
     }
 
     /// Drops all passes, and what is known of their shaders.
-    pub fn forget(&self) {
+    pub(super) fn forget(&self) {
         lock(&self.shaders).clear();
         lock(&self.passes).clear();
     }

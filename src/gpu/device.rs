@@ -106,59 +106,9 @@ impl Gpu {
         Ok(Self { device, queue, info, int64, clock, compiled: Compiled::default(), failure, lost })
     }
 
-    /// The pass of a composed shader with the pipeline constants on which it depends: compiled when it is first asked for,
-    /// the same from then on.
-    ///
-    /// # Errors
-    /// [`Error::Mistake`] when the shader is no valid WGSL, lacks the entry point `name`, declares none of one of the
-    /// constants, or depends on one that has no value; [`Error::Gpu`] when the driver refuses.
-    pub fn pass(
-        &self,
-        name: &'static str,
-        source: impl Into<Cow<'static, str>>,
-        constants: &[(&str, f64)],
-    ) -> Result<Arc<Pass>> {
-        self.compiled.pass(self, name, source.into(), constants)
-    }
-
     /// Adapter and driver in words.
-    pub fn adapter_and_driver(&self) -> String {
+    pub(crate) fn adapter_and_driver(&self) -> String {
         format!("{} ({})", self.info.name, self.info.driver_info)
-    }
-
-    /// How many passes were compiled so far.
-    pub fn compiled(&self) -> usize {
-        self.compiled.count()
-    }
-
-    /// Drops all compiled passes, so that the next frames compile theirs again: for measuring what setting up takes.
-    /// Renderers keep those they have bound.
-    pub fn forget_passes(&self) {
-        self.compiled.forget();
-    }
-
-    /// Waits until all submitted work is done.
-    ///
-    /// # Errors
-    /// Whatever the driver reported since the last call.
-    pub fn wait(&self) -> Result<()> {
-        let wait = wgpu::PollType::Wait { submission_index: None, timeout: Some(PATIENCE) };
-        let outcome = self.device.poll(wait);
-        if let Some(what) = take(&self.lost) {
-            return Err(Error::DeviceLost { what });
-        }
-        if let Err(e) = outcome {
-            return Err(Error::DeviceLost { what: one_line(&e) });
-        }
-        self.check()
-    }
-
-    /// The first error the driver reported to no one else since the last call, of whatever thread, if any.
-    ///
-    /// # Errors
-    /// [`Error::Gpu`] with the driver's words.
-    pub fn check(&self) -> Result<()> {
-        take(&self.failure).map_or(Ok(()), |what| Err(memory::failure(what)))
     }
 
     /// Does work of this thread, and gives the error that the driver reports of it: no other thread's, and to no other
@@ -211,6 +161,60 @@ impl Gpu {
         let mut values = bytemuck::zeroed_vec(count);
         bytemuck::cast_slice_mut(&mut values).copy_from_slice(&view);
         Ok(values)
+    }
+}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
+impl Gpu {
+    /// The pass of a composed shader with the pipeline constants on which it depends: compiled when it is first asked for,
+    /// the same from then on.
+    ///
+    /// # Errors
+    /// [`Error::Mistake`] when the shader is no valid WGSL, lacks the entry point `name`, declares none of one of the
+    /// constants, or depends on one that has no value; [`Error::Gpu`] when the driver refuses.
+    pub fn pass(
+        &self,
+        name: &'static str,
+        source: impl Into<Cow<'static, str>>,
+        constants: &[(&str, f64)],
+    ) -> Result<Arc<Pass>> {
+        self.compiled.pass(self, name, source.into(), constants)
+    }
+
+    /// How many passes were compiled so far.
+    pub fn compiled(&self) -> usize {
+        self.compiled.count()
+    }
+
+    /// Drops all compiled passes, so that the next frames compile theirs again: for measuring what setting up takes.
+    /// Renderers keep those they have bound.
+    pub fn forget_passes(&self) {
+        self.compiled.forget();
+    }
+
+    /// Waits until all submitted work is done.
+    ///
+    /// # Errors
+    /// Whatever the driver reported since the last call.
+    pub fn wait(&self) -> Result<()> {
+        let wait = wgpu::PollType::Wait { submission_index: None, timeout: Some(PATIENCE) };
+        let outcome = self.device.poll(wait);
+        if let Some(what) = take(&self.lost) {
+            return Err(Error::DeviceLost { what });
+        }
+        if let Err(e) = outcome {
+            return Err(Error::DeviceLost { what: one_line(&e) });
+        }
+        self.check()
+    }
+
+    /// The first error the driver reported to no one else since the last call, of whatever thread, if any.
+    ///
+    /// # Errors
+    /// [`Error::Gpu`] with the driver's words.
+    pub fn check(&self) -> Result<()> {
+        take(&self.failure).map_or(Ok(()), |what| Err(memory::failure(what)))
     }
 }
 

@@ -22,7 +22,7 @@ fn limits() -> [Option<u64>; 2] {
 }
 
 /// The least of these limits, bytes.
-pub fn limit() -> Option<u64> {
+pub(crate) fn limit() -> Option<u64> {
     limits().into_iter().flatten().min()
 }
 

@@ -6,12 +6,11 @@ use super::device::Gpu;
 use super::page::PageBuffers;
 use super::pass::Pass;
 use super::scene::Scene;
+use super::shaders::{self, Amounts};
 use super::stages::Stages;
-use super::{adjacency, border, candidates, compose, crossed, facing, meet, project, rasterize, seam, tessellate};
-use super::{toward_away, turn};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::plan::passes::{Over, PlannedPass};
-use crate::plan::{Batch, Frame, PassName, Piece};
+use crate::plan::{Batch, Frame, PagePiece};
 
 /// Scene, page and passes on a device.
 #[derive(Clone, Copy)]
@@ -77,7 +76,7 @@ impl<'a> OnDevice<'a> {
     pub fn dispatch(
         self,
         frame: &Frame,
-        piece: Piece,
+        piece: PagePiece,
         planned: &PlannedPass,
         [batch, round]: [u32; 2],
     ) -> Result<Option<Dispatch<'a>>> {
@@ -94,36 +93,18 @@ impl<'a> OnDevice<'a> {
         if planned.over == Over::FreshChunks && chunks == 0 {
             return Ok(None);
         }
+        let amounts = Amounts {
+            chunks,
+            size: piece.drawn.size,
+            rim_edges: self.scene.rim_edges() as u64,
+            laid: self.curves.laid().into(),
+            crossed: self.curves.capacity().crossed.into(),
+            segments: self.curves.capacity().segments.into(),
+        };
         let extent = match planned.over {
             Over::List(list) => Extent::List(self.buffer(list)?),
-            _ => Extent::Invocations(self.invocations(planned.name, &stage.pass, chunks, piece.drawn.size)?),
+            _ => Extent::Invocations(shaders::invocations(planned.name, &stage.pass, amounts)?),
         };
         Ok(Some(Dispatch { pass: &stage.pass, group, extent }))
-    }
-
-    /// Invocations of a pass over so many chunks, or over a piece.
-    fn invocations(self, name: PassName, pass: &Pass, chunks: u32, size: [u32; 2]) -> Result<[u32; 2]> {
-        Ok(match name {
-            PassName::Tessellate => tessellate::invocations(chunks),
-            PassName::Seam => seam::invocations(chunks),
-            PassName::Facing => facing::invocations(chunks),
-            PassName::Project => project::invocations(chunks),
-            PassName::Rasterize => rasterize::invocations(chunks),
-            PassName::Candidates => candidates::invocations(size),
-            PassName::TowardAway => toward_away::invocations(size),
-            PassName::Adjacency => adjacency::invocations(size),
-            PassName::Border | PassName::RimSegments => border::invocations(pass, self.scene.rim_edges()),
-            PassName::Sight => pass.folded(self.curves.capacity().segments.into()),
-            PassName::Lay => pass.folded(self.curves.laid().into()),
-            PassName::Segments => pass.folded(self.curves.capacity().crossed.into()),
-            PassName::Turning | PassName::Wanted => pass.folded(chunks.into()),
-            PassName::Meet => meet::invocations(chunks),
-            PassName::Crossed => crossed::invocations(chunks),
-            PassName::Turn => turn::invocations(chunks),
-            PassName::Compose => compose::invocations(size),
-            PassName::RasterizeLarge | PassName::Pairs | PassName::Walk | PassName::WalkRest => {
-                return Err(Error::mistake(format!("pass {} goes over a list", name.name())));
-            }
-        })
     }
 }

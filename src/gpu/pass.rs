@@ -10,6 +10,7 @@ use super::device::{Gpu, one_line};
 use crate::error::{Error, Result};
 
 /// The WGSL of a pass: the named files of `shaders/`, each standing on those before it.
+#[doc(hidden)]
 #[macro_export]
 macro_rules! shader {
     ($($name:literal),+ $(,)?) => {
@@ -102,7 +103,7 @@ fn overrides(name: &str, module: &naga::Module) -> Vec<Override> {
 ///
 /// # Errors
 /// [`Error::Mistake`] when the shader declares none of a name, or depends on one that has no value.
-pub fn select<'a>(name: &str, overrides: &[Override], given: &[(&'a str, f64)]) -> Result<Vec<(&'a str, f64)>> {
+pub(crate) fn select<'a>(name: &str, overrides: &[Override], given: &[(&'a str, f64)]) -> Result<Vec<(&'a str, f64)>> {
     let is_declared = |constant: &str| overrides.iter().any(|declared| declared.name == constant);
     if let Some((unknown, _)) = given.iter().find(|(constant, _)| !is_declared(constant)) {
         return Err(mistake(name, format!("no constant is named {unknown}")));

@@ -9,26 +9,25 @@ use std::sync::Arc;
 
 use bytemuck::Zeroable;
 
-use super::buffers::{Buffers, Made};
-use super::candidates::NO_PIXELS;
+use super::buffers::{Buffers, Creation};
 use super::capacity::{Capacity, Moves};
 use super::device::Gpu;
-use super::pool::{Placed, Pool};
-use super::rasterize_large::EMPTY_QUEUE;
+use super::shaders::{EMPTY_QUEUE, NO_PIXELS};
 use super::sizes::{self, TILE_BYTES, rim_fits, valid_fits};
+use super::slot_cache::{Placed, SlotCache};
 use super::uniforms::{CameraUniform, ChunkUniform, SceneUniform};
 use crate::error::{Error, Result};
 use crate::plan::batches::BATCH_CHUNKS;
-use crate::plan::{Border, Detail, Frame, Piece};
+use crate::plan::{Border, Detail, Frame, PagePiece};
 use crate::surface::rim::{RimEdge, rim, rim_length};
 use crate::surface::tile::{TILE_SAMPLES, TileSamples};
 use crate::surface::{Chunk, Lattice, Surface, Tile};
 
 /// Tiles sent to the device together, 3 KB each.
 const TILES_AT_ONCE: usize = 4096;
-/// Which pool holds tiles with gradients: they have the first places.
+/// Which slot cache holds tiles with gradients: they have the first places.
 const PATCHED: usize = 0;
-/// Which pool holds the others.
+/// Which slot cache holds the others.
 const BARE: usize = 1;
 
 /// A surface on a device, and the lattice of the last frame.
@@ -38,10 +37,10 @@ pub struct Scene {
     generation: u64,
     capacity: Capacity,
     /// Those with gradients, and the others.
-    tiles: [Pool<Tile>; 2],
+    tiles: [SlotCache<Tile>; 2],
     /// How many tiles were uploaded.
     uploaded: u64,
-    blocks: Pool<Chunk>,
+    blocks: SlotCache<Chunk>,
     /// `None` while one is on its way, and after an error there: nobody knows then what lies in which place.
     lattice: Option<Arc<Lattice>>,
     /// `None` until a frame draws it.
@@ -70,9 +69,9 @@ impl Scene {
             buffers,
             generation: 0,
             capacity: Capacity::default(),
-            tiles: [Pool::new(0), Pool::new(0)],
+            tiles: [SlotCache::new(0), SlotCache::new(0)],
             uploaded: 0,
-            blocks: Pool::new(0),
+            blocks: SlotCache::new(0),
             lattice: None,
             rim_edges: None,
             fresh: Vec::new(),
@@ -98,8 +97,8 @@ impl Scene {
             return Ok(());
         }
         if self.lattice.take().is_none() {
-            self.tiles = [self.capacity.patched, self.capacity.bare()].map(Pool::new);
-            self.blocks = Pool::new(self.most_blocks());
+            self.tiles = [self.capacity.patched, self.capacity.bare()].map(SlotCache::new);
+            self.blocks = SlotCache::new(self.most_blocks());
         }
         let (chunks, nodes) = (lattice.chunks(), lattice.tree().nodes());
         if self.capacity == Capacity::default()
@@ -158,7 +157,7 @@ impl Scene {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let mut heights_move = false;
         for (name, size) in &sizes {
-            if let Made::Anew(old) = self.buffers.create(gpu, name, *size)? {
+            if let Creation::Anew(old) = self.buffers.create(gpu, name, *size)? {
                 heights_move |= *name == "heights";
                 let new = self.buffers.get(name)?;
                 old.iter().for_each(|old| moves.record(&mut encoder, name, old, new));
@@ -174,9 +173,9 @@ impl Scene {
         }
         let stays = moves.stays(heights_move);
         for ((pool, stays), capacity) in self.tiles.iter_mut().zip(stays).zip([after.patched, after.bare()]) {
-            if stays { pool.grow(capacity) } else { *pool = Pool::new(capacity) }
+            if stays { pool.grow(capacity) } else { *pool = SlotCache::new(capacity) }
         }
-        self.blocks = Pool::new(self.most_blocks());
+        self.blocks = SlotCache::new(self.most_blocks());
         Ok(())
     }
 
@@ -247,7 +246,7 @@ impl Scene {
         let passing = chunks.len() > BATCH_CHUNKS as usize;
         if self.pending || passing {
             // The last ones were never made, or the next ones make way for each other.
-            self.blocks = Pool::new(self.most_blocks());
+            self.blocks = SlotCache::new(self.most_blocks());
         }
         if passing {
             return Ok((slots.clone().map(|slot| slot % BATCH_CHUNKS).collect(), slots.collect()));
@@ -268,7 +267,7 @@ impl Scene {
     ///
     /// # Errors
     /// As [`CameraUniform::new`].
-    pub fn write_camera(&self, gpu: &Gpu, surface: &Surface, frame: &Frame, piece: Piece) -> Result<()> {
+    pub fn write_camera(&self, gpu: &Gpu, surface: &Surface, frame: &Frame, piece: PagePiece) -> Result<()> {
         let uniform = CameraUniform::new(surface.dem(), &frame.camera)?.cut_to(&frame.camera, piece.drawn);
         let (chunks, fresh) = (frame.lattice.chunks().len() as u32, self.fresh());
         let uniform = CameraUniform { chunks, seen: frame.seen, fresh, ..uniform };

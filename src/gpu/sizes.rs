@@ -13,15 +13,15 @@ use crate::surface::tile::TILE_SAMPLES;
 /// The largest storage binding every WebGPU device grants, in bytes.
 pub const LARGEST_BINDING: u64 = 128 << 20;
 /// Bytes of a vertex on the surface, and of one on the page.
-pub const VERTEX_BYTES: u64 = 16;
+pub(crate) const VERTEX_BYTES: u64 = 16;
 /// Bytes of a chunk as shaders read it.
-pub const CHUNK_BYTES: u64 = size_of::<ChunkUniform>() as u64;
+pub(crate) const CHUNK_BYTES: u64 = size_of::<ChunkUniform>() as u64;
 /// Bytes of a pixel: depth and ID, or two depths.
-pub const PIXEL_BYTES: u64 = 8;
+pub(crate) const PIXEL_BYTES: u64 = 8;
 /// Bytes of a word: the ink of a pixel, an item of a list, 32 facing bits, the summary of a chunk, a height.
-pub const WORD_BYTES: u64 = 4;
+pub(crate) const WORD_BYTES: u64 = 4;
 /// Bytes of a segment of a curve.
-pub const SEGMENT_BYTES: u64 = size_of::<Segment>() as u64;
+pub(crate) const SEGMENT_BYTES: u64 = size_of::<Segment>() as u64;
 /// Bytes of an edge of the rim.
 pub const RIM_EDGE_BYTES: u64 = size_of::<RimEdge>() as u64;
 /// Pixels across and down that one invocation of `candidates` or `toward_away` works off.
@@ -29,9 +29,9 @@ pub const BLOCK: [u32; 2] = [4, 8];
 /// Bytes of a list before its items: workgroups along x, y and z, and the count.
 pub const LIST_HEADER: u64 = 16;
 /// Bytes of a tile's samples, of one kind.
-pub const TILE_BYTES: u64 = TILE_SAMPLES as u64 * WORD_BYTES;
+pub(crate) const TILE_BYTES: u64 = TILE_SAMPLES as u64 * WORD_BYTES;
 /// The parts of the facing bits.
-pub const FACING: [&str; 2] = ["facing_0", "facing_1"];
+pub(crate) const FACING: [&str; 2] = ["facing_0", "facing_1"];
 
 /// Whether a page can be drawn in one piece.
 ///

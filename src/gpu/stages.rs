@@ -8,20 +8,18 @@ use super::device::Gpu;
 use super::page::PageBuffers;
 use super::pass::Pass;
 use super::scene::Scene;
+use super::shaders;
 use super::uniforms::BatchUniform;
-use super::{adjacency, border, candidates, compose, crossed, facing, lay, meet, pairs, project, rasterize};
-use super::{rasterize_large, rim_segments, seam, segments, sight, tessellate, toward_away, turn, turning};
-use super::{walk, walk_rest, wanted};
 use crate::error::{Error, Result};
 use crate::plan::batches::PART_CHUNKS;
 use crate::plan::passes::{Often, PlannedPass, passes};
-use crate::plan::{Batch, Curves, Frame, Method, PassName, Plan, Thrift, Visibility};
+use crate::plan::{Batch, Culling, Curves, Frame, Method, PassName, Plan, Visibility};
 
 /// Bytes between entries of a uniform buffer that are bound one at a time.
 const UNIFORM_STRIDE: u64 = 256;
 
 /// A compiled pass with what it binds: once for a piece, or for each round of each batch.
-pub struct Stage {
+pub struct BoundPass {
     /// Which.
     pub name: PassName,
     /// The pass.
@@ -32,7 +30,7 @@ pub struct Stage {
 /// The stages of frames of one plan over so many batches, bound to the buffers that were there.
 #[derive(Default)]
 pub struct Stages {
-    stages: Vec<Stage>,
+    stages: Vec<BoundPass>,
     rounds: u32,
     batches: Option<wgpu::Buffer>,
     made_for: Option<MadeFor>,
@@ -43,7 +41,7 @@ pub struct Stages {
 struct MadeFor {
     passes: Vec<PlannedPass>,
     method: Method,
-    thrift: Thrift,
+    culling: Culling,
     curves: Curves,
     batches: usize,
     /// Of scene, page and curves.
@@ -63,11 +61,11 @@ impl Stages {
         page: &PageBuffers,
         curves: &CurveBuffers,
     ) -> Result<()> {
-        let Plan { method, thrift, curves: asked, .. } = frame.plan;
+        let Plan { method, culling, curves: asked, .. } = frame.plan;
         let made_for = MadeFor {
             passes: passes(&frame.plan),
             method,
-            thrift,
+            culling,
             curves: asked,
             batches: frame.batches.len().max(1),
             generations: [scene.generation(), page.generation(), curves.generation()],
@@ -93,7 +91,7 @@ impl Stages {
                 }
                 Often::Once | Often::ForCurves | Often::OnReading => vec![bound.group(gpu, &pass, 0, 0, none[0])?],
             };
-            stages.push(Stage { name: planned.name, pass, groups });
+            stages.push(BoundPass { name: planned.name, pass, groups });
         }
         *self = Self { stages, rounds, batches: Some(uniforms), made_for: Some(made_for) };
         Ok(())
@@ -103,7 +101,7 @@ impl Stages {
     ///
     /// # Errors
     /// [`Error::Mistake`] when the plan has none.
-    pub fn get(&self, name: PassName) -> Result<&Stage> {
+    pub fn get(&self, name: PassName) -> Result<&BoundPass> {
         let none = || Error::mistake(format!("pass {} is not of the plan", name.name()));
         self.stages.iter().find(|stage| stage.name == name).ok_or_else(none)
     }
@@ -117,7 +115,7 @@ impl Stages {
     ///
     /// # Errors
     /// [`Error::Mistake`] when there is no such batch or round.
-    pub fn group<'a>(&self, stage: &'a Stage, batch: usize, round: u32) -> Result<&'a wgpu::BindGroup> {
+    pub fn group<'a>(&self, stage: &'a BoundPass, batch: usize, round: u32) -> Result<&'a wgpu::BindGroup> {
         let none =
             || Error::mistake(format!("pass {} binds nothing for batch {batch} in round {round}", stage.pass.name));
         let group = stage.groups.get(batch * self.rounds as usize + round as usize);
@@ -172,13 +170,13 @@ fn compile(gpu: &Gpu, frame: &Frame, passes: &[PlannedPass]) -> Result<Vec<Arc<P
 /// What all shaders may depend on.
 fn constants(frame: &Frame) -> [(&'static str, f64); 6] {
     let flag = |on: bool| f64::from(u8::from(on));
-    let Plan { method, thrift, curves, .. } = frame.plan;
+    let Plan { method, culling, curves, .. } = frame.plan;
     [
         ("has_voids", flag(frame.tests_voids)),
         // In how many parts facing bits lie.
         ("facing_parts", f64::from(frame.batches.last().map_or(0, Batch::part) + 1)),
         ("two_depths", flag(frame.visibility == Visibility::TwoDepths)),
-        ("thrifty", flag(thrift == Thrift::LeaveOut)),
+        ("culls", flag(culling == Culling::On)),
         ("all_curves", flag(curves == Curves::All)),
         ("conservative", flag(method.entry().conservative)),
     ]
@@ -186,33 +184,12 @@ fn constants(frame: &Frame) -> [(&'static str, f64); 6] {
 
 /// Compiles a pass of a frame.
 fn pass(gpu: &Gpu, frame: &Frame, name: PassName, constants: &[(&str, f64)]) -> Result<Arc<Pass>> {
-    // Of a method's own passes.
-    let own = || [constants, frame.plan.method.entry().constants].concat();
-    match name {
-        PassName::Tessellate => tessellate::pass(gpu, constants),
-        PassName::Seam => seam::pass(gpu, constants),
-        PassName::Facing => facing::pass(gpu, constants),
-        PassName::Project => project::pass(gpu, constants),
-        PassName::Rasterize => rasterize::pass(gpu, frame.visibility, constants),
-        PassName::RasterizeLarge => rasterize_large::pass(gpu, frame.visibility, constants),
-        PassName::Candidates => candidates::pass(gpu, &own()),
-        PassName::Pairs => pairs::pass(gpu, &own()),
-        PassName::Walk => walk::pass(gpu, frame.keeps_vertices(), &own()),
-        PassName::WalkRest => walk_rest::pass(gpu, frame.keeps_vertices(), &own()),
-        PassName::TowardAway => toward_away::pass(gpu, &own()),
-        PassName::Adjacency => adjacency::pass(gpu, &own()),
-        PassName::Border => border::pass(gpu, constants),
-        PassName::Turning => turning::pass(gpu, constants),
-        PassName::Wanted => wanted::pass(gpu, constants),
-        PassName::Turn => turn::pass(gpu, constants),
-        PassName::Meet => meet::pass(gpu, constants),
-        PassName::Crossed => crossed::pass(gpu, constants),
-        PassName::Segments => segments::pass(gpu, frame.keeps_vertices(), constants),
-        PassName::RimSegments => rim_segments::pass(gpu, frame.keeps_vertices(), constants),
-        PassName::Lay => lay::pass(gpu, frame.keeps_vertices(), constants),
-        PassName::Sight => sight::pass(gpu, frame.keeps_vertices(), constants),
-        PassName::Compose => compose::pass(gpu, constants),
-    }
+    let source = shaders::source(name, frame.visibility, frame.keeps_vertices());
+    let method = frame.plan.method.entry();
+    let of_method = if method.passes.contains(&name) { method.constants } else { &[] };
+    let own = shaders::OWN_CONSTANTS.iter().filter(|(of, _)| *of == name).map(|(_, constant)| *constant);
+    let constants: Vec<_> = constants.iter().chain(of_method).copied().chain(own).collect();
+    gpu.pass(name.name(), source, &constants)
 }
 
 fn batch_uniforms(batches: &[Batch], rounds: u32) -> Vec<BatchUniform> {

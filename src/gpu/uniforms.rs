@@ -6,12 +6,12 @@ use glam::{DVec2, DVec3};
 use crate::dem::Dem;
 use crate::error::{Error, Result, Setting};
 use crate::plan::pieces::Rectangle;
-use crate::surface::pyramid::Relief;
+use crate::surface::pyramid::SquareBounds;
 use crate::surface::{Chunk, Lattice, Pyramid};
 use crate::view::Camera;
 
 /// The near plane in cells: a power of two, so that depths scale without rounding.
-pub const NEAR_CELLS: f64 = 1.0 / 1024.0;
+pub(crate) const NEAR_CELLS: f64 = 1.0 / 1024.0;
 
 /// `Scene` of scene.wgsl.
 #[repr(C)]
@@ -53,8 +53,8 @@ pub struct CameraUniform {
     pub chunks: u32,
     /// Pixels across, down, of what is drawn.
     pub size: [u32; 2],
-    /// Inward normals of the two sides of its map projection; 0 where it is no wedge.
-    pub wedge: [f32; 4],
+    /// Inward normals of the two sides of its map projection; 0 where it is no frustum.
+    pub frustum: [f32; 4],
     /// The page's column and row of its top left pixel.
     pub origin: [i32; 2],
     /// Chunks in the first slots that are drawn.
@@ -209,7 +209,7 @@ impl ChunkUniform {
     /// A chunk with its samples in a tile and its vertices in a block.
     pub fn new(chunk: Chunk, pyramid: &Pyramid, tile: u32, block: u32) -> Self {
         let Chunk { origin, step, coarser } = chunk;
-        let Relief { low, high, beyond } = pyramid.relief(origin, step);
+        let SquareBounds { low, high, beyond } = pyramid.relief(origin, step);
         Self { origin, step, coarser, low, high, beyond, tile, block, pad: 0 }
     }
 }
@@ -252,7 +252,7 @@ impl CameraUniform {
             focal: camera.focal() as f32,
             chunks: 0,
             size: [camera.width, camera.height],
-            wedge: wedge_words(camera.wedge()),
+            frustum: frustum_words(camera.frustum()),
             origin: [0; 2],
             seen: 0,
             fresh: 0,
@@ -262,12 +262,12 @@ impl CameraUniform {
     /// The same camera drawing a rectangle of its page alone.
     pub fn cut_to(self, camera: &Camera, rectangle: Rectangle) -> Self {
         let origin = DVec2::from(rectangle.origin.map(f64::from));
-        let wedge = camera.wedge_of(origin, origin + DVec2::from(rectangle.size.map(f64::from)));
-        let wedge = wedge_words(wedge);
-        Self { origin: rectangle.origin.map(|v| v as i32), size: rectangle.size, wedge, ..self }
+        let frustum = camera.frustum_of(origin, origin + DVec2::from(rectangle.size.map(f64::from)));
+        let frustum = frustum_words(frustum);
+        Self { origin: rectangle.origin.map(|v| v as i32), size: rectangle.size, frustum, ..self }
     }
 }
 
-fn wedge_words(wedge: Option<[DVec2; 2]>) -> [f32; 4] {
-    wedge.map_or([0.0; 4], |[a, b]| [a.x as f32, a.y as f32, b.x as f32, b.y as f32])
+fn frustum_words(frustum: Option<[DVec2; 2]>) -> [f32; 4] {
+    frustum.map_or([0.0; 4], |[a, b]| [a.x as f32, a.y as f32, b.x as f32, b.y as f32])
 }

@@ -5,20 +5,25 @@ use super::device::Gpu;
 use super::on_device::OnDevice;
 use super::sizes::LIST_HEADER;
 use crate::error::Result;
-use crate::plan::{Frame, PassName, Piece};
+use crate::plan::{Frame, PagePiece, PassName};
 
 /// Commands for a piece of a frame, recorded and not yet submitted.
-pub struct Work<'a> {
+pub(crate) struct FrameWork<'a> {
     on_device: OnDevice<'a>,
     frame: &'a Frame,
-    piece: Piece,
+    piece: PagePiece,
     timer: Option<&'a mut Timer>,
     encoder: wgpu::CommandEncoder,
 }
 
-impl<'a> Work<'a> {
+impl<'a> FrameWork<'a> {
     /// Nothing recorded yet.
-    pub fn new(on_device: OnDevice<'a>, frame: &'a Frame, piece: Piece, timer: Option<&'a mut Timer>) -> Self {
+    pub(crate) fn new(
+        on_device: OnDevice<'a>,
+        frame: &'a Frame,
+        piece: PagePiece,
+        timer: Option<&'a mut Timer>,
+    ) -> Self {
         let encoder = on_device.gpu.device.create_command_encoder(&Default::default());
         let mut work = Self { on_device, frame, piece, timer, encoder };
         if work.timer.is_some() {
@@ -32,7 +37,7 @@ impl<'a> Work<'a> {
     ///
     /// # Errors
     /// [`Error::Mistake`](crate::error::Error::Mistake) where there is none of a name; whatever the driver reports.
-    pub fn clear(&mut self, names: &[&str]) -> Result<()> {
+    pub(crate) fn clear(&mut self, names: &[&str]) -> Result<()> {
         for name in names {
             self.encoder.clear_buffer(self.on_device.buffer(name)?, 0, None);
         }
@@ -43,7 +48,7 @@ impl<'a> Work<'a> {
     ///
     /// # Errors
     /// As [`Self::clear`].
-    pub fn empty(&mut self, list: &str, header: &str) -> Result<()> {
+    pub(crate) fn empty(&mut self, list: &str, header: &str) -> Result<()> {
         let (list, header) = (self.on_device.buffer(list)?, self.on_device.buffer(header)?);
         self.encoder.copy_buffer_to_buffer(header, 0, list, 0, LIST_HEADER);
         self.timed(CLEAR)
@@ -53,7 +58,7 @@ impl<'a> Work<'a> {
     ///
     /// # Errors
     /// As [`OnDevice::dispatch`]; whatever the driver reports.
-    pub fn run(&mut self, name: PassName, [batch, round]: [u32; 2]) -> Result<()> {
+    pub(crate) fn run(&mut self, name: PassName, [batch, round]: [u32; 2]) -> Result<()> {
         let Some(planned) = self.frame.pass(name, round) else { return Ok(()) };
         let Some(dispatch) = self.on_device.dispatch(self.frame, self.piece, planned, [batch, round])? else {
             return Ok(());
@@ -66,7 +71,7 @@ impl<'a> Work<'a> {
     ///
     /// # Errors
     /// Whatever the driver reports.
-    pub fn submit(&mut self) -> Result<()> {
+    pub(crate) fn submit(&mut self) -> Result<()> {
         submit(self.on_device.gpu, &mut self.encoder)
     }
 
@@ -74,7 +79,7 @@ impl<'a> Work<'a> {
     ///
     /// # Errors
     /// Whatever the driver reports.
-    pub fn finish(mut self) -> Result<()> {
+    pub(crate) fn finish(mut self) -> Result<()> {
         self.submit()?;
         self.on_device.gpu.wait()
     }

@@ -9,9 +9,9 @@ use std::collections::{BTreeMap, HashSet};
 use glam::DVec2;
 use rustc_hash::FxHashMap;
 
-use super::strokes::{Inked, Inking, Run, inset};
+use super::strokes::{InkPoint, Inking, PenRun, inset};
 use super::wobble::Hand;
-use super::{Drawing, Form, Layer, Pen, Sheet, Stroke, StrokePoint, Style, plot};
+use super::{Drawing, Layer, Pen, Sheet, Stroke, StrokeForm, StrokePoint, Style, plot};
 use crate::error::{Error, Result, Setting};
 use crate::line::{Chain, Id, Line, Lines, ends};
 use crate::message;
@@ -27,7 +27,7 @@ const MARK: f64 = 4.0;
 
 /// What a layer draws, from bottom to top.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Kind {
+enum LayerKind {
     Hidden,
     Hachure,
     Shore,
@@ -39,7 +39,7 @@ enum Kind {
     Silhouette,
 }
 
-impl Kind {
+impl LayerKind {
     /// All but the user's own.
     const NAMED: [Self; 7] =
         [Self::Hidden, Self::Hachure, Self::Shore, Self::Drainage, Self::Ridge, Self::Border, Self::Silhouette];
@@ -86,7 +86,7 @@ impl Kind {
 }
 
 /// A run, and the chain it draws.
-type Named = (Option<Id>, Run);
+type Named = (Option<Id>, PenRun);
 
 /// The drawing of a page's lines on a sheet that its frame fills; layers without a line are left out. `split` gives
 /// distances from the eye, metres, which rise: each kind of line has a layer for every zone between them.
@@ -107,14 +107,14 @@ pub fn draw(lines: &Lines, sheet: &Sheet, style: &Style, split: &[f64]) -> Resul
     let free = ends::free(&lines.chains, [lines.width, lines.height]);
     let mut layers: Vec<Layer> = Vec::new();
     let mut pieces = FxHashMap::default();
-    let mut kinds = BTreeMap::from([(Kind::Hidden, Vec::new())]);
+    let mut kinds = BTreeMap::from([(LayerKind::Hidden, Vec::new())]);
     for (chain, free) in lines.chains.iter().zip(&free) {
-        kinds.entry(Kind::of(chain.line())).or_default().push((chain, *free));
+        kinds.entry(LayerKind::of(chain.line())).or_default().push((chain, *free));
     }
     let own = names(&lines.own);
     for (kind, chains) in kinds {
         let runs = match kind {
-            Kind::Hidden => of_each(lines.hidden.iter(), |chain| inking.dashed(chain, &style.dashes)),
+            LayerKind::Hidden => of_each(lines.hidden.iter(), |chain| inking.dashed(chain, &style.dashes)),
             _ => {
                 let drawn = chains.into_iter().filter(|(chain, _)| style.dots || chain.points.len() > 1);
                 drawn.flat_map(|(chain, free)| of_each([chain], |chain| inking.weighed(chain, free))).collect()
@@ -141,7 +141,7 @@ pub fn draw(lines: &Lines, sheet: &Sheet, style: &Style, split: &[f64]) -> Resul
 
 /// Names of layers of the user's own lines, each once: what is taken is counted.
 fn names(own: &[String]) -> Vec<String> {
-    let mut taken: HashSet<String> = Kind::NAMED.map(|kind| kind.name(&[]).to_owned()).into();
+    let mut taken: HashSet<String> = LayerKind::NAMED.map(|kind| kind.name(&[]).to_owned()).into();
     let mut free = |name: &String| {
         let counted = (2..).map(|count| format!("{name} {count}"));
         let name = std::iter::once(name.clone()).chain(counted).find(|name| !taken.contains(name)).unwrap_or_default();
@@ -152,7 +152,7 @@ fn names(own: &[String]) -> Vec<String> {
 }
 
 /// The runs of each chain, with its name.
-fn of_each<'a>(chains: impl IntoIterator<Item = &'a Chain>, runs: impl Fn(&Chain) -> Vec<Run>) -> Vec<Named> {
+fn of_each<'a>(chains: impl IntoIterator<Item = &'a Chain>, runs: impl Fn(&Chain) -> Vec<PenRun>) -> Vec<Named> {
     chains.into_iter().flat_map(|chain| runs(chain).into_iter().map(|run| (chain.id, run))).collect()
 }
 
@@ -212,9 +212,9 @@ fn by_width(runs: Vec<Named>, pen: Pen, style: &Style) -> Vec<(Option<f64>, Vec<
 }
 
 /// Parts of one run by pens, 0 for none, without short ones between longer ones: these are drawn as the longest beside them.
-fn settled(parts: Vec<(usize, Run)>) -> Vec<(usize, Run)> {
-    let measured = |(pen, run): (usize, Run)| (pen, run.length(), run);
-    let mut parts: Vec<(usize, f64, Run)> = parts.into_iter().map(measured).collect();
+fn settled(parts: Vec<(usize, PenRun)>) -> Vec<(usize, PenRun)> {
+    let measured = |(pen, run): (usize, PenRun)| (pen, run.length(), run);
+    let mut parts: Vec<(usize, f64, PenRun)> = parts.into_iter().map(measured).collect();
     loop {
         let drawn = |i: usize| parts.get(i).filter(|part| part.0 > 0).map(|part| (part.1, i));
         let beside = |i: usize| [i.checked_sub(1), Some(i + 1)].into_iter().flatten().filter_map(drawn);
@@ -241,8 +241,8 @@ fn settled(parts: Vec<(usize, Run)>) -> Vec<(usize, Run)> {
 }
 
 /// The stroke of a run, one piece of its chain more.
-fn stroke(chain: Option<Id>, pieces: &mut FxHashMap<Id, u32>, run: &Run) -> Stroke {
-    let point = |point: &Inked| StrokePoint { place: point.place, width: point.width };
+fn stroke(chain: Option<Id>, pieces: &mut FxHashMap<Id, u32>, run: &PenRun) -> Stroke {
+    let point = |point: &InkPoint| StrokePoint { place: point.place, width: point.width };
     let next = chain.map(|chain| pieces.entry(chain).or_default());
     let piece = next.map_or(0, |next| std::mem::replace(next, *next + 1));
     Stroke { chain, piece, points: run.points.iter().map(point).collect(), closed: run.closed }
@@ -256,8 +256,8 @@ fn layer(name: String, pen: Pen, mut strokes: Vec<Stroke>, sheet: &Sheet, style:
     let is_even = strokes.iter().flat_map(|stroke| &stroke.points).all(|point| point.width == 1.0);
     let found = plot::Journey::through(&strokes);
     match is_even {
-        true => Layer { name, pen, form: Form::CentreLines, found, strokes: plot::planned(strokes) },
-        false => Layer { name, pen, form: Form::Outlines, found, strokes },
+        true => Layer { name, pen, form: StrokeForm::CentreLines, found, strokes: plot::planned(strokes) },
+        false => Layer { name, pen, form: StrokeForm::Outlines, found, strokes },
     }
 }
 

@@ -46,7 +46,7 @@ pub struct Layer {
     /// The pen.
     pub pen: Pen,
     /// How strokes are written.
-    pub form: Form,
+    pub form: StrokeForm,
     /// What a pen would have done with its lines in the order in which they were found.
     pub found: Journey,
     /// In the order of plotting, the same in every run.
@@ -55,7 +55,7 @@ pub struct Layer {
 
 /// How the strokes of a layer are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Form {
+pub enum StrokeForm {
     /// Each as the area that it covers: widths vary along it.
     Outlines,
     /// Each as the line that a pen follows: all are as wide as the pen, with round ends.

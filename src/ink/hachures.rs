@@ -86,6 +86,10 @@ impl Default for LightStyle {
     }
 }
 
+impl HachureStyle {}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
 impl HachureStyle {
     /// When their lines end; none where there are none.
     pub fn rules(&self) -> Option<SlopeRules> {
@@ -96,7 +100,11 @@ impl HachureStyle {
 impl LightStyle {
     /// Degrees from where the eye looks, where nothing is said.
     const OF_VIEW: f64 = -45.0;
+}
 
+/// What other stages and tests look into.
+#[doc(hidden)]
+impl LightStyle {
     /// The same as planned.
     pub fn light(&self) -> Light {
         let azimuth = self.azimuth.map_or(LightAzimuth::View(Self::OF_VIEW), LightAzimuth::World);

@@ -10,7 +10,7 @@ use crate::line::near::share_nearest;
 
 /// The nearest place of a stroke.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct InkedNear<'a> {
+pub(crate) struct InkedNear<'a> {
     /// What its layer is called.
     pub layer: &'a str,
     /// The chain that it draws.
@@ -25,7 +25,7 @@ pub struct InkedNear<'a> {
 
 impl Drawing {
     /// The strokes whose middles come within `reach` px of a place of a frame of that size, from the top of the page down.
-    pub fn inked_near(&self, frame: [u32; 2], place: DVec2, reach: f64) -> Vec<InkedNear<'_>> {
+    pub(crate) fn inked_near(&self, frame: [u32; 2], place: DVec2, reach: f64) -> Vec<InkedNear<'_>> {
         let placement = self.sheet.placement(frame);
         let (at, reach) = (placement.on_sheet(place), reach / placement.px_per_mm);
         let layers = self.layers.iter().rev();

@@ -7,14 +7,14 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use super::outline::outline;
-use super::{Form, Layer, Stroke};
+use super::{Layer, Stroke, StrokeForm};
 
 /// Points of the strokes in a piece: about 1 MB of text.
 const PIECE: usize = 1 << 15;
 
 /// A way through corners.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Path {
+pub(super) struct Path {
     /// Micrometres on the sheet; none is repeated, unless the path is a dot.
     pub corners: Vec<[i64; 2]>,
     /// Whether it goes back to the first.
@@ -22,13 +22,13 @@ pub struct Path {
 }
 
 /// What a file holds of a stroke: the borders of its area, or the way of the pen.
-pub fn paths(stroke: &Stroke, layer: &Layer) -> Vec<Path> {
+pub(super) fn paths(stroke: &Stroke, layer: &Layer) -> Vec<Path> {
     match layer.form {
-        Form::Outlines => {
+        StrokeForm::Outlines => {
             let polygons = outline(stroke, layer.pen.width);
             polygons.into_iter().map(|polygon| Path::new(polygon.into_iter(), true)).collect()
         }
-        Form::CentreLines => vec![Path::new(stroke.points.iter().map(|point| point.place), stroke.closed)],
+        StrokeForm::CentreLines => vec![Path::new(stroke.points.iter().map(|point| point.place), stroke.closed)],
     }
 }
 
@@ -48,12 +48,12 @@ impl Path {
 }
 
 /// Millimetres in whole micrometres.
-pub fn micrometres(mm: f64) -> i64 {
+pub(super) fn micrometres(mm: f64) -> i64 {
     (mm * 1000.0).round() as i64
 }
 
 /// Writes micrometres as millimetres: no zeros at the end, no sign before 0.
-pub fn number(micrometres: i64, text: &mut Vec<u8>) {
+pub(super) fn number(micrometres: i64, text: &mut Vec<u8>) {
     if micrometres < 0 {
         text.push(b'-');
     }
@@ -77,7 +77,7 @@ pub fn number(micrometres: i64, text: &mut Vec<u8>) {
 }
 
 /// What `write` makes of the strokes, piece by piece: made on every core, in the order of the strokes.
-pub fn in_order<'a>(
+pub(super) fn in_order<'a>(
     strokes: &'a [Stroke],
     write: impl Fn(&[Stroke]) -> Vec<u8> + Sync + 'a,
 ) -> impl Iterator<Item = Vec<u8>> + 'a {

@@ -17,7 +17,7 @@ use pdf_writer::writers::Resources;
 use pdf_writer::{Content, Dict, Filter, Finish, Name, Pdf, Rect, Ref, TextStr};
 
 use super::paths::{in_order, number, paths};
-use super::{Drawing, Form, Layer, Seal, Stroke};
+use super::{Drawing, Layer, Seal, Stroke, StrokeForm};
 
 /// Points in a millimetre.
 const POINTS: f64 = 72.0 / 25.4;
@@ -99,8 +99,8 @@ fn write_layer<'a>(pdf: &mut Pdf, next: &mut Ref, layer: &'a Layer, size: DVec2)
     let mut content = Content::new();
     let [red, green, blue] = layer.pen.colour.0.map(|share| f32::from(share) / 255.0);
     match layer.form {
-        Form::Outlines => content.set_fill_rgb(red, green, blue),
-        Form::CentreLines => content
+        StrokeForm::Outlines => content.set_fill_rgb(red, green, blue),
+        StrokeForm::CentreLines => content
             .set_stroke_rgb(red, green, blue)
             .set_line_width(layer.pen.width as f32)
             .set_line_cap(LineCapStyle::RoundCap)
@@ -200,7 +200,7 @@ fn operators(strokes: &[Stroke], layer: &Layer) -> Vec<u8> {
                 text.extend(b"h\n");
             }
         }
-        text.extend(if layer.form == Form::Outlines { b"f\n" } else { b"S\n" });
+        text.extend(if layer.form == StrokeForm::Outlines { b"f\n" } else { b"S\n" });
     }
     text
 }

@@ -37,7 +37,7 @@ const INK: Colour = Colour([192, 57, 43]);
 const COVER: f64 = 0.25;
 
 /// A flight as seen from above.
-pub struct Preview {
+pub(crate) struct Preview {
     size: [u32; 2],
     /// Brightness of each pixel, row by row.
     shade: Vec<u8>,
@@ -52,7 +52,7 @@ impl Preview {
     ///
     /// # Errors
     /// As [`Dem::survey`].
-    pub fn of(dem: &Dem, flight: &Flight) -> Result<Self> {
+    pub(crate) fn of(dem: &Dem, flight: &Flight) -> Result<Self> {
         let count = flight.count();
         let some = |most: u32| {
             let shown = count.min(most);
@@ -91,7 +91,7 @@ impl Preview {
     ///
     /// # Errors
     /// The writer's.
-    pub fn write_png(&self, out: impl Write) -> io::Result<()> {
+    pub(crate) fn write_png(&self, out: impl Write) -> io::Result<()> {
         let [width, height] = self.size;
         let mut picture = Pixmap::new(width, height).ok_or_else(|| io::Error::from(io::ErrorKind::InvalidInput))?;
         for (pixel, shade) in picture.data_mut().as_chunks_mut::<4>().0.iter_mut().zip(&self.shade) {
@@ -124,7 +124,7 @@ impl Preview {
     ///
     /// # Errors
     /// The writer's.
-    pub fn write_svg(&self, mut out: impl Write) -> io::Result<()> {
+    pub(crate) fn write_svg(&self, mut out: impl Write) -> io::Result<()> {
         let [width, height] = self.size;
         let mut land = Vec::new();
         encode(self.size, ::png::ColorType::Grayscale, &self.shade, &mut land)?;

@@ -44,7 +44,7 @@ impl Seal {
     ///
     /// # Errors
     /// The system's, above all where there is no such file.
-    pub fn job_of(path: &Path) -> io::Result<Option<u128>> {
+    pub(crate) fn job_of(path: &Path) -> io::Result<Option<u128>> {
         // A pipe would be waited for.
         if !fs::metadata(path)?.is_file() {
             return Ok(None);

@@ -44,11 +44,6 @@ impl Sheet {
         Self { size: DVec2::new(Self::WIDTH, height), margin: 0.0 }
     }
 
-    /// Where lines may lie: its corners towards the top left and the bottom right.
-    pub fn area(&self) -> [DVec2; 2] {
-        [DVec2::splat(self.margin), self.size - self.margin]
-    }
-
     /// Size of that, mm.
     fn inner(&self) -> DVec2 {
         self.size - 2.0 * self.margin
@@ -66,6 +61,21 @@ impl Sheet {
         [across, down].map(|px| px as u32)
     }
 
+    /// How the pixels of a frame lie on the sheet.
+    pub fn placement(&self, frame: [u32; 2]) -> Placement {
+        let px_per_mm = f64::from(frame[0]) / self.inner().x;
+        Placement { px_per_mm, centre: self.size / 2.0, frame_centre: UVec2::from(frame).as_dvec2() / 2.0 }
+    }
+}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
+impl Sheet {
+    /// Where lines may lie: its corners towards the top left and the bottom right.
+    pub fn area(&self) -> [DVec2; 2] {
+        [DVec2::splat(self.margin), self.size - self.margin]
+    }
+
     /// Whether a frame fills the area.
     ///
     /// # Errors
@@ -81,12 +91,6 @@ impl Sheet {
         let fits = format!("{}x{}", fitting[0], fitting[1]);
         Err(Error::setting(Setting::Size, what, message!["use ", Setting::Size.at(fits), ", or leave it out"]))
     }
-
-    /// How the pixels of a frame lie on the sheet.
-    pub fn placement(&self, frame: [u32; 2]) -> Placement {
-        let px_per_mm = f64::from(frame[0]) / self.inner().x;
-        Placement { px_per_mm, centre: self.size / 2.0, frame_centre: UVec2::from(frame).as_dvec2() / 2.0 }
-    }
 }
 
 /// From pixels of a frame to millimetres of its sheet.
@@ -98,6 +102,10 @@ pub struct Placement {
     frame_centre: DVec2,
 }
 
+impl Placement {}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
 impl Placement {
     /// The place on the sheet of one in the frame.
     pub fn on_sheet(&self, place: DVec2) -> DVec2 {

@@ -22,7 +22,7 @@ const SQUARE: f64 = 81.0;
 
 /// A point of a line on the sheet.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Inked {
+pub(crate) struct InkPoint {
     /// Millimetres from the sheet's top left corner.
     pub place: DVec2,
     /// As a share of the pen's.
@@ -33,16 +33,16 @@ pub struct Inked {
 
 /// A line on the sheet, without lifting the pen.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Run {
+pub(crate) struct PenRun {
     /// At least one.
-    pub points: Vec<Inked>,
+    pub points: Vec<InkPoint>,
     /// Whether the last point is joined to the first, which is not repeated.
     pub closed: bool,
 }
 
 /// How the chains of a page come to lie on the sheet.
 #[derive(Debug)]
-pub struct Inking<'a> {
+pub(crate) struct Inking<'a> {
     /// From pixels to millimetres.
     pub placement: Placement,
     /// Where lines may lie, mm.
@@ -59,7 +59,7 @@ pub struct Inking<'a> {
     pub eye: glam::DVec3,
 }
 
-impl Inked {
+impl InkPoint {
     fn lerp(&self, other: &Self, t: f64) -> Self {
         Self {
             place: self.place.lerp(other.place, t),
@@ -71,35 +71,35 @@ impl Inked {
 
 impl Inking<'_> {
     /// The runs of a chain, cut where it has no weight; `free` tells which of its ends taper.
-    pub fn weighed(&self, chain: &Chain, free: [bool; 2]) -> Vec<Run> {
+    pub(crate) fn weighed(&self, chain: &Chain, free: [bool; 2]) -> Vec<PenRun> {
         let points = chain.points.iter().map(|point| self.inked(point, self.width(point))).collect();
-        let mut run = Run { points, closed: chain.closed };
+        let mut run = PenRun { points, closed: chain.closed };
         run.taper(free, self.weight.taper);
         run.without_blanks()
     }
 
     /// The run of a chain, as wide as the pen.
-    pub fn even(&self, chain: &Chain) -> Run {
-        Run { points: chain.points.iter().map(|point| self.inked(point, 1.0)).collect(), closed: chain.closed }
+    pub(crate) fn even(&self, chain: &Chain) -> PenRun {
+        PenRun { points: chain.points.iter().map(|point| self.inked(point, 1.0)).collect(), closed: chain.closed }
     }
 
     /// The dashes of a hidden chain where economy leaves it, as wide as the pen: what is shorter than a dash says nothing.
-    pub fn dashed(&self, chain: &Chain, dashes: &Dashes) -> Vec<Run> {
+    pub(crate) fn dashed(&self, chain: &Chain, dashes: &Dashes) -> Vec<PenRun> {
         let points = chain.points.iter().map(|point| self.inked(point, point.weight.into())).collect();
-        let parts = Run { points, closed: chain.closed }.banded(&[SHOWN], |point| point.width);
+        let parts = PenRun { points, closed: chain.closed }.banded(&[SHOWN], |point| point.width);
         let shown = parts.into_iter().filter(|(band, run)| *band == 1 && run.length() >= dashes.dash);
         shown.flat_map(|(_, run)| run.evened().dashed(dashes)).collect()
     }
 
     /// What lies inside the margins of a run that a pen so wide draws, as the hand draws it.
-    pub fn finished(&self, run: Run, pen: f64) -> Vec<Run> {
+    pub(crate) fn finished(&self, run: PenRun, pen: f64) -> Vec<PenRun> {
         let [low, high] = [self.area[0] + inset(pen), self.area[1] - inset(pen)];
         // A pen may be broader than the sheet.
         if low.cmplt(high).all() { self.strayed(run).within([low, high]) } else { Vec::new() }
     }
 
-    fn inked(&self, point: &ChainPoint, width: f64) -> Inked {
-        Inked { place: self.placement.on_sheet(point.place), width, distance: point.world.distance(self.eye) }
+    fn inked(&self, point: &ChainPoint, width: f64) -> InkPoint {
+        InkPoint { place: self.placement.on_sheet(point.place), width, distance: point.world.distance(self.eye) }
     }
 
     /// Width of a line at a point, as a share of the pen's.
@@ -114,36 +114,36 @@ impl Inking<'_> {
     }
 
     /// The run as the hand draws it.
-    fn strayed(&self, run: Run) -> Run {
+    fn strayed(&self, run: PenRun) -> PenRun {
         let longest = self.hand.step();
         if longest.is_infinite() {
             return run;
         }
         let run = run.stepped(longest);
-        let stray = |point: &Inked| Inked { place: self.hand.stray(point.place), ..*point };
-        Run { points: run.points.iter().map(stray).collect(), ..run }
+        let stray = |point: &InkPoint| InkPoint { place: self.hand.stray(point.place), ..*point };
+        PenRun { points: run.points.iter().map(stray).collect(), ..run }
     }
 }
 
 /// How far inside the margins the lines of a pen end, mm: what is too short to leave ink will grow.
-pub fn inset(pen: f64) -> f64 {
+pub(crate) fn inset(pen: f64) -> f64 {
     pen / 2.0 + plot::GROWTH
 }
 
-impl Run {
+impl PenRun {
     /// Length of line, mm.
-    pub fn length(&self) -> f64 {
+    pub(crate) fn length(&self) -> f64 {
         self.steps().map(|[a, b]| a.place.distance(b.place)).sum()
     }
 
     /// The same, as wide as the pen everywhere.
-    pub fn evened(mut self) -> Self {
+    pub(crate) fn evened(mut self) -> Self {
         self.points.iter_mut().for_each(|point| point.width = 1.0);
         self
     }
 
     /// Each point with the next, the last of a closed run with the first.
-    fn steps(&self) -> impl Iterator<Item = [&Inked; 2]> {
+    fn steps(&self) -> impl Iterator<Item = [&InkPoint; 2]> {
         let closing = self.points.last().zip(self.points.first()).filter(|_| self.closed).map(|(a, b)| [a, b]);
         self.points.windows(2).map(|pair| [&pair[0], &pair[1]]).chain(closing)
     }
@@ -182,11 +182,11 @@ impl Run {
             tapered.extend((0..steps as u32).map(|s| {
                 let t = f64::from(s) / steps;
                 let point = pair[0].lerp(&pair[1], t);
-                Inked { width: point.width * share(arc + t * step), ..point }
+                InkPoint { width: point.width * share(arc + t * step), ..point }
             }));
             arc += step;
         }
-        tapered.extend(self.points.last().map(|last| Inked { width: last.width * share(length), ..*last }));
+        tapered.extend(self.points.last().map(|last| InkPoint { width: last.width * share(length), ..*last }));
         self.points = tapered;
     }
 
@@ -216,7 +216,7 @@ impl Run {
 
     /// The parts inside a rectangle.
     fn within(self, [low, high]: [DVec2; 2]) -> Vec<Self> {
-        let inside = |point: &Inked| point.place.cmpge(low).all() && point.place.cmple(high).all();
+        let inside = |point: &InkPoint| point.place.cmpge(low).all() && point.place.cmple(high).all();
         if self.points.iter().all(inside) {
             return vec![self];
         }
@@ -225,7 +225,7 @@ impl Run {
     }
 
     /// The parts in each band between two bounds of a value, which rise; bands are numbered from 0, up to the first bound.
-    pub fn banded(self, bounds: &[f64], value: impl Fn(&Inked) -> f64) -> Vec<(usize, Self)> {
+    pub(crate) fn banded(self, bounds: &[f64], value: impl Fn(&InkPoint) -> f64) -> Vec<(usize, Self)> {
         let band = |v: f64| bounds.partition_point(|&bound| bound <= v);
         let first = self.points.first().map_or(0, |point| band(value(point)));
         if self.points.iter().all(|point| band(value(point)) == first) {
@@ -233,7 +233,7 @@ impl Run {
         }
         let opened = self.opened();
         let mut parts: Vec<(usize, Self)> = Vec::new();
-        let mut add = |of: usize, points: [Inked; 2]| match parts.last_mut() {
+        let mut add = |of: usize, points: [InkPoint; 2]| match parts.last_mut() {
             Some((last, run)) if *last == of => run.points.push(points[1]),
             _ => parts.push((of, Self { points: points.to_vec(), closed: false })),
         };
@@ -275,8 +275,8 @@ impl Run {
     }
 
     /// The parts of an open run that lie in the spans of its steps, as shares of each, joined where one goes on in the next.
-    fn cut_by(&self, mut spans: impl FnMut(&Inked, &Inked) -> Vec<[f64; 2]>) -> Vec<Vec<Inked>> {
-        let mut parts: Vec<Vec<Inked>> = Vec::new();
+    fn cut_by(&self, mut spans: impl FnMut(&InkPoint, &InkPoint) -> Vec<[f64; 2]>) -> Vec<Vec<InkPoint>> {
+        let mut parts: Vec<Vec<InkPoint>> = Vec::new();
         let mut goes_on = false;
         for pair in self.points.windows(2) {
             let spans = spans(&pair[0], &pair[1]);

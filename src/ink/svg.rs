@@ -9,7 +9,7 @@
 use std::io::{self, Write};
 
 use super::paths::{in_order, micrometres, number, paths};
-use super::{Drawing, Form, Layer, Seal, Sheet, Stroke};
+use super::{Drawing, Layer, Seal, Sheet, Stroke, StrokeForm};
 
 /// Writes the drawing; lengths are in micrometres as decimals of a millimetre.
 ///
@@ -44,8 +44,8 @@ fn metadata(seal: &Seal) -> String {
 fn group(number: usize, layer: &Layer) -> String {
     let (label, colour) = (escaped(&layer.name), layer.pen.colour);
     let ink = match layer.form {
-        Form::Outlines => format!("fill=\"{colour}\""),
-        Form::CentreLines => {
+        StrokeForm::Outlines => format!("fill=\"{colour}\""),
+        StrokeForm::CentreLines => {
             let width = decimal(layer.pen.width);
             format!(
                 "fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\" stroke-linecap=\"round\" \

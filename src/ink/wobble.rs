@@ -10,11 +10,11 @@ use super::style::Wobble;
 
 /// Where a hand goes that means to go somewhere.
 #[derive(Debug, Clone, Copy)]
-pub struct Hand(pub Wobble);
+pub(crate) struct Hand(pub Wobble);
 
 impl Hand {
     /// The place to which it strays, at most `reach` away.
-    pub fn stray(&self, place: DVec2) -> DVec2 {
+    pub(crate) fn stray(&self, place: DVec2) -> DVec2 {
         let Wobble { reach, length, .. } = self.0;
         let at = place / length;
         let (cell, t) = (at.floor(), at.fract_gl());
@@ -24,7 +24,7 @@ impl Hand {
     }
 
     /// Longest piece of line between two places that stray, mm.
-    pub fn step(&self) -> f64 {
+    pub(crate) fn step(&self) -> f64 {
         if self.0.reach > 0.0 { self.0.length / 8.0 } else { f64::INFINITY }
     }
 

@@ -17,11 +17,11 @@ use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::Xxh3;
 
 use super::name::{self, Naming};
-use crate::cache::{Cache, Hearing, Key, Kind};
+use crate::cache::{Cache, CacheKey, CacheKind, CacheObserver};
 use crate::error::{Error, Message, Result};
 
-const KIND: Kind =
-    Kind { name: "content", format: 2, words: ["what the DEM's files hold", "what is known of the DEM's files"] };
+const KIND: CacheKind =
+    CacheKind { name: "content", format: 2, words: ["what the DEM's files hold", "what is known of the DEM's files"] };
 /// Bytes read at a time.
 const BUFFER: usize = 1 << 20;
 
@@ -154,7 +154,7 @@ impl Cache {
         warn: &dyn Fn(&Message),
         files: impl FnOnce() -> Result<Vec<PathBuf>>,
     ) -> Result<Content> {
-        let key = Key { kind: KIND, hash: asked, of: of.to_owned() };
+        let key = CacheKey { kind: KIND, hash: asked, of: of.to_owned() };
         let known = self.hold(&key).and_then(|kept| recall(kept).ok());
         match known {
             Some(known) if known.holds(asked) => return Ok(known),
@@ -162,7 +162,7 @@ impl Cache {
             Some(_) => self.remove(&key),
             None => {}
         }
-        let make = |sheet: Option<crate::cache::Sheet>, _: &dyn Fn(f64)| {
+        let make = |sheet: Option<crate::cache::NewEntry>, _: &dyn Fn(f64)| {
             let content = Content::read(asked, files()?)?;
             if let Some(mut sheet) = sheet {
                 sheet.write(&serde_json::to_vec(&content).unwrap_or_default());
@@ -170,11 +170,11 @@ impl Cache {
             }
             Ok(content)
         };
-        self.get(&key, Hearing { warn, progress: &|_| () }, recall, make)
+        self.get(&key, CacheObserver { warn, progress: &|_| () }, recall, make)
     }
 }
 
-fn recall(mut kept: crate::cache::Kept) -> io::Result<Content> {
+fn recall(mut kept: crate::cache::KeptEntry) -> io::Result<Content> {
     let mut bytes = Vec::new();
     kept.file.by_ref().take(kept.bytes).read_to_end(&mut bytes)?;
     serde_json::from_slice(&bytes).map_err(io::Error::from)

@@ -32,7 +32,7 @@ pub enum Event<'a> {
 /// # Errors
 /// What would fail all other jobs too: [`Error::DeviceLost`], [`Error::NoAdapter`], [`Error::Output`] for a disk without room;
 /// [`Error::Ended`] where the process was asked to end.
-pub fn run<'a, P: Send>(
+pub(crate) fn run<'a, P: Send>(
     jobs: &'a [Job],
     mut draw: impl FnMut(&'a Job) -> Result<P>,
     finish: impl Fn(&'a Job, P) -> Result<()> + Sync,

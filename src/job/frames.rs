@@ -4,7 +4,7 @@ use std::fmt::{self, Display, Formatter};
 use std::str::FromStr;
 
 /// Most frames of a sequence.
-pub const MOST: u32 = 10_000_000;
+pub(crate) const MOST: u32 = 10_000_000;
 
 /// Frames, rising, each once.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]

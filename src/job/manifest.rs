@@ -47,12 +47,12 @@ pub struct Manifest {
     /// Adapter and driver, once they are known.
     pub adapter: Option<String>,
     /// Its jobs.
-    pub jobs: Vec<Entry>,
+    pub jobs: Vec<ManifestEntry>,
 }
 
 /// A job.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Entry {
+pub struct ManifestEntry {
     /// Its number.
     pub n: u32,
     /// Its files: paths from the manifest's folder, and the names of what they are made of.
@@ -65,7 +65,7 @@ pub struct Entry {
     pub failed: Option<String>,
 }
 
-impl Entry {
+impl ManifestEntry {
     /// The first picture of its drawing. Masks come last, under a name of their own.
     pub(super) fn picture(&self) -> Option<PathBuf> {
         let (_, drawing) = self.files.first()?;
@@ -76,7 +76,7 @@ impl Entry {
 
 /// What tells one sequence from others.
 #[derive(Debug, Clone)]
-pub struct Sequence {
+pub struct SequenceKey {
     /// In words.
     pub of: String,
     /// Whatever its look.
@@ -93,8 +93,8 @@ pub struct Sequence {
 
 impl Manifest {
     /// Of what is to be done in `folder`.
-    pub fn new(sequence: &Sequence, shard: Shard, part: Option<&Frames>, jobs: &[Job], folder: &Path) -> Self {
-        let entry = |job: &Job| Entry {
+    pub fn new(sequence: &SequenceKey, shard: Shard, part: Option<&Frames>, jobs: &[Job], folder: &Path) -> Self {
+        let entry = |job: &Job| ManifestEntry {
             n: job.number,
             files: job.files.iter().map(|made| (relative(folder, &made.path), name::text(made.name))).collect(),
             ms: None,
@@ -132,7 +132,8 @@ impl Manifest {
         let older = Self::read(&folder.join(self.file_name())).ok();
         if let Some(older) = older.filter(|older| older.job == self.job) {
             let at = |n: u32| older.jobs.binary_search_by_key(&n, |other| other.n).ok();
-            let took = |entry: &Entry| older.jobs.get(at(entry.n)?).filter(|other| other.files == entry.files)?.ms;
+            let took =
+                |entry: &ManifestEntry| older.jobs.get(at(entry.n)?).filter(|other| other.files == entry.files)?.ms;
             self.jobs.iter_mut().for_each(|entry| entry.ms = took(entry));
             self.adapter = older.adapter;
         }
@@ -193,7 +194,7 @@ impl Manifest {
     ///
     /// # Errors
     /// [`Error::Input`].
-    pub fn refuse_others(folder: &Path, sequence: &Sequence) -> Result<()> {
+    pub fn refuse_others(folder: &Path, sequence: &SequenceKey) -> Result<()> {
         let ours = name::text(sequence.sequence);
         let moves = |other: &Self| other.fps.is_some() && sequence.fps.is_some();
         match Self::all(folder)?.into_iter().find(|other| other.sequence != ours && moves(other)) {

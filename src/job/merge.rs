@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use super::manifest::Entry;
-use super::{Frames, Made, Manifest, Shard, name};
+use super::manifest::ManifestEntry;
+use super::{Frames, JobFile, Manifest, Shard, name};
 use crate::error::{Error, Result};
 
 /// What the manifests of a folder say together, and what of it is there.
@@ -53,7 +53,7 @@ impl Merged {
             let what = format!("{} is of another look than {}", other.file_name(), first.file_name());
             return Err(Error::input(folder, what, "remove the manifest of the look that is not wanted"));
         }
-        let mut entries: BTreeMap<u32, &Entry> = BTreeMap::new();
+        let mut entries: BTreeMap<u32, &ManifestEntry> = BTreeMap::new();
         for entry in manifests.iter().flat_map(|manifest| &manifest.jobs) {
             let known = entries.entry(entry.n).or_insert(entry);
             // What failed once may have been made by another.
@@ -61,12 +61,13 @@ impl Merged {
                 *known = entry;
             }
         }
-        let is_whole = |entry: &Entry| {
+        let is_whole = |entry: &ManifestEntry| {
             let made =
-                |(path, text): &(PathBuf, String)| Some(Made { path: folder.join(path), name: name::parse(text)? });
+                |(path, text): &(PathBuf, String)| Some(JobFile { path: folder.join(path), name: name::parse(text)? });
             entry.files.iter().all(|file| made(file).is_some_and(|made| made.is_there()))
         };
-        let (whole, broken): (Vec<&Entry>, Vec<&Entry>) = entries.values().partition(|entry| is_whole(entry));
+        let (whole, broken): (Vec<&ManifestEntry>, Vec<&ManifestEntry>) =
+            entries.values().partition(|entry| is_whole(entry));
         Ok(Self {
             manifests: manifests.len(),
             unknown: (0..first.count).filter(|n| !entries.contains_key(n)).collect(),
@@ -87,7 +88,7 @@ impl Merged {
 
 /// Shards without a manifest that would hold a job of which no manifest knows, where one of as many shards of the same jobs has
 /// one.
-fn absent(manifests: &[Manifest], count: u32, known: &BTreeMap<u32, &Entry>) -> Vec<Shard> {
+fn absent(manifests: &[Manifest], count: u32, known: &BTreeMap<u32, &ManifestEntry>) -> Vec<Shard> {
     let mut absent = BTreeSet::new();
     for manifest in manifests {
         let of = manifest.shard[1];

@@ -6,23 +6,23 @@
 //! [`run`] draws on one thread and writes on another; [`Frames`] and [`Shard`] say which jobs are whose; a [`Manifest`] beside
 //! the files says what was to be made by which process, and [`Merged`] whether all of it is there.
 
-pub mod content;
-pub mod engine;
-pub mod film;
-pub mod frames;
-pub mod manifest;
-pub mod merge;
-pub mod name;
-pub mod pattern;
-pub mod serve;
-pub mod shard;
+pub(crate) mod content;
+pub(crate) mod engine;
+pub(crate) mod film;
+pub(crate) mod frames;
+pub(crate) mod manifest;
+pub(crate) mod merge;
+pub(crate) mod name;
+pub(crate) mod pattern;
+pub(crate) mod serve;
+pub(crate) mod shard;
 
 use std::path::PathBuf;
 
 use crate::ink::Seal;
 
-pub use content::Content;
-pub use engine::{Event, run};
+pub(crate) use content::Content;
+pub(crate) use engine::{Event, run};
 pub use film::{Film, Inks};
 pub use frames::Frames;
 pub use manifest::Manifest;
@@ -38,12 +38,12 @@ pub struct Job {
     /// In words.
     pub called: String,
     /// The files it makes.
-    pub files: Vec<Made>,
+    pub files: Vec<JobFile>,
 }
 
 /// A file that a job makes.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Made {
+pub struct JobFile {
     /// Where it stands.
     pub path: PathBuf,
     /// The name of all that it is made of.
@@ -53,11 +53,11 @@ pub struct Made {
 impl Job {
     /// Whether all its files are there, whole, and made of the same.
     pub fn is_done(&self) -> bool {
-        self.files.iter().all(Made::is_there)
+        self.files.iter().all(JobFile::is_there)
     }
 }
 
-impl Made {
+impl JobFile {
     /// Whether the file is there, whole, and made of the same.
     pub fn is_there(&self) -> bool {
         Seal::job_of(&self.path).is_ok_and(|name| name == Some(self.name))

@@ -7,9 +7,9 @@
 use xxhash_rust::xxh3::Xxh3;
 
 /// Number of what names are made of and how files bear them: raised when either changes.
-pub const FORMAT: u32 = 1;
+pub(crate) const FORMAT: u32 = 1;
 /// Hash of the sources of this program.
-pub const SOURCES: &str = env!("HACHURE_SOURCES");
+pub(crate) const SOURCES: &str = env!("HACHURE_SOURCES");
 
 /// A name in the making.
 #[derive(Clone)]
@@ -49,11 +49,11 @@ impl Default for Naming {
 }
 
 /// The name as text: 32 digits.
-pub fn text(name: u128) -> String {
+pub(crate) fn text(name: u128) -> String {
     format!("{name:032x}")
 }
 
 /// The name that a text has.
-pub fn parse(text: &str) -> Option<u128> {
+pub(crate) fn parse(text: &str) -> Option<u128> {
     u128::from_str_radix(text, 16).ok().filter(|_| text.len() == 32)
 }

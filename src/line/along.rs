@@ -10,7 +10,7 @@ use super::clearance::smoothstep;
 use super::{Chain, ChainPoint};
 
 /// A chain with the lengths along it.
-pub struct Along<'a> {
+pub(super) struct Along<'a> {
     chain: &'a Chain,
     /// From each point to the next, px: as many as points, the last to the first of a closed chain and 0 of an open one.
     steps: Vec<f64>,
@@ -22,7 +22,7 @@ pub struct Along<'a> {
 
 impl<'a> Along<'a> {
     /// Measures a chain.
-    pub fn new(chain: &'a Chain) -> Self {
+    pub(super) fn new(chain: &'a Chain) -> Self {
         let steps: Vec<f64> = (0..chain.points.len()).map(|i| step(chain, i)).collect();
         let mut length = 0.0;
         let mut measure = |step: &f64| {
@@ -34,12 +34,12 @@ impl<'a> Along<'a> {
     }
 
     /// Half of the line to the points before and after, px: what of the chain a point stands for, to either side.
-    pub fn half(&self, i: usize) -> f64 {
+    pub(super) fn half(&self, i: usize) -> f64 {
         (self.before(i) + self.steps[i]) / 4.0
     }
 
     /// How much of the chain there is on both sides of a point, px, on each at most `most`.
-    pub fn reach(&self, i: usize, most: f64) -> f64 {
+    pub(super) fn reach(&self, i: usize, most: f64) -> f64 {
         match self.chain.closed {
             true => self.length.min(2.0 * most),
             false => self.arcs[i].min(most) + (self.length - self.arcs[i]).min(most),
@@ -47,12 +47,12 @@ impl<'a> Along<'a> {
     }
 
     /// To the nearer end, px; infinite in a closed chain.
-    pub fn end(&self, i: usize) -> f64 {
+    pub(super) fn end(&self, i: usize) -> f64 {
         if self.chain.closed { f64::INFINITY } else { self.arcs[i].min(self.length - self.arcs[i]) }
     }
 
     /// The direction from the point before to the one after, as long as the way between.
-    pub fn direction(&self, i: usize) -> DVec2 {
+    pub(super) fn direction(&self, i: usize) -> DVec2 {
         let (points, n) = (&self.chain.points, self.steps.len());
         let [before, after] = match self.chain.closed {
             true => [(i + n - 1) % n, (i + 1) % n],
@@ -62,7 +62,7 @@ impl<'a> Along<'a> {
     }
 
     /// Values at the points, averaged along the chain by length over about `reach` px to both sides.
-    pub fn averaged<const N: usize>(&self, values: &[[f64; N]], reach: f64) -> Vec<[f64; N]> {
+    pub(super) fn averaged<const N: usize>(&self, values: &[[f64; N]], reach: f64) -> Vec<[f64; N]> {
         let n = values.len();
         let mass: Vec<f64> = (0..n).map(|i| self.half(i).max(f64::MIN_POSITIVE)).collect();
         let weighed = |i: usize| values[i].map(|value| value * mass[i]);
@@ -89,7 +89,7 @@ impl<'a> Along<'a> {
     }
 
     /// Values at the points, each spread along the chain: whole up to `near` px, fading until `far`; the largest counts.
-    pub fn spread(&self, values: &[f64], [near, far]: [f64; 2]) -> Vec<f64> {
+    pub(super) fn spread(&self, values: &[f64], [near, far]: [f64; 2]) -> Vec<f64> {
         let fading = |way: f64| 1.0 - fade([near, far], way);
         let most = values.iter().copied().fold(0.0, f64::max);
         let from = |i: usize| {
@@ -121,7 +121,7 @@ impl<'a> Along<'a> {
     }
 
     /// Whether what the chain draws from a point on, or up to it, is such.
-    pub fn draws(&self, i: usize, is_such: impl Fn(&ChainPoint) -> bool) -> bool {
+    pub(super) fn draws(&self, i: usize, is_such: impl Fn(&ChainPoint) -> bool) -> bool {
         let points = &self.chain.points;
         let before = if i > 0 || self.chain.closed { (i + points.len() - 1) % points.len() } else { i };
         is_such(&points[i]) || is_such(&points[before])
@@ -136,7 +136,7 @@ impl<'a> Along<'a> {
 }
 
 /// The chain with more points between those that lie more than `longest` px apart.
-pub fn stepped(chain: &Chain, longest: f64) -> Chain {
+pub(super) fn stepped(chain: &Chain, longest: f64) -> Chain {
     let next = |i: usize| chain.points.get(i + 1).or(chain.points.first().filter(|_| chain.closed));
     let points = chain.points.iter().enumerate().flat_map(|(i, a)| {
         let b = next(i).unwrap_or(a);
@@ -164,6 +164,6 @@ fn step(chain: &Chain, i: usize) -> f64 {
 }
 
 /// 0 up to the first edge, 1 from the second on, smooth between.
-pub fn fade([low, high]: [f64; 2], x: f64) -> f64 {
+pub(super) fn fade([low, high]: [f64; 2], x: f64) -> f64 {
     f64::from(smoothstep([low as f32, high as f32], x as f32))
 }

@@ -10,7 +10,7 @@ use glam::Vec2;
 const LEAST_CELL: f32 = 2.0;
 
 /// Places by cells of the page.
-pub struct Cells {
+pub(super) struct Cells {
     low: Vec2,
     side: f32,
     columns: usize,
@@ -23,7 +23,7 @@ pub struct Cells {
 
 impl Cells {
     /// Sorts places in; those up to `reach` px from another are in the cells about it.
-    pub fn new(places: &[Vec2], reach: f32) -> Self {
+    pub(super) fn new(places: &[Vec2], reach: f32) -> Self {
         let low = places.iter().copied().reduce(Vec2::min).unwrap_or_default();
         let size = places.iter().copied().reduce(Vec2::max).unwrap_or_default() - low;
         // No more cells than twice the places, however large the page.
@@ -51,7 +51,7 @@ impl Cells {
     }
 
     /// Where in the list are the places in the cell of a place and in the 8 about it, row by row.
-    pub fn about(&self, place: Vec2) -> impl Iterator<Item = Range<usize>> {
+    pub(super) fn about(&self, place: Vec2) -> impl Iterator<Item = Range<usize>> {
         let [column, row] = self.at(place);
         let columns = [column.saturating_sub(1), (column + 2).min(self.columns)];
         let start = move |row: usize, column: usize| self.starts[row * self.columns + column] as usize;

@@ -83,11 +83,6 @@ impl ChainPoint {
         }
     }
 
-    /// How much farther lies what is behind, as a share of the distance; infinite for sky.
-    pub fn jump(&self) -> f64 {
-        f64::from(self.depth) / f64::from(self.behind) - 1.0
-    }
-
     /// The share of the way to what is behind that lies beyond the point, 0 to 1: about the jump where that is small, 1 for
     /// sky.
     pub fn relief(&self) -> f64 {
@@ -97,6 +92,15 @@ impl ChainPoint {
     /// ln depth, in which equal steps are equal ratios of distance; finite for sky too.
     pub(super) fn log_depth(&self) -> f64 {
         f64::from(self.depth.max(f32::MIN_POSITIVE)).ln()
+    }
+}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
+impl ChainPoint {
+    /// How much farther lies what is behind, as a share of the distance; infinite for sky.
+    pub fn jump(&self) -> f64 {
+        f64::from(self.depth) / f64::from(self.behind) - 1.0
     }
 }
 
@@ -142,14 +146,6 @@ pub struct Chain {
 }
 
 impl Chain {
-    /// Every point with the next one, the last of a closed chain with the first; a lone point with itself.
-    pub fn pairs(&self) -> impl Iterator<Item = [&ChainPoint; 2]> {
-        let lone = self.points.first().filter(|_| self.points.len() == 1).map(|point| [point; 2]);
-        let closing = self.points.last().zip(self.points.first()).map(|(last, first)| [last, first]);
-        let steps = self.points.windows(2).map(|pair| [&pair[0], &pair[1]]);
-        steps.chain(closing.filter(|_| self.closed && lone.is_none())).chain(lone)
-    }
-
     /// Length of line, px.
     pub fn length(&self) -> f64 {
         self.pairs().map(|[a, b]| a.place.distance(b.place)).sum()
@@ -161,5 +157,17 @@ impl Chain {
         lines.sort_unstable();
         let runs = lines.chunk_by(|a, b| a == b);
         runs.rev().max_by_key(|run| run.len()).map_or(Line::Own(0), |run| run[0])
+    }
+}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
+impl Chain {
+    /// Every point with the next one, the last of a closed chain with the first; a lone point with itself.
+    pub fn pairs(&self) -> impl Iterator<Item = [&ChainPoint; 2]> {
+        let lone = self.points.first().filter(|_| self.points.len() == 1).map(|point| [point; 2]);
+        let closing = self.points.last().zip(self.points.first()).map(|(last, first)| [last, first]);
+        let steps = self.points.windows(2).map(|pair| [&pair[0], &pair[1]]);
+        steps.chain(closing.filter(|_| self.closed && lone.is_none())).chain(lone)
     }
 }

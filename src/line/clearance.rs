@@ -31,7 +31,7 @@ const STRANGERS: [f32; 2] = [3.0, 6.0];
 
 /// A piece of a line, about straight.
 #[derive(Debug, Clone, Copy)]
-pub struct Sample {
+pub(crate) struct Sample {
     /// Its middle on the page, px.
     pub place: Vec2,
     /// Unit vector along the line.
@@ -61,7 +61,7 @@ pub struct Sample {
 }
 
 /// Weights of samples whose lines keep `gap` px apart, 0 to 1, in the order of the samples.
-pub fn weights(samples: &[Sample], gap: f32) -> Vec<f32> {
+pub(crate) fn weights(samples: &[Sample], gap: f32) -> Vec<f32> {
     let widest = samples.iter().map(|sample| sample.berth).fold(1.0, f32::max);
     let longest = samples.iter().map(|sample| sample.half).fold(0.0, f32::max);
     let places: Vec<Vec2> = samples.iter().map(|sample| sample.place).collect();
@@ -87,7 +87,7 @@ pub fn weights(samples: &[Sample], gap: f32) -> Vec<f32> {
 }
 
 /// Which sample presses one of them hardest, and how hard, 0 to 1, where all have these weights: the one that it yields to.
-pub fn presses(samples: &[Sample], weights: &[f32], i: usize, gap: f32) -> Option<(usize, f32)> {
+pub(crate) fn presses(samples: &[Sample], weights: &[f32], i: usize, gap: f32) -> Option<(usize, f32)> {
     let sample = &samples[i];
     // Weaker ones had no weight yet when it yielded.
     let stronger = |j: &usize| *j != i && samples[*j].rank >= sample.rank && weights[*j] > 0.0;
@@ -137,7 +137,7 @@ impl Sample {
 }
 
 /// 0 up to the first edge, 1 from the second on, smooth between.
-pub fn smoothstep([low, high]: [f32; 2], x: f32) -> f32 {
+pub(crate) fn smoothstep([low, high]: [f32; 2], x: f32) -> f32 {
     let t = ((x - low) / (high - low).max(f32::MIN_POSITIVE)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
 }

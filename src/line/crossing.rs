@@ -23,7 +23,7 @@ const ROUNDING: f64 = 1.0e-6;
 
 /// Where a stretch passes under a nearer one.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Crossing {
+pub(super) struct Crossing {
     /// Share of the stretch before it.
     pub at: f64,
     /// 1 where it goes behind what the nearer stretch bounds, -1 where it comes out.
@@ -31,7 +31,7 @@ pub struct Crossing {
 }
 
 /// Stretches of curves by the cells of the page they touch.
-pub struct Crossings<'a> {
+pub(super) struct Crossings<'a> {
     curves: &'a [Curve],
     page: DVec2,
     /// Where each bucket of cells begins in `held`, and where the last ends.
@@ -55,7 +55,7 @@ impl Edge {
 
 impl<'a> Crossings<'a> {
     /// What may cross these stretches of each curve, on a page of so many pixels across and down.
-    pub fn new(curves: &'a [Curve], asked: &[Vec<Range<usize>>], page: DVec2) -> Self {
+    pub(super) fn new(curves: &'a [Curve], asked: &[Vec<Range<usize>>], page: DVec2) -> Self {
         let count: usize = asked.iter().flatten().map(Range::len).sum();
         let mut crossings =
             Self { curves, page, starts: vec![0; (2 * count).next_power_of_two() + 1], held: Vec::new() };
@@ -88,7 +88,7 @@ impl<'a> Crossings<'a> {
     }
 
     /// Where a stretch passes under nearer ones, in order along it.
-    pub fn of(&self, curve: usize, stretch: usize) -> Vec<Crossing> {
+    pub(super) fn of(&self, curve: usize, stretch: usize) -> Vec<Crossing> {
         let far = Edge::new(&self.curves[curve], stretch);
         let in_bucket = |bucket: usize| &self.held[self.starts[bucket] as usize..self.starts[bucket + 1] as usize];
         let listed = self.buckets(&self.curves[curve], stretch).flat_map(in_bucket);

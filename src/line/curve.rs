@@ -9,7 +9,7 @@ use glam::{DVec2, DVec3};
 use super::Line;
 
 /// A place on the lattice, in 1/256 of its finest step, x east and y south of the north-west sample.
-pub type Place = [i32; 2];
+pub(crate) type LatticePlace = [i32; 2];
 
 /// A point of a curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,7 +21,7 @@ pub struct CurvePoint {
     /// Metres of the exaggerated world: east, north, up.
     pub world: DVec3,
     /// Where it lies on the lattice.
-    pub at: Place,
+    pub at: LatticePlace,
     /// How strongly the page shows what the curve draws, 0 to 1; 1 of what bounds the surface.
     pub weight: f32,
     /// Of a hachure the share of the paper about it that is to be ink; 1 of all else.
@@ -118,7 +118,11 @@ impl Curve {
             black: a.black + (b.black - a.black) * share as f32,
         }
     }
+}
 
+/// What other stages and tests look into.
+#[doc(hidden)]
+impl Curve {
     /// Lets a closed curve begin at another of its points.
     pub fn turn(&mut self, point: usize) {
         self.points.rotate_left(point);

@@ -18,7 +18,7 @@ use rayon::prelude::*;
 
 use super::along::fade;
 use super::laid::line_of;
-use super::way::{Way, WayPoint};
+use super::way::{LandWay, WayPoint};
 use crate::dem::Dem;
 use crate::error::Result;
 use crate::relief::{LineKind, Slopes, SurfaceLine, SurfacePoint, spacing};
@@ -128,62 +128,6 @@ impl Land {
         Self { slopes: Some(slopes), ..self }
     }
 
-    /// Lines down its slopes, where it has them.
-    pub fn slopes(&self) -> Option<&Slopes> {
-        self.slopes.as_deref()
-    }
-
-    /// The lines, and where their points lie, metres of the exaggerated world.
-    pub fn iter(&self) -> impl ExactSizeIterator<Item = (&SurfaceLine, &[DVec3])> {
-        self.lines.iter().zip(self.world.iter().map(Vec::as_slice))
-    }
-
-    /// The lines that are shown, each point as strongly as it is.
-    pub fn ways(&self, from: From) -> Vec<Way> {
-        let way = |((line, world), weights): ((&SurfaceLine, &[DVec3]), Vec<f32>)| {
-            let points = line.points.iter().zip(world).zip(&weights);
-            let point = |((point, world), weight): ((&SurfacePoint, &DVec3), &f32)| WayPoint {
-                at: point.at,
-                world: *world,
-                weight: *weight,
-                black: 1.0,
-            };
-            let points: Vec<WayPoint> = points.map(point).collect();
-            (points.len() > 1).then_some(Way { line: line_of(line.kind), points, closed: line.closed })
-        };
-        self.iter().zip(self.shown(from)).filter_map(way).collect()
-    }
-
-    /// How strongly each point of each line is shown, 0 to 1; nothing of lines that are not.
-    pub fn shown(&self, from: From) -> Vec<Vec<f32>> {
-        let mut shown: Vec<(Vec<f32>, f64)> =
-            (0..self.lines.len()).into_par_iter().map(|i| self.alone(i, from)).collect();
-        // Branches stand behind what they join.
-        for (i, line) in self.lines.iter().enumerate().rev() {
-            let weights = &mut shown[i].0;
-            if !is_branch(line) || weights.is_empty() {
-                continue;
-            }
-            let mut strongest = 0.0_f32;
-            for weight in weights.iter_mut() {
-                strongest = strongest.max(*weight);
-                *weight = strongest;
-            }
-            let Some([onto, at]) = line.joins.map(|at| at.map(|at| at as usize)) else { continue };
-            // What it joins may not be worth drawing by itself.
-            shown[onto].0.resize(self.lines[onto].points.len(), 0.0);
-            shown[onto].0[at] = shown[onto].0[at].max(strongest);
-        }
-        let wide = |(line, (mut weights, length)): (&SurfaceLine, (Vec<f32>, f64))| {
-            for (weight, point) in weights.iter_mut().zip(&line.points) {
-                let seen = fade(SEEN, f64::from(*weight)) as f32;
-                *weight *= if point.across[0].is_nan() { 0.0 } else { seen * width(line, point, length) as f32 };
-            }
-            if weights.iter().all(|weight| *weight == 0.0) { Vec::new() } else { weights }
-        };
-        self.lines.iter().zip(shown).map(wide).collect()
-    }
-
     /// A line by its own merit, and how long it is seen, px.
     fn alone(&self, i: usize, from: From) -> (Vec<f32>, f64) {
         let (line, world) = (&self.lines[i], &self.world[i]);
@@ -240,6 +184,66 @@ impl Land {
     /// Exaggerated metres for one of the land.
     pub(super) fn exaggeration(&self) -> f64 {
         self.exaggeration
+    }
+}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
+impl Land {
+    /// Lines down its slopes, where it has them.
+    pub fn slopes(&self) -> Option<&Slopes> {
+        self.slopes.as_deref()
+    }
+
+    /// The lines, and where their points lie, metres of the exaggerated world.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = (&SurfaceLine, &[DVec3])> {
+        self.lines.iter().zip(self.world.iter().map(Vec::as_slice))
+    }
+
+    /// The lines that are shown, each point as strongly as it is.
+    pub fn ways(&self, from: From) -> Vec<LandWay> {
+        let way = |((line, world), weights): ((&SurfaceLine, &[DVec3]), Vec<f32>)| {
+            let points = line.points.iter().zip(world).zip(&weights);
+            let point = |((point, world), weight): ((&SurfacePoint, &DVec3), &f32)| WayPoint {
+                at: point.at,
+                world: *world,
+                weight: *weight,
+                black: 1.0,
+            };
+            let points: Vec<WayPoint> = points.map(point).collect();
+            (points.len() > 1).then_some(LandWay { line: line_of(line.kind), points, closed: line.closed })
+        };
+        self.iter().zip(self.shown(from)).filter_map(way).collect()
+    }
+
+    /// How strongly each point of each line is shown, 0 to 1; nothing of lines that are not.
+    pub fn shown(&self, from: From) -> Vec<Vec<f32>> {
+        let mut shown: Vec<(Vec<f32>, f64)> =
+            (0..self.lines.len()).into_par_iter().map(|i| self.alone(i, from)).collect();
+        // Branches stand behind what they join.
+        for (i, line) in self.lines.iter().enumerate().rev() {
+            let weights = &mut shown[i].0;
+            if !is_branch(line) || weights.is_empty() {
+                continue;
+            }
+            let mut strongest = 0.0_f32;
+            for weight in weights.iter_mut() {
+                strongest = strongest.max(*weight);
+                *weight = strongest;
+            }
+            let Some([onto, at]) = line.joins.map(|at| at.map(|at| at as usize)) else { continue };
+            // What it joins may not be worth drawing by itself.
+            shown[onto].0.resize(self.lines[onto].points.len(), 0.0);
+            shown[onto].0[at] = shown[onto].0[at].max(strongest);
+        }
+        let wide = |(line, (mut weights, length)): (&SurfaceLine, (Vec<f32>, f64))| {
+            for (weight, point) in weights.iter_mut().zip(&line.points) {
+                let seen = fade(SEEN, f64::from(*weight)) as f32;
+                *weight *= if point.across[0].is_nan() { 0.0 } else { seen * width(line, point, length) as f32 };
+            }
+            if weights.iter().all(|weight| *weight == 0.0) { Vec::new() } else { weights }
+        };
+        self.lines.iter().zip(shown).map(wide).collect()
     }
 }
 

@@ -25,10 +25,10 @@ const SURE: f64 = UNEXPLAINED / 1.6;
 const COUNTS: usize = 8;
 
 /// From where to where something holds along a curve: numbers of stretches, and shares of them.
-pub type Span = [f64; 2];
+pub(super) type Span = [f64; 2];
 
 /// Adds a span after the others, to the last where that ends there.
-pub fn join(spans: &mut Vec<Span>, [from, to]: Span) {
+pub(super) fn join(spans: &mut Vec<Span>, [from, to]: Span) {
     match spans.last_mut() {
         Some(last) if last[1] == from => last[1] = to,
         _ => spans.push([from, to]),
@@ -36,7 +36,7 @@ pub fn join(spans: &mut Vec<Span>, [from, to]: Span) {
 }
 
 /// The stretches in doubt, in runs of convex ones.
-pub fn doubtful(curve: &Curve, convex: &[bool]) -> Vec<Range<usize>> {
+pub(super) fn doubtful(curve: &Curve, convex: &[bool]) -> Vec<Range<usize>> {
     let n = convex.len();
     let mut is_open = vec![false; n];
     let mut spread = |order: &mut dyn Iterator<Item = usize>| {
@@ -68,7 +68,13 @@ pub fn doubtful(curve: &Curve, convex: &[bool]) -> Vec<Range<usize>> {
 }
 
 /// What the eye sees of a curve, in order; `doubtful` are its stretches in doubt.
-pub fn seen(curves: &[Curve], curve: usize, convex: &[bool], doubtful: &[Range<usize>], near: &Crossings) -> Vec<Span> {
+pub(super) fn seen(
+    curves: &[Curve],
+    curve: usize,
+    convex: &[bool],
+    doubtful: &[Range<usize>],
+    near: &Crossings,
+) -> Vec<Span> {
     let stretches = &curves[curve].stretches;
     let mut spans: Vec<Span> = Vec::new();
     let mut see = |span| join(&mut spans, span);

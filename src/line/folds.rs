@@ -13,7 +13,7 @@ use super::{Bound, Curve};
 const TREMBLE: f64 = 1.0;
 
 /// Whether each stretch is convex; the rim always is.
-pub fn convex(curve: &Curve) -> Vec<bool> {
+pub(super) fn convex(curve: &Curve) -> Vec<bool> {
     let mut convex = vec![true; curve.stretches.len()];
     let mut start = 0;
     for run in curve.stretches.chunk_by(|a, b| a.bound == b.bound) {

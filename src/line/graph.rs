@@ -7,10 +7,10 @@
 
 use std::collections::HashSet;
 
-use super::grid::Grid;
+use super::grid::CellGrid;
 
 /// Branches of thinned lines, each a walk over cells.
-pub struct Graph {
+pub(super) struct Graph {
     /// Branches from node to node, both nodes' cells included; a lone cell is a branch of one cell.
     pub branches: Vec<Vec<usize>>,
     /// Walks round rings without a node, the first cell not repeated.
@@ -19,7 +19,7 @@ pub struct Graph {
 
 impl Graph {
     /// The graph of these line cells, given in reading order.
-    pub fn new(lines: &Grid, cells: &[usize]) -> Self {
+    pub(super) fn new(lines: &CellGrid, cells: &[usize]) -> Self {
         let nodes: HashSet<usize> = cells.iter().copied().filter(|&c| links(lines, c).len() != 2).collect();
         let mut graph = Self { branches: Vec::new(), rings: Vec::new() };
         let mut walked = HashSet::new();
@@ -53,7 +53,7 @@ impl Graph {
 }
 
 /// Cells a line leads to from this one.
-fn links(lines: &Grid, cell: usize) -> Vec<usize> {
+fn links(lines: &CellGrid, cell: usize) -> Vec<usize> {
     let around = lines.around(cell);
     let set = lines.neighbours(cell);
     (0..8).filter(|&k| set[k] && (k % 2 == 0 || !(set[k - 1] || set[(k + 1) % 8]))).map(|k| around[k]).collect()
@@ -61,7 +61,7 @@ fn links(lines: &Grid, cell: usize) -> Vec<usize> {
 
 /// Walks from `from` over `cell` through cells of two links until `stop`, appending them; returns the cell stopped at.
 fn walk(
-    lines: &Grid,
+    lines: &CellGrid,
     from: usize,
     cell: usize,
     stop: impl Fn(usize) -> bool,

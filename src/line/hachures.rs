@@ -14,7 +14,7 @@ use rayon::prelude::*;
 
 use super::along::fade;
 use super::cover::Cover;
-use super::way::{Way, WayPoint};
+use super::way::{LandWay, WayPoint};
 use super::{Line, Overhead};
 use crate::error::Result;
 use crate::plan::{Hachures, Shade};
@@ -24,13 +24,13 @@ use crate::view::Perspective;
 /// Shares of the wanted spacing up to which a line is left out, and from which it is whole.
 const ROOM: [f64; 2] = [0.75, 0.95];
 /// Spacings that are wanted, in parts of the least that lines have, up to which there are none, and from which they are whole.
-pub const NEAR: [f64; 2] = [0.4, 0.7];
+pub(crate) const NEAR: [f64; 2] = [0.4, 0.7];
 /// How far along a line, in spacings, is looked for how much of it is there.
 const AROUND: f64 = 0.7;
 /// The share of that up to which it is left out, and from which it is whole.
 const LASTS: [f64; 2] = [0.4, 0.9];
 /// So far beside the page lines are looked for, px: they tell those on it how broad they are, and how close.
-pub const BESIDE: f64 = 64.0;
+pub(crate) const BESIDE: f64 = 64.0;
 /// A cut between two pieces of a line, spacings.
 const CUT: f64 = 0.8;
 /// By how much of the share that is to be black it is shorter.
@@ -44,7 +44,7 @@ const MOST_CUTS: u32 = 12;
 
 /// What sees the lines.
 #[derive(Debug, Clone, Copy)]
-pub enum Seen<'a> {
+pub enum Viewer<'a> {
     /// An eye, the azimuth to which it looks, degrees, and what its page is known to hide.
     By(&'a Perspective, f64, Option<&'a Cover>),
     /// A frame over the land.
@@ -55,7 +55,7 @@ pub enum Seen<'a> {
 #[derive(Debug, Clone, Default)]
 pub struct Hatched {
     /// Each point as strongly as it is shown.
-    pub ways: Vec<Way>,
+    pub ways: Vec<LandWay>,
     /// How far from the eye, metres, land goes that is so near that it stays bare; none where there is none.
     pub bare: Option<f64>,
 }
@@ -64,9 +64,9 @@ pub struct Hatched {
 ///
 /// # Errors
 /// As [`Slopes::blocks`].
-pub fn hatched(slopes: &Slopes, look: &Hachures, seen: Seen) -> Result<Hatched> {
-    let azimuth = if let Seen::By(_, azimuth, _) = seen { azimuth } else { 0.0 };
-    let page = Page { seen, look, shade: look.shade(azimuth, slopes.exaggeration()), slopes };
+pub fn hatched(slopes: &Slopes, look: &Hachures, seen: Viewer) -> Result<Hatched> {
+    let azimuth = if let Viewer::By(_, azimuth, _) = seen { azimuth } else { 0.0 };
+    let page = HachuredPage { seen, look, shade: look.shade(azimuth, slopes.exaggeration()), slopes };
     let blocks = slopes.blocks(&page)?;
     let of_block = |needed: &Needed| {
         let of_line = |line| page.hatched(line, needed.share);
@@ -83,7 +83,7 @@ impl Hatched {
     }
 }
 
-impl Seen<'_> {
+impl Viewer<'_> {
     /// Most pixels that a metre takes in a box of the world; 0 beside the page.
     fn most_px_per_metre(self, [low, high]: [DVec3; 2]) -> f64 {
         match self {
@@ -148,8 +148,8 @@ impl Seen<'_> {
 }
 
 /// What hachures are drawn on.
-struct Page<'a> {
-    seen: Seen<'a>,
+struct HachuredPage<'a> {
+    seen: Viewer<'a>,
     look: &'a Hachures,
     shade: Shade,
     slopes: &'a Slopes,
@@ -182,7 +182,7 @@ struct Cut {
     open: f64,
 }
 
-impl Page<'_> {
+impl HachuredPage<'_> {
     /// The pieces of a line that are shown, at most as strongly as `most`.
     fn hatched(&self, line: &SlopeLine, most: f64) -> Hatched {
         let worlds: Vec<DVec3> = line.points.iter().map(|point| self.slopes.world(point)).collect();
@@ -210,7 +210,7 @@ impl Page<'_> {
     }
 
     /// The pieces of a part of a line so many metres long that are shown.
-    fn shown(&self, id: u64, metres: f64, part: impl Iterator<Item = Point>) -> Vec<Way> {
+    fn shown(&self, id: u64, metres: f64, part: impl Iterator<Item = Point>) -> Vec<LandWay> {
         let mut points: Vec<Point> = part.collect();
         if points.len() < 2 || points.iter().all(|point| point.of_way.weight == 0.0) {
             return Vec::new();
@@ -226,7 +226,7 @@ impl Page<'_> {
         let points: Vec<(WayPoint, bool)> = points.iter().map(|point| (point.of_way, is_shown(point))).collect();
         let pieces = points.chunk_by(|(_, a), (_, b)| *a || *b);
         let pieces = pieces.filter(|piece| piece.len() > 1 && piece.iter().any(|(_, is_shown)| *is_shown));
-        let way = |piece: &[(WayPoint, bool)]| Way {
+        let way = |piece: &[(WayPoint, bool)]| LandWay {
             line: Line::Hachure,
             points: piece.iter().map(|(point, _)| *point).collect(),
             closed: false,
@@ -279,7 +279,7 @@ impl Page<'_> {
 }
 
 /// What a page needs of the lines of the land.
-impl Need for Page<'_> {
+impl Need for HachuredPage<'_> {
     fn in_box(&self, corners: [DVec3; 2]) -> f64 {
         ROOM[0] * self.look.least_apart() / self.seen.most_px_per_metre(corners)
     }

@@ -16,9 +16,9 @@ use glam::DVec2;
 use xxhash_rust::xxh3::xxh3_64;
 
 use super::Id;
-use super::curve::Place;
+use super::curve::LatticePlace;
 
-/// Steps of a [`Place`] across a cell of level 1: 64 of the finest lattice, in 256 parts.
+/// Steps of a [`LatticePlace`] across a cell of level 1: 64 of the finest lattice, in 256 parts.
 pub(super) const CELL: i32 = 64 * 256;
 /// Bits for a row or column of cells.
 const BITS: u32 = 18;
@@ -33,7 +33,7 @@ pub struct Held {
 }
 
 /// The key of a place on the lattice where the surface lies on this side of a line.
-pub fn key(at: Place, outward: DVec2) -> u64 {
+pub fn key(at: LatticePlace, outward: DVec2) -> u64 {
     let [column, row] = at.map(|v| u64::from(v.div_euclid(CELL).cast_unsigned()) & ((1 << BITS) - 1));
     (row << BITS | column) << 1 | u64::from(outward.x > 0.0)
 }

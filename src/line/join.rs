@@ -34,7 +34,7 @@ struct End {
 }
 
 /// For each branch end the end it goes on into. `branches` as walks over cells, `points` the same as points.
-pub fn partners(branches: &[Vec<usize>], points: &[Vec<ChainPoint>]) -> Vec<Option<usize>> {
+pub(super) fn partners(branches: &[Vec<usize>], points: &[Vec<ChainPoint>]) -> Vec<Option<usize>> {
     let ends: Vec<End> = (0..2 * branches.len()).map(|e| end(&points[e / 2], e % 2 == 1)).collect();
     let mut partners = vec![None; ends.len()];
     let mut nodes: BTreeMap<usize, Vec<usize>> = BTreeMap::new();

@@ -5,7 +5,7 @@
 
 /// A piece of a line among others.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Labelled<const N: usize> {
+pub(super) struct Labelled<const N: usize> {
     /// What each label costs here.
     pub costs: [f64; N],
     /// By how much the label is expected to change before this piece; more than the last label is the last one.
@@ -13,7 +13,7 @@ pub struct Labelled<const N: usize> {
 }
 
 /// The cheapest labels, where any change but the expected one costs `change`. Of equals the expected one, then the lowest.
-pub fn cheapest<const N: usize>(pieces: &[Labelled<N>], change: f64) -> Vec<usize> {
+pub(super) fn cheapest<const N: usize>(pieces: &[Labelled<N>], change: f64) -> Vec<usize> {
     let mut costs = [0.0; N];
     let mut came = Vec::with_capacity(pieces.len());
     for piece in pieces {

@@ -33,6 +33,10 @@ pub struct Lack {
     pub asked: [f64; 2],
 }
 
+impl Land {}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
 impl Land {
     /// What a line lacks most at one of its points; `None` under flat water, where none is drawn.
     pub fn lack(&self, line: usize, point: usize, from: From) -> Option<Lack> {

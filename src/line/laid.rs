@@ -9,9 +9,9 @@ use glam::{DVec2, DVec3, FloatExt, Vec3};
 use rayon::prelude::*;
 
 use super::Line;
-use super::curve::{Bound, Curve, CurvePoint, Place, Sight, Stretch};
+use super::curve::{Bound, Curve, CurvePoint, LatticePlace, Sight, Stretch};
 use super::identity::CELL;
-use super::way::Way;
+use super::way::LandWay;
 use crate::error::{Error, Message, Result, Setting};
 use crate::gpu::uniforms::{Segment, code, seen};
 use crate::message;
@@ -29,19 +29,19 @@ const MOST: usize = 1 << 24;
 
 /// Lines on the land as a page shows them, in points.
 #[derive(Debug, Clone, Default)]
-pub struct Laid {
+pub(crate) struct Laid {
     /// Where the points lie on the lattice.
-    pub places: Vec<Place>,
+    pub places: Vec<LatticePlace>,
     /// As [`Hatched::bare`](super::hachures::Hatched::bare).
     pub bare: Option<f64>,
-    runs: Vec<Run>,
+    runs: Vec<PointRun>,
 }
 
 /// Points one after the other.
 #[derive(Debug, Clone)]
-struct Run {
+struct PointRun {
     line: Line,
-    places: Vec<Place>,
+    places: Vec<LatticePlace>,
     /// Of each its weight, and the share of black about it.
     inks: Vec<[f32; 2]>,
     closed: bool,
@@ -52,15 +52,15 @@ impl Laid {
     ///
     /// # Errors
     /// [`Error::Limit`] where they are longer than a device numbers their points.
-    pub fn new(ways: &[Way], perspective: &Perspective) -> Result<Self> {
-        let runs: Vec<Run> = ways.par_iter().flat_map_iter(|way| runs(way, perspective)).collect();
-        let places: Vec<Place> = runs.iter().flat_map(|run| run.places.iter().copied()).collect();
+    pub(crate) fn new(ways: &[LandWay], perspective: &Perspective) -> Result<Self> {
+        let runs: Vec<PointRun> = ways.par_iter().flat_map_iter(|way| runs(way, perspective)).collect();
+        let places: Vec<LatticePlace> = runs.iter().flat_map(|run| run.places.iter().copied()).collect();
         check_length(places.len(), message!["use a smaller ", Setting::Size])?;
         Ok(Self { places, bare: None, runs })
     }
 
     /// The curves of these lines, by the points that the device found on the page; the others of `segments` play no part.
-    pub fn curves(&self, segments: &[Segment], perspective: &Perspective) -> Vec<Curve> {
+    pub(crate) fn curves(&self, segments: &[Segment], perspective: &Perspective) -> Vec<Curve> {
         let mut found: Vec<Option<&Segment>> = vec![None; self.places.len()];
         for segment in segments.iter().filter(|segment| is_laid(segment)) {
             found[(segment.code >> code::PART_SHIFT) as usize] = Some(segment);
@@ -88,7 +88,7 @@ pub(super) fn check_length(px: usize, less: Message) -> Result<()> {
 }
 
 /// Whether a segment is a point of a line on the land.
-pub fn is_laid(segment: &Segment) -> bool {
+pub(crate) fn is_laid(segment: &Segment) -> bool {
     segment.code & code::CORNER == code::LAID
 }
 
@@ -103,10 +103,10 @@ pub(super) fn line_of(kind: LineKind) -> Line {
 }
 
 /// The parts of a line that a page shows.
-fn runs(way: &Way, perspective: &Perspective) -> Vec<Run> {
-    let new = || Run { line: way.line, places: Vec::new(), inks: Vec::new(), closed: false };
+fn runs(way: &LandWay, perspective: &Perspective) -> Vec<PointRun> {
+    let new = || PointRun { line: way.line, places: Vec::new(), inks: Vec::new(), closed: false };
     let (mut runs, mut run) = (Vec::new(), new());
-    let mut finish = |run: &mut Run| {
+    let mut finish = |run: &mut PointRun| {
         let whole = std::mem::replace(run, new());
         runs.extend((whole.places.len() > 1).then_some(whole));
     };
@@ -168,13 +168,13 @@ fn ahead([a, b]: [DVec3; 2], perspective: &Perspective) -> Option<[f64; 2]> {
 }
 
 /// Whether a run goes all round a closed line.
-fn runs_whole(run: &Run, way: &Way) -> bool {
+fn runs_whole(run: &PointRun, way: &LandWay) -> bool {
     let ends = [run.places.first(), run.places.last()];
     way.points.len() > 2 && run.places.len() > 3 && ends.iter().all(|end| *end == Some(&on_lattice(way.points[0].at)))
 }
 
 /// The place at a share of the way from point `i` of a line to the next (Catmull, Rom 1974).
-fn between(way: &Way, i: usize, t: f64) -> DVec2 {
+fn between(way: &LandWay, i: usize, t: f64) -> DVec2 {
     let n = way.points.len();
     let at = |k: usize| way.points[k % n].at;
     let (b, c) = (at(i), at(i + 1));
@@ -188,13 +188,13 @@ fn between(way: &Way, i: usize, t: f64) -> DVec2 {
 }
 
 /// Of column and row, the nearest place on the lattice that lies on no edge of a facet.
-pub(super) fn on_lattice(at: DVec2) -> Place {
+pub(super) fn on_lattice(at: DVec2) -> LatticePlace {
     let [x, y] = (at * f64::from(CELL)).to_array().map(|v| v.round() as i32);
     [x | 1, y & !3 | 2]
 }
 
 /// The curves of a run: as many as the gaps between the points that were found leave.
-fn curves(run: &Run, found: &[Option<&Segment>], perspective: &Perspective) -> Vec<Curve> {
+fn curves(run: &PointRun, found: &[Option<&Segment>], perspective: &Perspective) -> Vec<Curve> {
     let numbers: Vec<usize> = (0..found.len()).collect();
     let parts = numbers.chunk_by(|a, b| found[*a].is_some() == found[*b].is_some());
     let parts: Vec<&[usize]> = parts.filter(|part| found[part[0]].is_some() && part.len() > 1).collect();

@@ -85,11 +85,11 @@ fn runs(chain: &Chain) -> Vec<Vec<DVec2>> {
 }
 
 /// A piece of a line of the land, with what draws that and its order.
-type Piece = GeomWithData<Segment<[f64; 2]>, (Line, u8, usize)>;
+type LandPiece = GeomWithData<Segment<[f64; 2]>, (Line, u8, usize)>;
 
 /// Orders of lines of the land, by where they run.
 struct Orders {
-    pieces: RTree<Piece>,
+    pieces: RTree<LandPiece>,
     /// How far off one is no longer the same line, metres.
     reach: f64,
 }
@@ -107,7 +107,7 @@ impl Orders {
             let pairs = world.windows(2).map(|pair| [pair[0], pair[1]]).chain(closing);
             let piece = |pair: [DVec3; 2]| {
                 let [from, to] = pair.map(|end| end.truncate().to_array());
-                Piece::new(Segment::new(from, to), (kind, line.order, number))
+                LandPiece::new(Segment::new(from, to), (kind, line.order, number))
             };
             pieces.extend(pairs.map(piece));
         }

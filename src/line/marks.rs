@@ -7,7 +7,7 @@
 use rayon::prelude::*;
 
 use super::{InkRaster, Kind, Pixel};
-use crate::plan::Piece;
+use crate::plan::PagePiece;
 use crate::plan::pieces::Rectangle;
 
 /// Of 8 neighbours of a pixel of the cover, inked ones that all but enclose it: holes have two pixels at most.
@@ -61,20 +61,9 @@ impl Marks {
         self.ink().map(|mark| [mark.column, mark.row])
     }
 
-    /// Depths of the inked ones, in reading order; 0 where there is none.
-    pub fn depths(&self) -> impl Iterator<Item = f32> {
-        self.ink().map(|mark| mark.pixel.depth())
-    }
-
     /// How many pixels are ink.
     pub fn inked(&self) -> usize {
         self.ink().count()
-    }
-
-    /// The marks of a row from left to right; none outside the page.
-    pub fn row(&self, row: i64) -> &[Mark] {
-        let inside = usize::try_from(row).ok().filter(|row| row + 1 < self.rows.len());
-        inside.map_or(&[], |row| &self.list[self.rows[row]..self.rows[row + 1]])
     }
 
     /// The mark in this column and row, if there is one.
@@ -85,17 +74,32 @@ impl Marks {
     }
 }
 
+/// What other stages and tests look into.
+#[doc(hidden)]
+impl Marks {
+    /// Depths of the inked ones, in reading order; 0 where there is none.
+    pub fn depths(&self) -> impl Iterator<Item = f32> {
+        self.ink().map(|mark| mark.pixel.depth())
+    }
+
+    /// The marks of a row from left to right; none outside the page.
+    pub fn row(&self, row: i64) -> &[Mark] {
+        let inside = usize::try_from(row).ok().filter(|row| row + 1 < self.rows.len());
+        inside.map_or(&[], |row| &self.list[self.rows[row]..self.rows[row + 1]])
+    }
+}
+
 /// The marks of a page that was drawn in one.
 impl From<&InkRaster> for Marks {
     fn from(raster: &InkRaster) -> Self {
         let size = [raster.width, raster.height];
         let whole = Rectangle { origin: [0, 0], size };
-        Self::new(size, of_piece(raster, Piece { kept: whole, drawn: whole }))
+        Self::new(size, of_piece(raster, PagePiece { kept: whole, drawn: whole }))
     }
 }
 
 /// The marks of a piece, which was drawn as `raster`, halo and all.
-pub fn of_piece(raster: &InkRaster, piece: Piece) -> Vec<Mark> {
+pub(crate) fn of_piece(raster: &InkRaster, piece: PagePiece) -> Vec<Mark> {
     let [left, top] = [0, 1].map(|axis| piece.kept.origin[axis] - piece.drawn.origin[axis]);
     let [width, height] = piece.kept.size;
     let [x, y] = piece.drawn.origin;
@@ -114,7 +118,7 @@ pub fn of_piece(raster: &InkRaster, piece: Piece) -> Vec<Mark> {
 }
 
 /// How many pixels of a piece, which was drawn as `raster`, show land.
-pub fn covered(raster: &InkRaster, piece: Piece) -> u64 {
+pub(crate) fn covered(raster: &InkRaster, piece: PagePiece) -> u64 {
     let [left, top] = [0, 1].map(|axis| (piece.kept.origin[axis] - piece.drawn.origin[axis]) as usize);
     let [width, height] = piece.kept.size.map(|side| side as usize);
     let of_row = |row: usize| {

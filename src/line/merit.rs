@@ -11,7 +11,7 @@ use super::{Chain, Economy};
 
 /// What decided the weight of a point of a line, each as a factor from 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Merit {
+pub(crate) struct Merit {
     /// By how much farther lies what is behind; of lines on the land by how strongly the page shows them.
     pub by_jump: f64,
     /// By the length of line about it.
@@ -26,7 +26,7 @@ pub struct Merit {
 
 /// A stronger line near by.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Yielded {
+pub(crate) struct Yielded {
     /// Which of the chains.
     pub to: usize,
     /// How far off its nearest place that presses is, px.
@@ -36,7 +36,7 @@ pub struct Yielded {
 }
 
 /// What decides the weights of chains where they pass nearest to places, each given with the number of its chain.
-pub fn merits(chains: &[Chain], economy: &Economy, places: &[(usize, DVec2)]) -> Vec<Merit> {
+pub(crate) fn merits(chains: &[Chain], economy: &Economy, places: &[(usize, DVec2)]) -> Vec<Merit> {
     let (chains, of_chains) = sampled(chains, economy);
     let firsts: Vec<usize> = of_chains
         .iter()

@@ -9,7 +9,7 @@ use super::{Chain, ChainPoint};
 
 /// The nearest place of a chain.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Near {
+pub(crate) struct Near {
     /// Which chain of those that were looked at.
     pub chain: usize,
     /// What it is there, as strong as the nearer of its two points.
@@ -19,7 +19,7 @@ pub struct Near {
 }
 
 /// The nearest place of each chain that comes within `reach` px of a place of the page, in the order of the chains.
-pub fn near(chains: &[Chain], place: DVec2, reach: f64) -> Vec<Near> {
+pub(crate) fn near(chains: &[Chain], place: DVec2, reach: f64) -> Vec<Near> {
     let of_chain = |(number, chain): (usize, &Chain)| {
         let nearest = chain.pairs().map(|pair| nearest(pair, place)).min_by(|a, b| a.1.total_cmp(&b.1));
         nearest.map(|(point, px)| Near { chain: number, point, px })
@@ -35,7 +35,7 @@ fn nearest([a, b]: [&ChainPoint; 2], place: DVec2) -> (ChainPoint, f64) {
 }
 
 /// The share of the way from `a` to `b` that lies nearest to a place.
-pub fn share_nearest(a: DVec2, b: DVec2, place: DVec2) -> f64 {
+pub(crate) fn share_nearest(a: DVec2, b: DVec2, place: DVec2) -> f64 {
     let way = b - a;
     let share = (place - a).dot(way) / way.length_squared();
     if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 }

@@ -9,12 +9,12 @@ use glam::{DVec2, DVec3, UVec2};
 use rustc_hash::FxHashMap;
 
 use super::detail::{From, Land};
-use super::hachures::{self, Seen};
+use super::hachures::{self, Viewer};
 use super::identity::{Held, key, names};
 use super::laid::{check_length, on_lattice};
 use super::simplify::needed;
 use super::tone::toned;
-use super::way::{Way, WayPoint};
+use super::way::{LandWay, WayPoint};
 use super::{Chain, ChainPoint, Economy, Id, Line, Lines, Recession, economised};
 use crate::dem::Dem;
 use crate::error::{Result, Setting};
@@ -75,13 +75,13 @@ impl Overhead {
     /// # Errors
     /// [`Error::Limit`](crate::error::Error::Limit) where they are longer than those of a view may be; as [`hachures::hatched`].
     pub fn land(&self, land: &Land, min_gap: f64, hachures: Option<&Hachures>) -> Result<Vec<Chain>> {
-        let lines: Vec<Way> =
+        let lines: Vec<LandWay> =
             land.ways(From::Above(self.px_per_metre)).into_iter().flat_map(|way| self.about(way)).collect();
         let strokes = match land.slopes().zip(hachures) {
-            Some((slopes, look)) => hachures::hatched(slopes, look, Seen::Above(self))?.ways,
+            Some((slopes, look)) => hachures::hatched(slopes, look, Viewer::Above(self))?.ways,
             None => Vec::new(),
         };
-        let length = |way: &Way| {
+        let length = |way: &LandWay| {
             way.points.windows(2).map(|pair| (pair[1].world - pair[0].world).truncate().length()).sum::<f64>()
         };
         let px = lines.iter().chain(&strokes).map(length).sum::<f64>() * self.px_per_metre;
@@ -92,8 +92,8 @@ impl Overhead {
     }
 
     /// The parts of a way on the page and a little beside it.
-    fn about(&self, way: Way) -> Vec<Way> {
-        let Way { line, mut points, closed } = way;
+    fn about(&self, way: LandWay) -> Vec<LandWay> {
+        let LandWay { line, mut points, closed } = way;
         points.extend(closed.then(|| points[0]));
         let is_beside = |pair: &[WayPoint]| {
             let [a, b] = [pair[0], pair[1]].map(|end| end.world.truncate());
@@ -102,13 +102,13 @@ impl Overhead {
         let beside: Vec<bool> = points.windows(2).map(is_beside).collect();
         if closed && beside.iter().all(|is_beside| !is_beside) {
             points.pop();
-            return vec![Way { line, points, closed }];
+            return vec![LandWay { line, points, closed }];
         }
         let mut first = 0;
         let part = |steps: &[bool]| {
             let from = first;
             first += steps.len();
-            (!steps[0]).then(|| Way { line, points: points[from..=first].to_vec(), closed: false })
+            (!steps[0]).then(|| LandWay { line, points: points[from..=first].to_vec(), closed: false })
         };
         beside.chunk_by(|a, b| a == b).filter_map(part).collect()
     }
@@ -125,8 +125,8 @@ impl Overhead {
     }
 
     /// The chains of lines on the land, as strong as they are shown.
-    fn chains(&self, ways: &[Way]) -> Vec<Chain> {
-        let chain = |way: &Way| {
+    fn chains(&self, ways: &[LandWay]) -> Vec<Chain> {
+        let chain = |way: &LandWay| {
             let point = |&WayPoint { world, weight, black, .. }: &WayPoint| {
                 let place = self.place(world.truncate());
                 ChainPoint { place, line: way.line, depth: 1.0, behind: 1.0, world, crowd: 0, weight, black }

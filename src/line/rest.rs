@@ -9,7 +9,7 @@ use super::{Chain, ChainPoint, Economy, Line, Marks, smooth, trace};
 use crate::view::Perspective;
 
 /// The chains of that ink, smoothed within `tolerance` px.
-pub fn rest(
+pub(crate) fn rest(
     chains: &[Chain],
     mask: &Marks,
     perspective: &Perspective,

@@ -16,7 +16,7 @@ const APART: f64 = 4.0;
 
 /// The points that a pen shows: both ends, those where what is drawn changes, one at least every [`APART`] px. `lengths` are
 /// those of the ways from each point to the next, px.
-pub fn shown(points: &[ChainPoint], lengths: &[f64]) -> Vec<ChainPoint> {
+pub(super) fn shown(points: &[ChainPoint], lengths: &[f64]) -> Vec<ChainPoint> {
     let kept = kept(points);
     let ends = kept.iter().skip(1).copied().chain([points.len() - 1]);
     let told = |(&from, to): (&usize, usize)| {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 /// Which points of an open polyline, in order, are enough: the others lie within `tolerance` of it. Both ends stay.
-pub fn needed(points: &[DVec3], tolerance: f64) -> Vec<usize> {
+pub(super) fn needed(points: &[DVec3], tolerance: f64) -> Vec<usize> {
     let mut kept = vec![0];
     let mut spans = vec![(0, points.len() - 1)];
     while let Some((first, last)) = spans.pop() {

@@ -7,7 +7,7 @@ use rustc_hash::FxHashSet;
 use super::{Chain, Marks, one_pixel_wide};
 
 /// Pixels of the smallest set of ink that counts as a line.
-pub const LEAST: usize = 6;
+pub(crate) const LEAST: usize = 6;
 
 /// Pixels of lines that one of the two has alone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -28,7 +28,7 @@ impl Strays {
 }
 
 /// The ink of a mask that is a line, and in which and beside which none of the chains runs.
-pub fn unchained(chains: &[Chain], mask: &Marks) -> Marks {
+pub(crate) fn unchained(chains: &[Chain], mask: &Marks) -> Marks {
     let size = [mask.width, mask.height];
     let drawn = one_pixel_wide(chains, size);
     let sets = without_chain(&drawn, mask);
@@ -55,12 +55,12 @@ fn is_ink(marks: &Marks, column: i64, row: i64) -> bool {
 }
 
 /// A pixel and its 8 neighbours.
-pub fn around([x, y]: [i64; 2]) -> impl Iterator<Item = [i64; 2]> {
+pub(crate) fn around([x, y]: [i64; 2]) -> impl Iterator<Item = [i64; 2]> {
     (y - 1..=y + 1).flat_map(move |row| (x - 1..=x + 1).map(move |column| [column, row]))
 }
 
 /// 8-connected sets of pixels.
-pub fn connected(pixels: &[[i64; 2]]) -> Vec<Vec<[i64; 2]>> {
+pub(crate) fn connected(pixels: &[[i64; 2]]) -> Vec<Vec<[i64; 2]>> {
     let mut left: FxHashSet<[i64; 2]> = pixels.iter().copied().collect();
     let mut sets = Vec::new();
     for first in pixels {

@@ -9,15 +9,15 @@
 //! Cost: a few visits of each ink pixel and its neighbours. Does not handle: depth; two lines less than 2 px apart
 //! are one.
 
-use super::grid::Grid;
+use super::grid::CellGrid;
 use super::{Kind, Marks};
 
 /// Holes of at most this many pixels are no gap between two lines but a flaw of one.
 const HOLE: usize = 2;
 
 /// Lines one pixel wide that keep the shape of the ink, and their cells in reading order.
-pub fn thin(marks: &Marks) -> (Grid, Vec<usize>) {
-    let mut lines = Grid::new(marks.width, marks.height);
+pub(super) fn thin(marks: &Marks) -> (CellGrid, Vec<usize>) {
+    let mut lines = CellGrid::new(marks.width, marks.height);
     let mut ink: Vec<usize> = marks.ink().map(|mark| lines.cell(mark.column, mark.row)).collect();
     let mut scratch = lines.clone();
     let mut solid = ink.clone();
@@ -40,11 +40,11 @@ pub fn thin(marks: &Marks) -> (Grid, Vec<usize>) {
 }
 
 /// Cells of the cover that ink encloses in groups of at most [`HOLE`]. `grid` is empty before and after.
-fn small_holes(marks: &Marks, ink: &[usize], grid: &mut Grid) -> Vec<usize> {
+fn small_holes(marks: &Marks, ink: &[usize], grid: &mut CellGrid) -> Vec<usize> {
     for &cell in ink {
         grid.set(cell);
     }
-    let is_cover = |grid: &Grid, cell: usize| {
+    let is_cover = |grid: &CellGrid, cell: usize| {
         let [column, row] = grid.pixel(cell);
         marks.at(column, row).is_some_and(|mark| mark.pixel.kind() == Kind::Cover)
     };
@@ -71,7 +71,7 @@ fn small_holes(marks: &Marks, ink: &[usize], grid: &mut Grid) -> Vec<usize> {
 }
 
 /// Leaves in `grid`, empty so far, the thinned `ink`.
-fn thin_once(ink: &[usize], grid: &mut Grid) {
+fn thin_once(ink: &[usize], grid: &mut CellGrid) {
     for &cell in ink {
         grid.set(cell);
     }
@@ -103,12 +103,12 @@ fn removable(n: [bool; 8]) -> bool {
 }
 
 /// Takes off ends of one pixel beside a line: they are a line's thickness, not a line, unless they alone cover ink.
-fn take_burrs(ink: &[usize], grid: &mut Grid) {
+fn take_burrs(ink: &[usize], grid: &mut CellGrid) {
     let mut is_ink = grid.clone();
     for &cell in ink {
         is_ink.set(cell);
     }
-    let count = |grid: &Grid, cell: usize| grid.neighbours(cell).into_iter().filter(|&set| set).count();
+    let count = |grid: &CellGrid, cell: usize| grid.neighbours(cell).into_iter().filter(|&set| set).count();
     for &cell in ink.iter().filter(|&&cell| is_ink.has(cell)) {
         if !grid.has(cell) || count(grid, cell) != 1 {
             continue;

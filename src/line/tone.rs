@@ -57,7 +57,7 @@ struct Sample {
 }
 
 /// The strokes of hachures with their widths as shares of the broadest stroke, beside the lines of a page.
-pub fn toned(strokes: Vec<Chain>, lines: &[Chain], look: &Hachures) -> Vec<Chain> {
+pub(crate) fn toned(strokes: Vec<Chain>, lines: &[Chain], look: &Hachures) -> Vec<Chain> {
     let longest = (STEP * look.least_apart()).max(LEAST_STEP);
     let lines: Vec<Chain> = lines.par_iter().map(|chain| stepped(chain, longest)).collect();
     let lines = Passing::new(&lines, SHORT_OF[1] * look.spacing);

@@ -6,7 +6,7 @@ use super::Line;
 
 /// A line on the land.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Way {
+pub struct LandWay {
     /// What it draws.
     pub line: Line,
     /// At least two.

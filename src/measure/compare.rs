@@ -14,7 +14,7 @@ use super::chains::short_of_drawing;
 use super::figures::{Convergence, DrawnLevel, LevelOffset, Run, SequenceRun, TruthReport};
 use super::rendered::try_plan;
 use super::trial::{Trial, moved, picture_names};
-use super::truths::Kept;
+use super::truths::KeptTruth;
 use crate::cache::Cache;
 use crate::error::{Error, Message, Result, Setting};
 use crate::gpu::Gpu;
@@ -22,7 +22,7 @@ use crate::message;
 use crate::plan::{Border, Detail, Method, Plan};
 use crate::surface::{Level, Surface};
 use crate::truth::metrics::{FRAGMENT, Judge, Measured, Offsets};
-use crate::truth::{Line, Mask, Terrain, Truth};
+use crate::truth::{Mask, Terrain, Truth, TruthLine};
 use crate::view::Camera;
 
 /// Truth is no coarser, however far the view.
@@ -53,17 +53,17 @@ pub struct Comparison {
 }
 
 /// Who hears of the work.
-pub struct Hearing<'a> {
+pub struct CompareObserver<'a> {
     /// What is being done, and the share of the scene's work that is done, 0 to 1.
     pub stage: &'a dyn Fn(&str, f64),
     /// Something the user should know.
     pub warn: &'a dyn Fn(&Message),
     /// What was found, one thing after the other.
-    pub found: &'a dyn Fn(Found<'_>) -> Result<()>,
+    pub found: &'a dyn Fn(Finding<'_>) -> Result<()>,
 }
 
 /// What a comparison finds, told as soon as it is known.
-pub enum Found<'a> {
+pub enum Finding<'a> {
     /// The truth of a scene of this name, and how coarser levels close in on it.
     Truth(&'a str, &'a TruthReport, Option<&'a Convergence>),
     /// What a method drew at a level, measured.
@@ -71,11 +71,11 @@ pub enum Found<'a> {
     /// What a method drew at a level over a run of frames, measured.
     Sequence(&'a SequenceRun),
     /// What a picture of this file name shows.
-    Picture(&'a str, Shown<'a>),
+    Picture(&'a str, ShownPicture<'a>),
 }
 
 /// What pictures show.
-pub enum Shown<'a> {
+pub enum ShownPicture<'a> {
     /// Truth, drawn one pixel wide.
     Truth(&'a Mask),
     /// The ink of a frame.
@@ -125,13 +125,13 @@ impl Comparison {
         name: &str,
         terrain: &Terrain<'_>,
         camera: &Camera,
-        to: &Hearing<'_>,
+        to: &CompareObserver<'_>,
     ) -> Result<Compared> {
         let Truths { truth, report, convergence, pop } = self.truths(name, terrain, camera, to)?;
-        (to.found)(Found::Truth(name, &report, convergence.as_ref()))?;
+        (to.found)(Finding::Truth(name, &report, convergence.as_ref()))?;
         let Some(judge) = Judge::new(&truth) else { return Err(no_line(name)) };
         let picture = truth_name(name);
-        (to.found)(Found::Picture(&picture, Shown::Truth(&Mask::of_truth(&truth))))?;
+        (to.found)(Finding::Picture(&picture, ShownPicture::Truth(&Mask::of_truth(&truth))))?;
         let mut runs = Vec::new();
         for &level in &self.levels {
             for &method in &self.methods {
@@ -151,7 +151,7 @@ impl Comparison {
                 };
                 let plan = Plan::new(level, method, self.border);
                 let run = try_plan(&trial, gpu, surface, plan, self.floor)?;
-                (to.found)(Found::Run(&run))?;
+                (to.found)(Finding::Run(&run))?;
                 runs.push(run);
             }
         }
@@ -159,7 +159,7 @@ impl Comparison {
         Ok(Compared { truth: report, convergence, runs, picture })
     }
 
-    fn truths(&self, name: &str, terrain: &Terrain<'_>, camera: &Camera, to: &Hearing<'_>) -> Result<Truths> {
+    fn truths(&self, name: &str, terrain: &Terrain<'_>, camera: &Camera, to: &CompareObserver<'_>) -> Result<Truths> {
         let level = match self.truth_level {
             Some(level) => level,
             None => terrain.level_for(camera).ok_or_else(|| nothing_in_view(name))?.max(LEAST_TRUTH_LEVEL),
@@ -170,10 +170,10 @@ impl Comparison {
         let truth_at = |camera: &Camera, level: Level| {
             (to.stage)(&format!("{name}: truth at level {}", level.subdivisions()), TRUTH_SHARE * done.get() / truths);
             done.set(done.get() + 1.0);
-            let Kept { truth, ms } = self.cache.truth(terrain, camera, level, to.warn);
-            Kept { truth: if self.border == Border::On { truth } else { truth.without_border() }, ms }
+            let KeptTruth { truth, ms } = self.cache.truth(terrain, camera, level, to.warn);
+            KeptTruth { truth: if self.border == Border::On { truth } else { truth.without_border() }, ms }
         };
-        let Kept { truth, ms } = truth_at(camera, level);
+        let KeptTruth { truth, ms } = truth_at(camera, level);
         let Some(judge) = Judge::new(&truth) else { return Err(no_line(name)) };
         let coarser: Vec<Truth> = (0..level.subdivisions().ilog2())
             .filter_map(|k| Level::new(1 << k))
@@ -189,7 +189,7 @@ impl Comparison {
         let report = TruthReport {
             level: level.subdivisions(),
             length_px: truth.length(),
-            border_px: truth.on_page().filter(|p| p.line == Line::Border).fold(0.0, |sum, p| sum + p.length()),
+            border_px: truth.on_page().filter(|p| p.line == TruthLine::Border).fold(0.0, |sum, p| sum + p.length()),
             fragments: mask.fragments(FRAGMENT),
             short_chains: short_of_drawing(&judge, &mask, camera),
             facets: truth.facets,

@@ -10,13 +10,13 @@ use crate::view::cut::steps;
 
 /// The chains of a frame, and their mask: they themselves, one pixel wide.
 #[derive(Debug, Clone)]
-pub struct Curves {
+pub struct MeasuredCurves {
     chains: Vec<Chain>,
     marks: Marks,
     near: f64,
 }
 
-impl Curves {
+impl MeasuredCurves {
     /// Of the visible chains of a frame.
     pub fn new(chains: Vec<Chain>, perspective: &Perspective) -> Self {
         let marks = one_pixel_wide(&chains, perspective.size().as_uvec2().to_array());
@@ -24,7 +24,7 @@ impl Curves {
     }
 }
 
-impl Yield for Curves {
+impl Yield for MeasuredCurves {
     fn mask(&self) -> Mask {
         mask_of(&self.marks, self.near)
     }

@@ -136,9 +136,9 @@ pub struct Run {
     /// The same figures at other distances.
     pub at: Vec<AtDistance>,
     /// The same figures in bands of depth, a third of truth's length each.
-    pub bands: Vec<Band>,
+    pub bands: Vec<DepthBand>,
     /// Distance from truth of the places of methods that know better than to a pixel where the line runs.
-    pub place: Option<Place>,
+    pub place: Option<PlaceOffsets>,
     /// Facets of the whole DEM.
     pub facets: u64,
     /// Inked pixels.
@@ -287,7 +287,7 @@ pub struct AtDistance {
 
 /// Precision and recall of a band of depth, at 1 px.
 #[derive(Debug, Clone, Serialize)]
-pub struct Band {
+pub struct DepthBand {
     /// `near`, `middle` or `far`.
     pub name: &'static str,
     /// Where it ends, metres along the view axis; `None` for the last one.
@@ -306,7 +306,7 @@ pub struct Band {
 
 /// Distances of sub-pixel places from truth's curve.
 #[derive(Debug, Clone, Serialize)]
-pub struct Place {
+pub struct PlaceOffsets {
     /// Mean.
     pub mean_px: f64,
     /// 95 % are no farther.

@@ -16,12 +16,12 @@ pub(super) struct Floors {
 
 impl Floors {
     /// No times yet, of a frame that moves so many bytes.
-    pub fn new(bytes: u64) -> Self {
+    pub(super) fn new(bytes: u64) -> Self {
         Self { bytes, copies: Vec::new(), draws: Vec::new(), lacks_vertices: false }
     }
 
     /// Takes both times once, after a frame of a renderer.
-    pub fn add(&mut self, floor: &mut Floor, renderer: &Renderer) -> Result<()> {
+    pub(super) fn add(&mut self, floor: &mut Floor, renderer: &Renderer) -> Result<()> {
         self.copies.push(floor.copy_ms()?);
         self.draws.push(floor.draw_ms(renderer)?);
         self.lacks_vertices |= renderer.last().is_some_and(|frame| !frame.keeps_vertices());
@@ -29,7 +29,7 @@ impl Floors {
     }
 
     /// The medians beside that of the frames.
-    pub fn beside(self, frame_ms: f64) -> FloorFigures {
+    pub(super) fn beside(self, frame_ms: f64) -> FloorFigures {
         let [copy_ms, draw_ms] = [self.copies, self.draws].map(of_all);
         let lacking = match (copy_ms, draw_ms) {
             (Some(_), Some(_)) => None,

@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use rstar::RTree;
 use rstar::primitives::GeomWithData;
 
-use super::looks::{Look, along, on_page};
+use super::looks::{LineLook, along, on_page};
 use crate::line::{Chain, Id};
 use crate::view::{Camera, Perspective};
 
@@ -25,7 +25,7 @@ const NEAR: f64 = 1.5;
 
 /// Chains as a camera sees them.
 #[derive(Clone, Copy)]
-pub struct Seen<'a> {
+pub struct SeenChains<'a> {
     /// The camera.
     pub camera: &'a Camera,
     /// Its chains.
@@ -33,11 +33,11 @@ pub struct Seen<'a> {
 }
 
 /// A look at a chain, and what that is called; `None` where another one of its frame is called so, too.
-type Called = (Look, Option<Id>);
+type Called = (LineLook, Option<Id>);
 
 /// Share of the length of chains over 12 px whose id the next frame keeps; `None` where no chain has an id, and where
 /// none is so long.
-pub fn ids_kept(frame: Seen<'_>, next: Seen<'_>) -> Option<f64> {
+pub fn ids_kept(frame: SeenChains<'_>, next: SeenChains<'_>) -> Option<f64> {
     if frame.chains.iter().all(|chain| chain.id.is_none()) {
         return None;
     }
@@ -60,7 +60,7 @@ pub fn ids_kept(frame: Seen<'_>, next: Seen<'_>) -> Option<f64> {
 }
 
 /// Looks at the chains that are longer than `least` px on the page.
-fn looks(seen: Seen<'_>, perspective: &Perspective, least: f64) -> Vec<Called> {
+fn looks(seen: SeenChains<'_>, perspective: &Perspective, least: f64) -> Vec<Called> {
     let mut called: HashMap<Id, usize> = HashMap::new();
     seen.chains.iter().filter_map(|chain| chain.id).for_each(|id| *called.entry(id).or_default() += 1);
     let of_chain = |chain: &Chain| {

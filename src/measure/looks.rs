@@ -8,7 +8,7 @@ use crate::view::cut::steps;
 
 /// A look at a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Look {
+pub(super) struct LineLook {
     /// Px from the page's top left corner.
     pub place: DVec2,
     /// Metres of the exaggerated world.
@@ -18,14 +18,14 @@ pub(super) struct Look {
 }
 
 /// Looks between two points of a chain, which is a straight line in the world, where they are on the page.
-pub(super) fn along([a, b]: [&ChainPoint; 2], perspective: &Perspective) -> impl Iterator<Item = Look> + use<> {
+pub(super) fn along([a, b]: [&ChainPoint; 2], perspective: &Perspective) -> impl Iterator<Item = LineLook> + use<> {
     let (a, b) = (*a, *b);
     let [near, far] = [a, b].map(|point| perspective.distance(point.world));
     steps(perspective.size().as_uvec2().to_array(), a.place, b.place).map(move |step| {
         // Depth turns steps on the page into steps in the world.
         let share = step.middle * near / (far * (1.0 - step.middle) + step.middle * near);
         let (place, world) = (a.place.lerp(b.place, step.middle), a.world.lerp(b.world, share));
-        Look { place, world, length: step.length }
+        LineLook { place, world, length: step.length }
     })
 }
 

@@ -5,24 +5,24 @@
 //! move; [`Floor`] times a bare copy and a hardware draw beside it; [`Growth`] is time against size, judged by what was
 //! promised. The clock itself stands in [`gpu::clock`](crate::gpu::clock): it stamps passes while they are recorded.
 
-pub mod chains;
-pub mod compare;
-pub mod copy;
-pub mod cost;
-pub mod curves;
-pub mod depth_draw;
-pub mod figures;
-pub mod floor;
+pub(crate) mod chains;
+pub(crate) mod compare;
+pub(crate) mod copy;
+pub(crate) mod cost;
+pub(crate) mod curves;
+pub(crate) mod depth_draw;
+pub(crate) mod figures;
+pub(crate) mod floor;
 mod floors;
-pub mod growth;
-pub mod kept;
+pub(crate) mod growth;
+pub(crate) mod kept;
 mod looks;
-pub mod memory;
-pub mod popped;
+pub(crate) mod memory;
+pub(crate) mod popped;
 mod rendered;
-pub mod sequence;
-pub mod trial;
-pub mod truths;
+pub(crate) mod sequence;
+pub(crate) mod trial;
+pub(crate) mod truths;
 
 pub use compare::Comparison;
 pub use copy::BareCopy;

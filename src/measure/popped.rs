@@ -20,7 +20,7 @@ use rstar::primitives::GeomWithData;
 use super::looks::{along, on_page};
 use crate::ink::Drawing;
 use crate::line::{Chain, Lines};
-use crate::truth::{Piece, Truth};
+use crate::truth::{Truth, TruthPiece};
 use crate::view::cut::steps;
 use crate::view::{Camera, Perspective};
 
@@ -33,7 +33,7 @@ const NEAR: f64 = 1.0;
 
 /// A look at a line with a width.
 #[derive(Debug, Clone, Copy)]
-struct Look {
+struct WideLook {
     place: DVec2,
     world: DVec3,
     /// Of line that it stands for, px.
@@ -45,7 +45,7 @@ struct Look {
 /// The lines of a page, looked at.
 pub struct Looked {
     perspective: Perspective,
-    looks: Vec<Look>,
+    looks: Vec<WideLook>,
     /// Places of the looks.
     tree: RTree<GeomWithData<[f64; 2], usize>>,
 }
@@ -67,7 +67,7 @@ impl Looked {
         let perspective = Perspective::new(camera, NEAR);
         let size = [camera.width, camera.height];
         // Where on the land strokes lie say the chains they draw.
-        let land = |look: super::looks::Look| GeomWithData::new(look.place.to_array(), look.world);
+        let land = |look: super::looks::LineLook| GeomWithData::new(look.place.to_array(), look.world);
         let pairs = lines.chains.iter().flat_map(Chain::pairs);
         let land = RTree::bulk_load(pairs.flat_map(|pair| along(pair, &perspective)).map(land).collect());
         let placement = drawing.sheet.placement(size);
@@ -83,7 +83,7 @@ impl Looked {
                         let place = a.0.lerp(b.0, step.middle);
                         let width = a.1 + (b.1 - a.1) * step.middle;
                         let world = land.nearest_neighbor(place.to_array())?.data;
-                        Some(Look { place, world, length: step.length, width })
+                        Some(WideLook { place, world, length: step.length, width })
                     }));
                 }
             }
@@ -94,16 +94,16 @@ impl Looked {
     /// The truth of what a camera sees.
     pub fn of_truth(camera: &Camera, truth: &Truth) -> Self {
         let perspective = Perspective::new(camera, NEAR);
-        let look = |piece: &Piece| {
+        let look = |piece: &TruthPiece| {
             let place = piece.middle();
             let world = perspective.unproject(place, NEAR / piece.distance);
-            Look { place, world, length: piece.length(), width: 1.0 }
+            WideLook { place, world, length: piece.length(), width: 1.0 }
         };
         Self::new(perspective, truth.on_page().map(look).collect())
     }
 
-    fn new(perspective: Perspective, looks: Vec<Look>) -> Self {
-        let indexed = |(i, look): (usize, &Look)| GeomWithData::new(look.place.to_array(), i);
+    fn new(perspective: Perspective, looks: Vec<WideLook>) -> Self {
+        let indexed = |(i, look): (usize, &WideLook)| GeomWithData::new(look.place.to_array(), i);
         let tree = RTree::bulk_load(looks.iter().enumerate().map(indexed).collect());
         Self { perspective, looks, tree }
     }
@@ -111,7 +111,7 @@ impl Looked {
     /// Of each look, how much narrower the widest line of another page is there, px; `None` where that page does not show the
     /// place.
     pub fn lost(&self, other: &Self) -> Vec<Option<f64>> {
-        let lost = |look: &Look| {
+        let lost = |look: &WideLook| {
             let there = on_page(&other.perspective, look.world)?.to_array();
             let near = other.tree.locate_within_distance(there, HERE * HERE);
             let widest = near.map(|near| other.looks[near.data].width).fold(0.0, f64::max);
@@ -123,7 +123,7 @@ impl Looked {
     /// What strokes lose towards another page, and what of it pops: where truth loses nothing, of whose looks `truth_lost`
     /// tells.
     pub fn popped(&self, other: &Self, truth: &Self, truth_lost: &[Option<f64>]) -> Popped {
-        let of_look = |(look, lost): (&Look, Option<f64>)| {
+        let of_look = |(look, lost): (&WideLook, Option<f64>)| {
             let Some(lost) = lost else { return Popped::default() };
             let mut drawn = truth.tree.locate_within_distance(look.place.to_array(), DRAWS * DRAWS);
             let is_truths = lost > 0.0 && drawn.any(|near| truth_lost[near.data] != Some(0.0));

@@ -6,7 +6,7 @@ use std::time::Instant;
 use glam::DVec2;
 
 use super::cost::PassCost;
-use super::curves::{Curves, mask_of};
+use super::curves::{MeasuredCurves, mask_of};
 use super::figures::{FloorFigures, PassFigures, Run};
 use super::floors::Floors;
 use super::trial::{Draws, Trial, Yield};
@@ -34,7 +34,7 @@ struct Rendered {
 /// What a frame yields.
 enum Yielded {
     Ink(Ink),
-    Curves(Curves),
+    Curves(MeasuredCurves),
 }
 
 /// The ink of a frame.
@@ -81,7 +81,7 @@ impl Draws for Rendered {
     fn yielded(&mut self) -> Result<Yielded> {
         let Self { perspective, plan, renderer, .. } = self;
         if plan.method.entry().yields == Yields::Curves {
-            return Ok(Yielded::Curves(Curves::new(renderer.chains()?, perspective)));
+            return Ok(Yielded::Curves(MeasuredCurves::new(renderer.chains()?, perspective)));
         }
         let marks = Marks::from(&renderer.read()?.raster);
         Ok(Yielded::Ink(Ink { marks, perspective: *perspective, method: plan.method }))

@@ -11,10 +11,10 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::compare::{Comparison, Found, Hearing, LEAST_TRUTH_LEVEL, no_line, nothing_in_view};
+use super::compare::{CompareObserver, Comparison, Finding, LEAST_TRUTH_LEVEL, no_line, nothing_in_view};
 use super::curves::mask_of;
 use super::figures::{DrawnLevel, SequenceRun};
-use super::kept::{Seen, ids_kept};
+use super::kept::{SeenChains, ids_kept};
 use super::popped::{Looked, Popped};
 use crate::error::Result;
 use crate::gpu::Gpu;
@@ -62,7 +62,7 @@ struct True {
 }
 
 /// A frame that was drawn.
-struct Drawn {
+struct DrawnFrame {
     mask: Mask,
     chains: Vec<Chain>,
     strokes: Looked,
@@ -90,7 +90,7 @@ impl Comparison {
         surface: &Arc<Surface>,
         terrain: &Terrain<'_>,
         sequence: Sequence<'_>,
-        to: &Hearing<'_>,
+        to: &CompareObserver<'_>,
     ) -> Result<Vec<SequenceRun>> {
         let truths = self.truths_of(terrain, sequence, to)?;
         let mut renderer = Renderer::new(gpu.clone(), surface.clone())?;
@@ -102,14 +102,14 @@ impl Comparison {
                 (to.stage)(&words, TRUTH_SHARE + (1.0 - TRUTH_SHARE) * share);
                 let plan = Plan::new(level, method, self.border);
                 let run = sequence.figures(&plan, &truths, &sequence.followed(&mut renderer, &plan, &truths)?);
-                (to.found)(Found::Sequence(&run))?;
+                (to.found)(Finding::Sequence(&run))?;
                 runs.push(run);
             }
         }
         Ok(runs)
     }
 
-    fn truths_of(&self, terrain: &Terrain<'_>, sequence: Sequence<'_>, to: &Hearing<'_>) -> Result<Truths> {
+    fn truths_of(&self, terrain: &Terrain<'_>, sequence: Sequence<'_>, to: &CompareObserver<'_>) -> Result<Truths> {
         let start = Instant::now();
         let level = match self.truth_level {
             Some(level) => level,
@@ -138,7 +138,7 @@ impl Sequence<'_> {
     /// Draws all frames by a plan and sums up what is found of them.
     fn followed(&self, renderer: &mut Renderer, plan: &Plan, truths: &Truths) -> Result<Sums> {
         let mut sums = Sums::default();
-        let mut before: Option<(Drawn, &Camera, &True)> = None;
+        let mut before: Option<(DrawnFrame, &Camera, &True)> = None;
         for (i, (camera, of)) in self.cameras.iter().zip(&truths.frames).enumerate() {
             let start = Instant::now();
             let drawn = drawn(renderer, plan, camera)?;
@@ -152,7 +152,7 @@ impl Sequence<'_> {
                 sums.strokes = sums.strokes.and(last.strokes.popped(&drawn.strokes, &last_of.looked, there));
                 sums.strokes = sums.strokes.and(drawn.strokes.popped(&last.strokes, &of.looked, back));
                 let [here, next] = [(last_camera, &last), (camera, &drawn)]
-                    .map(|(camera, drawn)| Seen { camera, chains: &drawn.chains });
+                    .map(|(camera, drawn)| SeenChains { camera, chains: &drawn.chains });
                 sums.ids_kept.extend(ids_kept(here, next));
             }
             before = Some((drawn, camera, of));
@@ -198,7 +198,7 @@ fn level_of(terrain: &Terrain<'_>, sequence: Sequence<'_>) -> Result<Level> {
 }
 
 /// Draws a frame as a still picture is drawn, in the default style.
-fn drawn(renderer: &mut Renderer, plan: &Plan, camera: &Camera) -> Result<Drawn> {
+fn drawn(renderer: &mut Renderer, plan: &Plan, camera: &Camera) -> Result<DrawnFrame> {
     let curves = if plan.method == Method::Walk { Curves::On } else { plan.curves };
     let page = renderer.page(&Plan { curves, ..*plan }, camera, |_| ())?;
     let size = [camera.width, camera.height];
@@ -208,7 +208,7 @@ fn drawn(renderer: &mut Renderer, plan: &Plan, camera: &Camera) -> Result<Drawn>
     let lines = page.lines(&style.economy(px_per_mm), tolerance);
     let drawing = ink::draw(&lines, &sheet, &style, &[])?;
     let strokes = Looked::of_strokes(camera, &lines, &drawing);
-    Ok(Drawn { mask: mask_of(&page.marks, renderer.near()), chains: page.chains, strokes })
+    Ok(DrawnFrame { mask: mask_of(&page.marks, renderer.near()), chains: page.chains, strokes })
 }
 
 /// 0 of nothing.

@@ -9,9 +9,9 @@ use std::num::NonZeroU32;
 use glam::DVec2;
 use xxhash_rust::xxh3::xxh3_64;
 
-use super::compare::{Found, Shown};
-use super::figures::{AtDistance, Band, ChainFigures, DrawnLevel, FloorFigures, PassFigures, Place, Run};
-use super::kept::{Seen, ids_kept};
+use super::compare::{Finding, ShownPicture};
+use super::figures::{AtDistance, ChainFigures, DepthBand, DrawnLevel, FloorFigures, PassFigures, PlaceOffsets, Run};
+use super::kept::{SeenChains, ids_kept};
 use super::{chains, memory};
 use crate::error::Result;
 use crate::ink::{Sheet, Style};
@@ -95,7 +95,7 @@ pub struct Trial<'a> {
     /// Share of truth, drawn one pixel wide, that pops when the eye moves on.
     pub truth_pop: f64,
     /// Who hears of what its pictures show.
-    pub found: &'a dyn Fn(Found<'_>) -> Result<()>,
+    pub found: &'a dyn Fn(Finding<'_>) -> Result<()>,
 }
 
 /// Frames and what they took.
@@ -126,8 +126,8 @@ impl Trial<'_> {
         let mask = timed.first.mask();
         let measured = self.judge.measure(&mask);
         let names = picture_names(self.scene, self.method, self.level);
-        (self.found)(Found::Picture(&names[0], Shown::Mask(&mask)))?;
-        (self.found)(Found::Picture(&names[1], Shown::Difference(&mask, &measured)))?;
+        (self.found)(Finding::Picture(&names[0], ShownPicture::Mask(&mask)))?;
+        (self.found)(Finding::Picture(&names[1], ShownPicture::Difference(&mask, &measured)))?;
         Ok(self.result(timed, &mask, &measured.scores(), names))
     }
 
@@ -189,7 +189,7 @@ impl Trial<'_> {
             excess_pop: mask.pop(&next.mask()) - self.truth_pop,
             at: at_distances(scores),
             bands: bands(scores),
-            place: offsets.map(|offsets| Place { mean_px: offsets.mean, p95_px: offsets.p95 }),
+            place: offsets.map(|offsets| PlaceOffsets { mean_px: offsets.mean, p95_px: offsets.p95 }),
             facets: timed.facets,
             inked: mask.inked.len(),
             frame_ms: median(&timed.times),
@@ -214,7 +214,10 @@ impl Trial<'_> {
         let named = chains.iter().any(|chain| chain.id.is_some());
         let next = if named { next.chains() } else { Vec::new() };
         let camera = moved(self.camera, 1);
-        let kept = ids_kept(Seen { camera: self.camera, chains: &chains }, Seen { camera: &camera, chains: &next });
+        let kept = ids_kept(
+            SeenChains { camera: self.camera, chains: &chains },
+            SeenChains { camera: &camera, chains: &next },
+        );
         let frame = [self.camera.width, self.camera.height];
         let px_per_mm = Sheet::for_frame(frame).placement(frame).px_per_mm;
         let economy = named.then(|| Style::default().economy(px_per_mm));
@@ -238,8 +241,8 @@ fn at_distances(scores: &Scores) -> Vec<AtDistance> {
     figures.map(|(px, at)| AtDistance { px, precision: at.precision, recall: at.recall, f: at.f() }).collect()
 }
 
-fn bands(scores: &Scores) -> Vec<Band> {
-    let band = |(name, band): (&'static str, BandScore)| Band {
+fn bands(scores: &Scores) -> Vec<DepthBand> {
+    let band = |(name, band): (&'static str, BandScore)| DepthBand {
         name,
         to_m: band.to.is_finite().then_some(band.to),
         truth_px: band.length,

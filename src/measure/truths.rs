@@ -10,20 +10,20 @@ use bytemuck::{Pod, Zeroable};
 use glam::DVec2;
 use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
-use crate::cache::{Cache, Hearing, Key, Kind, Sheet, not_kept};
+use crate::cache::{Cache, CacheKey, CacheKind, CacheObserver, NewEntry, not_kept};
 use crate::error::Message;
 use crate::surface::{Level, Surface};
-use crate::truth::{Line, Piece, Terrain, Truth};
+use crate::truth::{Terrain, Truth, TruthLine, TruthPiece};
 use crate::view::Camera;
 
 /// Raise it when a truth comes out otherwise for the same samples, camera and level (anything in `truth`, normals, patches,
 /// the camera's projection), or when the bytes below mean something else.
 const FORMAT: u32 = 1;
-const KIND: Kind = Kind { name: "truth", format: FORMAT, words: ["truth", "a cached truth"] };
+const KIND: CacheKind = CacheKind { name: "truth", format: FORMAT, words: ["truth", "a cached truth"] };
 
 /// A truth with what it took to make it, now or when it was kept.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Kept {
+pub struct KeptTruth {
     /// Contours and border lines.
     pub truth: Truth,
     /// Milliseconds.
@@ -55,19 +55,19 @@ struct Row {
 impl Cache {
     /// The truth of a view, from the folder or made and kept. `warn` hears of a damaged file and of a folder that cannot
     /// be written; both cost time, nothing else.
-    pub fn truth(&self, terrain: &Terrain<'_>, camera: &Camera, level: Level, warn: &dyn Fn(&Message)) -> Kept {
+    pub fn truth(&self, terrain: &Terrain<'_>, camera: &Camera, level: Level, warn: &dyn Fn(&Message)) -> KeptTruth {
         let make = || {
             let start = Instant::now();
             let truth = terrain.truth(camera, level);
-            Kept { truth, ms: start.elapsed().as_secs_f64() * 1e3 }
+            KeptTruth { truth, ms: start.elapsed().as_secs_f64() * 1e3 }
         };
         let Some(key) = self.folder().and_then(|_| key(terrain.surface, camera, level)) else { return make() };
-        let recall = |mut kept: crate::cache::Kept| {
+        let recall = |mut kept: crate::cache::KeptEntry| {
             let mut bytes = Vec::new();
             kept.file.by_ref().take(kept.bytes).read_to_end(&mut bytes)?;
             from_bytes(&bytes).ok_or(io::Error::from(ErrorKind::InvalidData))
         };
-        let make_and_keep = |sheet: Option<Sheet>, _: &dyn Fn(f64)| {
+        let make_and_keep = |sheet: Option<NewEntry>, _: &dyn Fn(f64)| {
             let made = make();
             if let Some(mut sheet) = sheet {
                 sheet.write(&to_bytes(&made));
@@ -77,12 +77,12 @@ impl Cache {
             Ok(made)
         };
         // Making it cannot fail.
-        self.get(&key, Hearing { warn, progress: &|_| () }, recall, make_and_keep).unwrap_or_else(|_| make())
+        self.get(&key, CacheObserver { warn, progress: &|_| () }, recall, make_and_keep).unwrap_or_else(|_| make())
     }
 }
 
 /// What a truth depends on; none where the samples are not in memory.
-fn key(surface: &Surface, camera: &Camera, level: Level) -> Option<Key> {
+fn key(surface: &Surface, camera: &Camera, level: Level) -> Option<CacheKey> {
     let dem = surface.dem();
     let samples = dem.held().ok()?;
     let mut hash = Xxh3::new();
@@ -94,11 +94,11 @@ fn key(surface: &Surface, camera: &Camera, level: Level) -> Option<Key> {
     hash.update(bytemuck::cast_slice(&[camera.azimuth, camera.altitude, camera.fov]));
     let counts = [dem.columns() as u64, u64::from(camera.width), u64::from(camera.height), level.subdivisions().into()];
     hash.update(bytemuck::cast_slice(&counts));
-    Some(Key { kind: KIND, hash: hash.digest128(), of: dem.label() })
+    Some(CacheKey { kind: KIND, hash: hash.digest128(), of: dem.label() })
 }
 
-fn to_bytes(kept: &Kept) -> Vec<u8> {
-    let Kept { truth, ms } = kept;
+fn to_bytes(kept: &KeptTruth) -> Vec<u8> {
+    let KeptTruth { truth, ms } = kept;
     let header = Header {
         level: truth.level.subdivisions(),
         size: truth.size,
@@ -107,10 +107,10 @@ fn to_bytes(kept: &Kept) -> Vec<u8> {
         rays: truth.rays,
         ms: *ms,
     };
-    let row = |piece: &Piece| Row {
+    let row = |piece: &TruthPiece| Row {
         ends: piece.ends.map(|end| end.to_array()),
         distance: piece.distance,
-        line: u64::from(piece.line == Line::Border),
+        line: u64::from(piece.line == TruthLine::Border),
     };
     let mut bytes = bytemuck::bytes_of(&header).to_vec();
     truth.pieces.iter().for_each(|piece| bytes.extend(bytemuck::bytes_of(&row(piece))));
@@ -119,7 +119,7 @@ fn to_bytes(kept: &Kept) -> Vec<u8> {
 }
 
 /// `None` where the bytes are not those that were written.
-fn from_bytes(bytes: &[u8]) -> Option<Kept> {
+fn from_bytes(bytes: &[u8]) -> Option<KeptTruth> {
     let (content, sum) = bytes.split_last_chunk::<8>()?;
     if xxh3_64(content) != u64::from_le_bytes(*sum) {
         return None;
@@ -128,10 +128,10 @@ fn from_bytes(bytes: &[u8]) -> Option<Kept> {
     let header: Header = bytemuck::pod_read_unaligned(header);
     let piece = |row: &[u8]| {
         let row: Row = bytemuck::pod_read_unaligned(row);
-        let line = if row.line == 0 { Line::Contour } else { Line::Border };
-        Piece { ends: row.ends.map(DVec2::from_array), distance: row.distance, line }
+        let line = if row.line == 0 { TruthLine::Contour } else { TruthLine::Border };
+        TruthPiece { ends: row.ends.map(DVec2::from_array), distance: row.distance, line }
     };
     let pieces = rows.chunks_exact(size_of::<Row>()).map(piece).collect();
     let Header { level, size, facets, rays, ms, .. } = header;
-    Some(Kept { truth: Truth { level: Level::new(level)?, size, pieces, facets, rays }, ms })
+    Some(KeptTruth { truth: Truth { level: Level::new(level)?, size, pieces, facets, rays }, ms })
 }

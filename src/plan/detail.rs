@@ -11,10 +11,10 @@ use glam::{DVec2, DVec3};
 
 use super::horizon::Horizon;
 use super::left_out::Omission;
-use super::{Curves, Thrift};
+use super::{Culling, Curves};
 use crate::error::Result;
 use crate::surface::lattice::{CELL_STEPS, CHUNK_QUADS, Role};
-use crate::surface::quadtree::Growth;
+use crate::surface::quadtree::Splits;
 use crate::surface::{Lattice, Level, Pyramid, Surface};
 use crate::view::Camera;
 
@@ -65,7 +65,7 @@ pub fn adaptive(
     surface: &Surface,
     camera: &Camera,
     error_px: f64,
-    thrift: Thrift,
+    culling: Culling,
     curves: Curves,
 ) -> Result<(Lattice, Vec<Omission>)> {
     let (dem, pyramid) = (surface.dem(), surface.pyramid()?);
@@ -73,13 +73,13 @@ pub fn adaptive(
     if curves == Curves::All {
         demand.horizon = None;
     }
-    let wedge = View::wedge(surface, camera);
+    let frustum = DetailView::frustum(surface, camera);
     let from = dem.grid_place(camera.eye.truncate()) * f64::from(CELL_STEPS);
     let tree = Lattice::grow(dem, pyramid.coarsest_step(), from.to_array(), &mut demand)?;
     let role = |origin, step| {
         let bounds = pyramid.bounds(origin, step)?;
         let seen = demand.view.meets(bounds) && !demand.is_hidden(origin, step);
-        let crossed = thrift == Thrift::Nothing || wedge.meets(bounds);
+        let crossed = culling == Culling::Off || frustum.meets(bounds);
         seen.then_some(Role::Seen).or(crossed.then_some(Role::Crossed))
     };
     let drops = Cell::new(false);
@@ -99,21 +99,21 @@ pub fn adaptive(
 /// # Errors
 /// As [`Surface::pyramid`].
 pub fn across(surface: &Surface, lattice: &Lattice, camera: &Camera) -> Result<impl Iterator<Item = bool>> {
-    let (pyramid, wedge) = (surface.pyramid()?, View::wedge(surface, camera));
+    let (pyramid, frustum) = (surface.pyramid()?, DetailView::frustum(surface, camera));
     let bounds = lattice.chunks().iter().map(|chunk| pyramid.bounds(chunk.origin, chunk.step));
-    Ok(bounds.map(move |bounds| bounds.is_some_and(|bounds| wedge.meets(bounds))))
+    Ok(bounds.map(move |bounds| bounds.is_some_and(|bounds| frustum.meets(bounds))))
 }
 
 /// What lies on the inner side of planes through the eye. Metres from sample (0, 0).
-struct View {
+struct DetailView {
     eye: DVec3,
     inward: Vec<DVec3>,
 }
 
-impl View {
+impl DetailView {
     /// What some ray of the page passes over or under.
-    fn wedge(surface: &Surface, camera: &Camera) -> Self {
-        let inward = camera.wedge().into_iter().flatten().map(|n| n.extend(0.0)).collect();
+    fn frustum(surface: &Surface, camera: &Camera) -> Self {
+        let inward = camera.frustum().into_iter().flatten().map(|n| n.extend(0.0)).collect();
         Self { eye: camera.eye - surface.dem().position(0, 0).with_z(0.0), inward }
     }
 
@@ -127,7 +127,7 @@ impl View {
 /// What a camera asks of chunks.
 struct Demand<'a> {
     pyramid: &'a Pyramid,
-    view: View,
+    view: DetailView,
     has_voids: bool,
     /// Lattice place of the last sample.
     end: [u32; 2],
@@ -154,7 +154,7 @@ impl<'a> Demand<'a> {
         let corner = camera.focal().hypot(half.length());
         Self {
             pyramid,
-            view: View {
+            view: DetailView {
                 eye: camera.eye - surface.dem().position(0, 0).with_z(0.0),
                 inward: [&[forward][..], &sides, &ends].concat(),
             },
@@ -252,7 +252,7 @@ impl<'a> Demand<'a> {
     }
 }
 
-impl Growth for Demand<'_> {
+impl Splits for Demand<'_> {
     fn splits(&mut self, origin: [u32; 2], size: u32) -> bool {
         let (pyramid, step) = (self.pyramid, size / CHUNK_QUADS);
         let Some(bounds) = pyramid.bounds(origin, step).filter(|_| step > 1) else { return false };

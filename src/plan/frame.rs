@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::left_out::Omission;
 use super::passes::{Often, Over, PassName, PlannedPass, passes};
-use super::{Batch, Border, Detail, Pieces, Plan, Thrift, Visibility, batches, detail};
+use super::{Batch, Border, Culling, Detail, Pieces, Plan, Visibility, batches, detail};
 use crate::error::{Error, Result, Setting};
 use crate::surface::{Lattice, Level, Surface};
 use crate::view::Camera;
@@ -36,9 +36,9 @@ pub struct Frame {
 
 /// What planning keeps from frame to frame: the lattice of the last uniform level.
 #[derive(Debug, Default)]
-pub struct Kept(Option<(Level, Arc<Lattice>)>);
+pub struct KeptLattice(Option<(Level, Arc<Lattice>)>);
 
-impl Kept {
+impl KeptLattice {
     /// The lattice of a level, as it was or made.
     ///
     /// # Errors
@@ -61,12 +61,12 @@ impl Frame {
     /// # Errors
     /// [`Error::Limit`] when the scene or the page is too large, [`Error::Setting`] when the page has no pixels; as
     /// [`Surface::pyramid`].
-    pub fn new(plan: &Plan, surface: &Surface, camera: &Camera, int64: bool, kept: &mut Kept) -> Result<Self> {
+    pub fn new(plan: &Plan, surface: &Surface, camera: &Camera, int64: bool, kept: &mut KeptLattice) -> Result<Self> {
         check(surface, camera)?;
         let (lattice, omissions) = match plan.detail {
             Detail::Uniform(level) => (kept.uniform(surface, level)?, Vec::new()),
             Detail::Adaptive { error_px } => {
-                let (lattice, omissions) = detail::adaptive(surface, camera, error_px, plan.thrift, plan.curves)?;
+                let (lattice, omissions) = detail::adaptive(surface, camera, error_px, plan.culling, plan.curves)?;
                 (Arc::new(lattice), omissions)
             }
         };
@@ -78,7 +78,13 @@ impl Frame {
     ///
     /// # Errors
     /// As [`Self::new`].
-    pub fn before_any(plan: &Plan, surface: &Surface, camera: &Camera, int64: bool, kept: &mut Kept) -> Result<Self> {
+    pub fn before_any(
+        plan: &Plan,
+        surface: &Surface,
+        camera: &Camera,
+        int64: bool,
+        kept: &mut KeptLattice,
+    ) -> Result<Self> {
         check(surface, camera)?;
         let lattice = match plan.detail {
             Detail::Uniform(level) => kept.uniform(surface, level)?,
@@ -90,7 +96,7 @@ impl Frame {
     fn over(lattice: Arc<Lattice>, plan: &Plan, surface: &Surface, camera: &Camera, int64: bool) -> Self {
         let visibility = plan.method.visibility(int64);
         let chunks = lattice.chunks().len() as u32;
-        let all_seen = plan.thrift == Thrift::Nothing || visibility == Visibility::TwoDepths;
+        let all_seen = plan.culling == Culling::Off || visibility == Visibility::TwoDepths;
         Self {
             plan: *plan,
             camera: *camera,
@@ -111,7 +117,7 @@ impl Frame {
         self.passes.retain(|pass| pass.name != PassName::Seam || self.lattice.has_seams());
         let lacks = |name| self.passes.iter().all(|pass| pass.name != name);
         // Chunks beside the page are among those that a lattice of several levels keeps from being rasterized.
-        let passes_over = self.plan.thrift == Thrift::LeaveOut && matches!(self.plan.detail, Detail::Uniform(_));
+        let passes_over = self.plan.culling == Culling::On && matches!(self.plan.detail, Detail::Uniform(_));
         let left_out = [
             (Omission::Rasterizing, (self.seen as usize) < self.lattice.chunks().len()),
             (Omission::Chunks, passes_over),
@@ -200,7 +206,7 @@ impl Frame {
     /// # Errors
     /// As [`Surface::pyramid`].
     pub fn across(&self, surface: &Surface) -> Result<impl Iterator<Item = bool>> {
-        let all = self.plan.thrift == Thrift::Nothing;
+        let all = self.plan.culling == Culling::Off;
         Ok(detail::across(surface, &self.lattice, &self.camera)?.map(move |across| across || all))
     }
 

@@ -61,7 +61,7 @@ pub enum LightAzimuth {
 
 impl Light {
     /// The same of the world, for an eye that looks there.
-    pub fn seen_from(self, azimuth: f64) -> Self {
+    pub(crate) fn seen_from(self, azimuth: f64) -> Self {
         let of_world = match self.azimuth {
             LightAzimuth::World(light) => light,
             LightAzimuth::View(turn) => azimuth + turn,
@@ -117,6 +117,15 @@ impl Hachures {
         Self { most_black: 1.0, shortest: Self::SHORTEST_ON_MAP, ..self }
     }
 
+    /// The least of that, px.
+    pub(crate) fn least_apart(&self) -> f64 {
+        self.apart(self.most_black)
+    }
+}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
+impl Hachures {
     /// The tone for an eye that looks to this azimuth of the world, degrees, at heights exaggerated by a factor.
     pub fn shade(&self, azimuth: f64, exaggeration: f64) -> Shade {
         Shade { hachures: *self, light: self.light.towards(azimuth), exaggeration }
@@ -126,13 +135,12 @@ impl Hachures {
     pub fn apart(&self, black: f64) -> f64 {
         self.spacing.min(FULL * self.broadest / black.max(f64::MIN_POSITIVE))
     }
-
-    /// The least of that, px.
-    pub fn least_apart(&self) -> f64 {
-        self.apart(self.most_black)
-    }
 }
 
+impl Shade {}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
 impl Shade {
     /// The share of the paper that is ink on land of this gradient: exaggerated metres for a metre east and north.
     pub fn black(&self, gradient: DVec2) -> f64 {

@@ -46,8 +46,8 @@ struct Reach {
 
 impl Horizon {
     /// Nothing hidden yet. `None` where nothing can be told.
-    pub fn new(surface: &Surface, camera: &Camera) -> Option<Self> {
-        let sides = camera.wedge()?;
+    pub(super) fn new(surface: &Surface, camera: &Camera) -> Option<Self> {
+        let sides = camera.frustum()?;
         let dem = surface.dem();
         let eye = camera.eye - dem.position(0, 0).with_z(0.0);
         let at = dem.grid_place(camera.eye.truncate());
@@ -77,7 +77,7 @@ impl Horizon {
     }
 
     /// Whether all of a box lies below the horizon.
-    pub fn hides(&self, [low, high]: [DVec3; 2]) -> bool {
+    pub(super) fn hides(&self, [low, high]: [DVec3; 2]) -> bool {
         let Some(reach) = self.reach(low.truncate(), high.truncate()) else { return false };
         let rise = high.z - self.eye.z;
         let slope = rise / if rise > 0.0 { reach.ahead[0] } else { reach.ahead[1] } + self.pixel;
@@ -86,7 +86,7 @@ impl Horizon {
     }
 
     /// Whether a rectangle of the map takes so much of the page that its parts are better looked at one by one.
-    pub fn is_wide(&self, low: DVec2, high: DVec2) -> bool {
+    pub(super) fn is_wide(&self, low: DVec2, high: DVec2) -> bool {
         match self.reach(low, high) {
             Some(reach) => self.touched(reach.any).len() > FINE_COLUMNS,
             // Wholly behind the eye, or around it.
@@ -97,7 +97,7 @@ impl Horizon {
     }
 
     /// Raises the horizon by the fences of a square of the map, lowered by `deviation` metres; `None` where it has voids.
-    pub fn raise(&mut self, low: DVec2, high: DVec2, fences: Option<Fences>, deviation: f64) {
+    pub(super) fn raise(&mut self, low: DVec2, high: DVec2, fences: Option<Fences>, deviation: f64) {
         let Some(reach) = self.reach(low, high) else { return };
         let Some(fences) = fences else {
             let columns = self.touched(reach.any);

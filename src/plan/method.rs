@@ -1,6 +1,6 @@
 //! What a frame is asked for beside its facets: a method, a border, and whether work may be left out.
 
-use super::registry::{self, Entry, Raster};
+use super::registry::{self, MethodEntry, Raster};
 
 /// How silhouettes are found. What each is called, takes and looks like stands in the [registry](Self::entry).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -19,13 +19,13 @@ pub enum Method {
     /// Compare the facets of neighbouring pixels (Mower 2015, algorithm 1).
     Adjacency {
         /// What facets must have in common to be neighbours.
-        share: Share,
+        share: SharedVertices,
     },
 }
 
 /// What two facets must share for adjacency to draw no line between them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Share {
+pub enum SharedVertices {
     /// Two lattice vertices.
     #[default]
     Edge,
@@ -67,12 +67,12 @@ pub enum LandLines {
 
 /// Whether a frame leaves out what cannot change the picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Thrift {
-    /// Chunks beside the page, walks where nothing is away.
+pub enum Culling {
+    /// Chunks outside the frustum or behind nearer land, walks where nothing is away.
     #[default]
-    LeaveOut,
+    On,
     /// Everything is computed: the measure of the other.
-    Nothing,
+    Off,
 }
 
 /// What the raster keeps of each pixel, and how.
@@ -93,19 +93,19 @@ impl Method {
         Self::Contour,
         Self::TowardAway { wide: false },
         Self::TowardAway { wide: true },
-        Self::Adjacency { share: Share::Edge },
-        Self::Adjacency { share: Share::Corner },
+        Self::Adjacency { share: SharedVertices::Edge },
+        Self::Adjacency { share: SharedVertices::Corner },
     ];
 
     /// What the registry says of it.
-    pub const fn entry(self) -> &'static Entry {
+    pub const fn entry(self) -> &'static MethodEntry {
         match self {
             Self::Walk => &registry::WALK,
             Self::Contour => &registry::CONTOUR,
             Self::TowardAway { wide: false } => &registry::TOWARD_AWAY,
             Self::TowardAway { wide: true } => &registry::TOWARD_AWAY_WIDE,
-            Self::Adjacency { share: Share::Edge } => &registry::ADJACENCY,
-            Self::Adjacency { share: Share::Corner } => &registry::ADJACENCY_CORNER,
+            Self::Adjacency { share: SharedVertices::Edge } => &registry::ADJACENCY,
+            Self::Adjacency { share: SharedVertices::Corner } => &registry::ADJACENCY_CORNER,
         }
     }
 
@@ -113,7 +113,11 @@ impl Method {
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|method| method.entry().name == name)
     }
+}
 
+/// What other stages and tests look into.
+#[doc(hidden)]
+impl Method {
     /// How its raster is made on a device with or without 64-bit atomics.
     pub fn visibility(self, int64: bool) -> Visibility {
         match self.entry().raster {
@@ -124,6 +128,10 @@ impl Method {
     }
 }
 
+impl Visibility {}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
 impl Visibility {
     /// How often the facets are rasterized.
     pub fn rounds(self) -> u32 {

@@ -1,24 +1,25 @@
 //! What a frame needs: which method over which facets, in which batches and passes, in how many pieces of the page.
 
-pub mod batches;
-pub mod detail;
-pub mod frame;
+pub(crate) mod batches;
+pub(crate) mod detail;
+pub(crate) mod frame;
 mod hachures;
 mod horizon;
-pub mod left_out;
-pub mod method;
-pub mod passes;
-pub mod pieces;
-pub mod registry;
+pub(crate) mod left_out;
+pub(crate) mod method;
+pub(crate) mod passes;
+pub(crate) mod pieces;
+pub(crate) mod registry;
 
-pub use batches::{Batch, batches};
+pub(crate) use batches::{Batch, batches};
 pub use detail::Detail;
-pub use frame::Frame;
+pub(crate) use frame::Frame;
 pub use hachures::{Hachures, Light, LightAzimuth, Shade, Tone};
-pub use method::{Border, Curves, LandLines, Method, Share, Thrift, Visibility};
-pub use passes::PassName;
-pub use pieces::{Piece, Pieces};
-pub use registry::Yields;
+pub use method::{Border, Culling, Curves, LandLines, Method, SharedVertices, Visibility};
+pub(crate) use passes::PassName;
+pub(crate) use pieces::{PagePiece, Pieces};
+pub use registry::MethodEntry;
+pub(crate) use registry::Yields;
 
 /// What is drawn, whatever the eye.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,7 +37,7 @@ pub struct Plan {
     /// How hachures look, where they are drawn.
     pub hachures: Option<Hachures>,
     /// Whether what cannot change the picture is left out.
-    pub thrift: Thrift,
+    pub culling: Culling,
 }
 
 impl Plan {
@@ -49,18 +50,18 @@ impl Plan {
             curves: Curves::Off,
             land: LandLines::Off,
             hachures: None,
-            thrift: Thrift::LeaveOut,
+            culling: Culling::On,
         }
     }
 
     /// The same with light that stays where it is for an eye that looks to this azimuth of the world, degrees.
-    pub fn lit_for(self, azimuth: f64) -> Self {
+    pub(crate) fn lit_for(self, azimuth: f64) -> Self {
         let lit = |hachures: Hachures| Hachures { light: hachures.light.seen_from(azimuth), ..hachures };
         Self { hachures: self.hachures.map(lit), ..self }
     }
 
     /// Whether its frames hold curves.
-    pub fn has_curves(&self) -> bool {
+    pub(crate) fn has_curves(&self) -> bool {
         self.curves != Curves::Off || self.method.entry().yields == Yields::Curves
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{Border, Detail, LandLines, Plan, Yields};
 
-/// A pass: the name of its shader, of its adapter, of its label and of its timer.
+/// A pass: the name of its shader, of its label and of its timer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum PassName {
     /// Vertices on the surface.

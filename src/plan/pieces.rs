@@ -30,7 +30,7 @@ pub struct Rectangle {
 
 /// A part of a page.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Piece {
+pub struct PagePiece {
     /// What it contributes; the pieces of a page share no pixel.
     pub kept: Rectangle,
     /// What is drawn for that: with the halo, as far as the page goes.
@@ -61,7 +61,7 @@ impl Pieces {
     }
 
     /// The pieces in reading order.
-    pub fn iter(&self) -> impl ExactSizeIterator<Item = Piece> + use<> {
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = PagePiece> + use<> {
         let Self { page, side } = *self;
         let columns = page[0].div_ceil(side[0]);
         (0..columns * page[1].div_ceil(side[1])).map(move |i| {
@@ -69,7 +69,7 @@ impl Pieces {
             let end = [0, 1].map(|axis| page[axis].min(first[axis] + side[axis]));
             let low = first.map(|v| v.saturating_sub(HALO));
             let high = [0, 1].map(|axis| page[axis].min(end[axis] + HALO));
-            Piece { kept: between(first, end), drawn: between(low, high) }
+            PagePiece { kept: between(first, end), drawn: between(low, high) }
         })
     }
 

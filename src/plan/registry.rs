@@ -8,7 +8,7 @@ use super::PassName;
 
 /// What is known of a method.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Entry {
+pub struct MethodEntry {
     /// Its name in comparisons and reports, unique; file names hold it.
     pub name: &'static str,
     /// Its name where variants are chosen by settings of their own: they share it.
@@ -34,7 +34,7 @@ pub struct Entry {
     /// Buffers of its own of a word a pixel, zero before each frame.
     pub words: &'static [&'static str],
     /// How its curve looks in plots.
-    pub look: Look,
+    pub look: PlotLook,
 }
 
 /// What a method yields.
@@ -57,7 +57,7 @@ pub enum Raster {
 
 /// How a curve looks, told apart by each of the three alone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Look {
+pub struct PlotLook {
     /// Red, green, blue.
     pub colour: [u8; 3],
     /// Lengths of dash and gap, px; `None` for a full line.
@@ -83,7 +83,7 @@ pub enum Marker {
     Plus,
 }
 
-pub(super) const WALK: Entry = Entry {
+pub(super) const WALK: MethodEntry = MethodEntry {
     name: "walk",
     family: "walk",
     brief: "Walk the lattice between neighbouring pixels: complete",
@@ -97,10 +97,10 @@ pub(super) const WALK: Entry = Entry {
     constants: &[],
     conservative: false,
     words: &[],
-    look: Look { colour: [26, 26, 26], dash: None, marker: Marker::Disc },
+    look: PlotLook { colour: [26, 26, 26], dash: None, marker: Marker::Disc },
 };
 
-pub(super) const CONTOUR: Entry = Entry {
+pub(super) const CONTOUR: MethodEntry = MethodEntry {
     name: "contour",
     family: "contour",
     brief: "Follow the silhouette curve, not a line of equal height: smooth and connected, but short lines are missing",
@@ -114,10 +114,10 @@ pub(super) const CONTOUR: Entry = Entry {
     constants: &[],
     conservative: false,
     words: &[],
-    look: Look { colour: [196, 20, 60], dash: Some([9, 3]), marker: Marker::Plus },
+    look: PlotLook { colour: [196, 20, 60], dash: Some([9, 3]), marker: Marker::Plus },
 };
 
-pub(super) const TOWARD_AWAY: Entry = Entry {
+pub(super) const TOWARD_AWAY: MethodEntry = MethodEntry {
     name: "toward-away",
     family: "toward-away",
     brief: "Compare toward and away depths: fast at low levels, with gaps",
@@ -131,21 +131,21 @@ pub(super) const TOWARD_AWAY: Entry = Entry {
     constants: &[("wide", 0.0)],
     conservative: false,
     words: &[],
-    look: Look { colour: [0, 90, 200], dash: Some([12, 4]), marker: Marker::Square },
+    look: PlotLook { colour: [0, 90, 200], dash: Some([12, 4]), marker: Marker::Square },
 };
 
-pub(super) const TOWARD_AWAY_WIDE: Entry = Entry {
+pub(super) const TOWARD_AWAY_WIDE: MethodEntry = MethodEntry {
     name: "toward-away-wide",
     brief: "Compare toward and away depths, away surface wherever it touches the pixel: fewer gaps",
     rule: "The same as toward-away, with away surface counted wherever it touches the pixel or that neighbour.",
     constants: &[("wide", 1.0)],
     conservative: true,
     words: &["touched"],
-    look: Look { colour: [0, 110, 95], dash: Some([6, 4]), marker: Marker::Triangle },
+    look: PlotLook { colour: [0, 110, 95], dash: Some([6, 4]), marker: Marker::Triangle },
     ..TOWARD_AWAY
 };
 
-pub(super) const ADJACENCY: Entry = Entry {
+pub(super) const ADJACENCY: MethodEntry = MethodEntry {
     name: "adjacency",
     family: "adjacency",
     brief: "Compare the facets of neighbouring pixels: floods small facets",
@@ -159,16 +159,16 @@ pub(super) const ADJACENCY: Entry = Entry {
     constants: &[("shared_vertices", 2.0)],
     conservative: false,
     words: &[],
-    look: Look { colour: [184, 58, 0], dash: Some([3, 4]), marker: Marker::Diamond },
+    look: PlotLook { colour: [184, 58, 0], dash: Some([3, 4]), marker: Marker::Diamond },
 };
 
-pub(super) const ADJACENCY_CORNER: Entry = Entry {
+pub(super) const ADJACENCY_CORNER: MethodEntry = MethodEntry {
     name: "adjacency-corner",
     brief: "Compare the facets of neighbouring pixels, corners shared: floods less",
     aside: "",
     rule: "A pixel is ink if a neighbour at least as far shows a facet that shares no lattice vertex with its own \
            (Mower 2015).",
     constants: &[("shared_vertices", 1.0)],
-    look: Look { colour: [130, 40, 130], dash: Some([18, 6]), marker: Marker::Cross },
+    look: PlotLook { colour: [130, 40, 130], dash: Some([18, 6]), marker: Marker::Cross },
     ..ADJACENCY
 };

@@ -15,7 +15,7 @@ const AHEAD: usize = 4;
 
 /// Of each place of a line, metres at the three distances; 0 where a side has no height: what lies along
 /// the rim is not known to be a valley.
-pub fn across(grid: &Grid, line: &[DVec2], follows: Follows) -> Vec<[f32; 3]> {
+pub(super) fn across(grid: &Grid, line: &[DVec2], follows: Follows) -> Vec<[f32; 3]> {
     let side = grid.frame.side();
     let one = |k: usize| {
         let along = (line[(k + AHEAD).min(line.len() - 1)] - line[k.saturating_sub(AHEAD)]) * grid.frame.cell;

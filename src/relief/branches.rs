@@ -7,7 +7,7 @@ use super::channels::Channels;
 
 /// A way down the forest.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Branch {
+pub(super) struct Branch {
     /// From the head on, at least one.
     pub nodes: Vec<u32>,
     /// The node of another branch to which the last flows.
@@ -15,7 +15,7 @@ pub struct Branch {
 }
 
 /// The branches; `size` is of a node, more than that of any above it.
-pub fn branches(channels: &Channels, size: impl Fn(usize) -> u32) -> Vec<Branch> {
+pub(super) fn branches(channels: &Channels, size: impl Fn(usize) -> u32) -> Vec<Branch> {
     let nodes = channels.samples.len();
     // The node above that goes on, where there is one.
     let mut main: Vec<Option<u32>> = vec![None; nodes];
@@ -41,7 +41,7 @@ pub fn branches(channels: &Channels, size: impl Fn(usize) -> u32) -> Vec<Branch>
 }
 
 /// Those of at least so many nodes, and those that one of them joins.
-pub fn lasting(branches: Vec<Branch>, channels: &Channels, least: usize) -> Vec<Branch> {
+pub(super) fn lasting(branches: Vec<Branch>, channels: &Channels, least: usize) -> Vec<Branch> {
     let mut joined = vec![false; channels.samples.len()];
     let mut left: Vec<Branch> = Vec::new();
     for branch in branches.into_iter().rev() {

@@ -8,7 +8,7 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use super::SurfaceLine;
-use super::frame::Frame;
+use super::frame::FramedGrid;
 use super::grid::Grid;
 use crate::dem::{Band, Dem};
 use crate::error::Result;
@@ -17,7 +17,7 @@ use crate::error::Result;
 const MOST: usize = 1 << 23;
 
 /// Samples along the side of a block on which lines of a DEM are found: 1 of a held one.
-pub fn spacing(dem: &Dem) -> usize {
+pub(crate) fn spacing(dem: &Dem) -> usize {
     let blocks = |side: usize| dem.columns().div_ceil(side) * dem.rows().div_ceil(side);
     let mut side = 1;
     while dem.is_filed() && blocks(side) > MOST {
@@ -33,7 +33,7 @@ pub fn spacing(dem: &Dem) -> usize {
 /// As [`Dem::window`] and [`Dem::check`].
 pub fn lowest_and_highest(dem: &Dem, exaggeration: f64, side: usize, progress: &dyn Fn(f64)) -> Result<[Grid; 2]> {
     let size = [dem.columns(), dem.rows()].map(|samples| samples.div_ceil(side));
-    let frame = Frame { size, cell: dem.cell() * side as f64 };
+    let frame = FramedGrid { size, cell: dem.cell() * side as f64 };
     let mut blocks = [f32::min, f32::max].map(|of| (of, vec![f32::NAN; frame.samples()]));
     for band in dem.bands(0) {
         let Band { rows, samples } = band?;

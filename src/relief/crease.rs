@@ -33,7 +33,7 @@ impl Crease {
 
 /// All that decides which lines of the land there are.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct LandWanted {
+pub(crate) struct LandWanted {
     /// Of the land itself.
     pub creases: Vec<Crease>,
     /// Where channels begin.
@@ -48,7 +48,7 @@ pub struct LandWanted {
 
 impl LandWanted {
     /// Whether there are none.
-    pub fn is_nothing(&self) -> bool {
+    pub(crate) fn is_nothing(&self) -> bool {
         self.creases.is_empty() && self.own.is_empty() && self.slopes.is_none()
     }
 }

@@ -9,17 +9,22 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use super::frame::Frame;
+use super::frame::FramedGrid;
 use super::heap::{RadixHeap, key};
 
 /// Water rises from here first.
-pub const SEED: u8 = 8;
+pub(super) const SEED: u8 = 8;
 const UNSEEN: u8 = 9;
 const VOID: u8 = 10;
 
 /// Floods from seeds, each a sample that is no void. `reached` hears of each sample, by when the parents of all on its way back are
 /// known.
-pub fn flood(frame: Frame, heights: &[f32], seeds: impl Iterator<Item = usize>, mut reached: impl FnMut(usize, &[u8])) {
+pub(super) fn flood(
+    frame: FramedGrid,
+    heights: &[f32],
+    seeds: impl Iterator<Item = usize>,
+    mut reached: impl FnMut(usize, &[u8]),
+) {
     let mut parents: Vec<u8> = heights.iter().map(|height| if height.is_nan() { VOID } else { UNSEEN }).collect();
     let (steps, mut rising) = (frame.steps(), RadixHeap::new());
     for seed in seeds {

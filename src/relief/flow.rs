@@ -12,7 +12,7 @@
 
 use super::bits::Bits;
 use super::flood::flood;
-use super::frame::Frame;
+use super::frame::FramedGrid;
 use super::steepest::{NONE, OUTLET, VOID, steepest};
 
 /// Where water may end.
@@ -32,7 +32,7 @@ pub enum Ends<'a> {
 /// Directions of all samples.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Flow {
-    frame: Frame,
+    frame: FramedGrid,
     steps: [usize; 8],
     to: Vec<u8>,
 }
@@ -48,7 +48,7 @@ struct Carver {
 
 impl Flow {
     /// Over framed heights, NaN at voids.
-    pub fn of(frame: Frame, heights: &[f32], ends: Ends<'_>) -> Self {
+    pub fn of(frame: FramedGrid, heights: &[f32], ends: Ends<'_>) -> Self {
         let mut flow = Self { frame, steps: frame.steps(), to: steepest(frame, heights) };
         let mut drains = Bits::none(frame.samples());
         let seeds = flow.seeds(heights, ends, &mut drains);
@@ -124,7 +124,7 @@ impl Flow {
     }
 
     /// Its grid.
-    pub fn frame(&self) -> Frame {
+    pub fn frame(&self) -> FramedGrid {
         self.frame
     }
 

@@ -3,18 +3,18 @@
 use glam::DVec2;
 
 /// Columns and rows of the eight neighbours, from the east clockwise; that across from `k` is `(k + 4) % 8`.
-pub const AROUND: [[isize; 2]; 8] = [[1, 0], [1, 1], [0, 1], [-1, 1], [-1, 0], [-1, -1], [0, -1], [1, -1]];
+pub(crate) const AROUND: [[isize; 2]; 8] = [[1, 0], [1, 1], [0, 1], [-1, 1], [-1, 0], [-1, -1], [0, -1], [1, -1]];
 
 /// Size and cells of a grid whose arrays have one sample more on every side.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Frame {
+pub struct FramedGrid {
     /// Columns and rows without the frame.
     pub size: [usize; 2],
     /// Metres between columns and between rows.
     pub cell: DVec2,
 }
 
-impl Frame {
+impl FramedGrid {
     /// Samples between one and that south of it.
     pub fn stride(self) -> usize {
         self.size[0] + 2

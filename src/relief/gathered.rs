@@ -13,7 +13,7 @@ use crate::error::Result;
 
 /// Land from which water comes, square metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Gathered {
+pub(crate) struct Gathered {
     /// To a place, or one of the samples about it: the most.
     pub here: f64,
     /// To where channels begin.
@@ -25,7 +25,7 @@ impl Gathered {
     ///
     /// # Errors
     /// Those of [`Relief`] and of reading the samples.
-    pub fn at(dem: &Dem, exaggeration: f64, channels: ChannelArea, place: DVec2) -> Result<Option<Self>> {
+    pub(crate) fn at(dem: &Dem, exaggeration: f64, channels: ChannelArea, place: DVec2) -> Result<Option<Self>> {
         let spacing = spacing(dem);
         let relief = match dem.is_filed() {
             true => {

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::frame::Frame;
+use super::frame::FramedGrid;
 use super::smooth::smoothed;
 use crate::dem::Dem;
 use crate::error::Result;
@@ -11,7 +11,7 @@ use crate::error::Result;
 #[derive(Debug, Clone)]
 pub struct Grid {
     /// Where they lie.
-    pub frame: Frame,
+    pub frame: FramedGrid,
     /// Metres, NaN at voids.
     pub heights: Vec<f32>,
     /// The same without the noise of single samples.
@@ -25,7 +25,7 @@ impl Grid {
     /// [`Error::Limit`](crate::error::Error::Limit) for a filed one.
     pub fn of(dem: &Dem, exaggeration: f64) -> Result<Self> {
         let samples = dem.held()?;
-        let frame = Frame { size: [dem.columns(), dem.rows()], cell: dem.cell() };
+        let frame = FramedGrid { size: [dem.columns(), dem.rows()], cell: dem.cell() };
         let mut heights = vec![f32::NAN; frame.samples()];
         for r in 0..dem.rows() {
             let row = heights[frame.row(r)].iter_mut().zip(samples.row_from(0, r));
@@ -37,7 +37,7 @@ impl Grid {
     }
 
     /// Of framed heights, NaN at voids.
-    pub fn new(frame: Frame, heights: Vec<f32>) -> Self {
+    pub fn new(frame: FramedGrid, heights: Vec<f32>) -> Self {
         Self { smoothed: smoothed(frame, &heights), frame, heights }
     }
 

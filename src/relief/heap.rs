@@ -6,7 +6,7 @@
 
 /// Samples by keys of which none is less than the last one out.
 #[derive(Debug)]
-pub struct RadixHeap {
+pub(super) struct RadixHeap {
     buckets: [Vec<(u32, u32)>; 33],
     /// Key of the first bucket.
     last: u32,
@@ -15,18 +15,18 @@ pub struct RadixHeap {
 }
 
 impl RadixHeap {
-    pub fn new() -> Self {
+    pub(super) fn new() -> Self {
         Self { buckets: [const { Vec::new() }; 33], last: 0, out: 0 }
     }
 
     /// Takes a sample in; its key is not below that of the last one out.
-    pub fn push(&mut self, key: u32, sample: u32) {
+    pub(super) fn push(&mut self, key: u32, sample: u32) {
         let bucket = u32::BITS - (key ^ self.last).leading_zeros();
         self.buckets[bucket as usize].push((key, sample));
     }
 
     /// The first of those with the least key, and that.
-    pub fn pop(&mut self) -> Option<(u32, u32)> {
+    pub(super) fn pop(&mut self) -> Option<(u32, u32)> {
         if self.out == self.buckets[0].len() {
             self.refill()?;
         }
@@ -52,7 +52,7 @@ impl RadixHeap {
 }
 
 /// A key that orders as heights do; -0 is 0.
-pub fn key(height: f32) -> u32 {
+pub(super) fn key(height: f32) -> u32 {
     let bits = (height + 0.0).to_bits();
     if bits >> 31 == 1 { !bits } else { bits | 1 << 31 }
 }

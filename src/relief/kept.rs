@@ -17,14 +17,14 @@ use xxhash_rust::xxh3::Xxh3;
 use super::coarse::{lowest_and_highest, on_samples, spacing};
 use super::whole::{ChannelArea, Relief};
 use super::{LineKind, SurfaceLine, SurfacePoint};
-use crate::cache::{Cache, Hearing, Kept, Key, Kind, Sheet, not_kept};
+use crate::cache::{Cache, CacheKey, CacheKind, CacheObserver, KeptEntry, NewEntry, not_kept};
 use crate::dem::Dem;
 use crate::error::Result;
 
 /// Raise it when the lines of the same heights come out otherwise, or when the bytes below mean something else.
 const FORMAT: u32 = 1;
-const KIND: Kind =
-    Kind { name: "creases", format: FORMAT, words: ["what was found of creases", "what is kept of creases"] };
+const KIND: CacheKind =
+    CacheKind { name: "creases", format: FORMAT, words: ["what was found of creases", "what is kept of creases"] };
 /// The line that none joins.
 const NONE: [u32; 2] = [u32::MAX; 2];
 
@@ -46,7 +46,7 @@ struct Header {
 
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-struct Line {
+struct KeptLine {
     points: u32,
     joins: [u32; 2],
     order: u32,
@@ -98,13 +98,13 @@ impl Cache {
         dem: &Dem,
         exaggeration: f64,
         creases: &[FlowLines],
-        hearing: Hearing<'_>,
+        hearing: CacheObserver<'_>,
     ) -> Result<Vec<Vec<SurfaceLine>>> {
         let heights = digest(dem, exaggeration)?;
         // Of what is not known, found once.
         let mut reliefs = None;
         let mut of_kind = |crease: &FlowLines| {
-            let mut find = |sheet: Option<(Sheet, &Key)>, progress: &dyn Fn(f64)| {
+            let mut find = |sheet: Option<(NewEntry, &CacheKey)>, progress: &dyn Fn(f64)| {
                 let (lowest, highest) = match &mut reliefs {
                     Some(reliefs) => reliefs,
                     none => none.insert(both(dem, exaggeration, progress)?),
@@ -128,8 +128,9 @@ impl Cache {
             let mut hash = Xxh3::new();
             hash.update(&heights.to_le_bytes());
             crease.code().iter().for_each(|code| hash.update(&code.to_le_bytes()));
-            let key = Key { kind: KIND, hash: hash.digest128(), of: dem.label() };
-            let make = |sheet: Option<Sheet>, progress: &dyn Fn(f64)| find(sheet.map(|sheet| (sheet, &key)), progress);
+            let key = CacheKey { kind: KIND, hash: hash.digest128(), of: dem.label() };
+            let make =
+                |sheet: Option<NewEntry>, progress: &dyn Fn(f64)| find(sheet.map(|sheet| (sheet, &key)), progress);
             self.get(&key, hearing, |kept| recall(kept, crease.kind()), make)
         };
         creases.iter().map(&mut of_kind).collect()
@@ -164,10 +165,10 @@ pub(super) fn digest(dem: &Dem, exaggeration: f64) -> Result<Option<u128>> {
 }
 
 /// Writes and publishes lines.
-fn write(sheet: Sheet, lines: &[SurfaceLine]) -> Result<Kept> {
+fn write(sheet: NewEntry, lines: &[SurfaceLine]) -> Result<KeptEntry> {
     let points: usize = lines.iter().map(|line| line.points.len()).sum();
     let header = Header { lines: lines.len() as u64, points: points as u64 };
-    let line = |line: &SurfaceLine| Line {
+    let line = |line: &SurfaceLine| KeptLine {
         points: line.points.len() as u32,
         joins: line.joins.unwrap_or(NONE),
         order: u32::from(line.order),
@@ -184,12 +185,12 @@ fn write(sheet: Sheet, lines: &[SurfaceLine]) -> Result<Kept> {
 }
 
 /// Reads lines of a kind. Fails where the bytes are not those that were written.
-fn recall(kept: Kept, kind: LineKind) -> io::Result<Vec<SurfaceLine>> {
+fn recall(kept: KeptEntry, kind: LineKind) -> io::Result<Vec<SurfaceLine>> {
     let damaged = || io::Error::from(ErrorKind::InvalidData);
     let bytes = kept.whole()?;
     let (header, rest) = bytes.split_at_checked(size_of::<Header>()).ok_or_else(damaged)?;
     let header: Header = bytemuck::pod_read_unaligned(header);
-    let size = (header.lines as usize).checked_mul(size_of::<Line>()).ok_or_else(damaged)?;
+    let size = (header.lines as usize).checked_mul(size_of::<KeptLine>()).ok_or_else(damaged)?;
     let (lines, points) = rest.split_at_checked(size).ok_or_else(damaged)?;
     let mut points = points.chunks_exact(size_of::<Point>()).map(bytemuck::pod_read_unaligned::<Point>);
     let point = |point: Point| {
@@ -197,10 +198,10 @@ fn recall(kept: Kept, kind: LineKind) -> io::Result<Vec<SurfaceLine>> {
         SurfacePoint { at: DVec2::from_array(at), across, length, drop }
     };
     let line = |line: &[u8]| {
-        let Line { points: count, joins, order } = bytemuck::pod_read_unaligned(line);
+        let KeptLine { points: count, joins, order } = bytemuck::pod_read_unaligned(line);
         let points: Vec<SurfacePoint> = points.by_ref().take(count as usize).map(point).collect();
         let joins = Some(joins).filter(|joins| *joins != NONE);
         SurfaceLine { kind, order: order as u8, points, closed: false, joins }
     };
-    Ok(lines.chunks_exact(size_of::<Line>()).map(line).collect())
+    Ok(lines.chunks_exact(size_of::<KeptLine>()).map(line).collect())
 }

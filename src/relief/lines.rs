@@ -8,12 +8,12 @@ use super::branches::Branch;
 use super::grid::Grid;
 use super::net::{Laid, Net};
 use super::prune::{Lie, pruned};
-use super::trace::{Follows, Place, trace};
+use super::trace::{CurvePlace, Follows, trace};
 use super::{LineKind, SurfaceLine, SurfacePoint};
 
 /// What is known of a node.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Node {
+pub(super) struct NetNode {
     /// Column and row.
     pub at: DVec2,
     /// As of a [`SurfacePoint`], but need not grow.
@@ -25,14 +25,14 @@ pub struct Node {
 }
 
 /// The lines of branches, largest first; `node` tells what is known of one of the branch of a number.
-pub fn lines(
+pub(super) fn lines(
     grid: &Grid,
     branches: &[Branch],
     follows: Follows,
-    node: impl Fn(usize, u32) -> Node + Sync,
+    node: impl Fn(usize, u32) -> NetNode + Sync,
 ) -> Vec<SurfaceLine> {
     let traced = |(which, branch): (usize, &Branch)| {
-        let nodes: Vec<Node> = branch.nodes.iter().chain(&branch.joins).map(|number| node(which, *number)).collect();
+        let nodes: Vec<NetNode> = branch.nodes.iter().chain(&branch.joins).map(|number| node(which, *number)).collect();
         let places: Vec<DVec2> = nodes.iter().map(|node| node.at).collect();
         (trace(grid, &places, follows), nodes, branch.joins.is_some())
     };
@@ -48,19 +48,19 @@ pub fn lines(
     }
     let lies = |laid: &Laid| Lie { free: laid.free, lowest: laid.places.iter().map(|place| place.is_lowest).collect() };
     let lies: Vec<Lie> = net.lines.iter().map(lies).collect();
-    let line = |(laid, nodes): (Laid, &Vec<Node>)| line(grid, laid, nodes, follows);
+    let line = |(laid, nodes): (Laid, &Vec<NetNode>)| line(grid, laid, nodes, follows);
     let lines = net.lines.into_par_iter().zip(&known).map(line).collect();
     pruned(grid, lines, &lies)
 }
 
 /// A line with what is known of its nodes.
-fn line(grid: &Grid, laid: Laid, nodes: &[Node], follows: Follows) -> SurfaceLine {
+fn line(grid: &Grid, laid: Laid, nodes: &[NetNode], follows: Follows) -> SurfaceLine {
     let ats: Vec<DVec2> = laid.places.iter().map(|place| place.at).collect();
     let mut most = [0.0_f32; 2];
-    let point = |(place, across): (&Place, [f32; 3])| {
+    let point = |(place, across): (&CurvePlace, [f32; 3])| {
         let k = (place.node as usize).min(nodes.len() - 2);
         let share = (place.node - k as f64) as f32;
-        let between = |of: fn(&Node) -> f32| of(&nodes[k]) + (of(&nodes[k + 1]) - of(&nodes[k])) * share;
+        let between = |of: fn(&NetNode) -> f32| of(&nodes[k]) + (of(&nodes[k + 1]) - of(&nodes[k])) * share;
         most = [most[0].max(between(|node| node.length)), most[1].max(between(|node| node.drop))];
         SurfacePoint { at: place.at, across, length: most[0], drop: most[1] }
     };

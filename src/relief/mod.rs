@@ -5,20 +5,20 @@
 //! whether a page can show it.
 
 mod across;
-pub mod area;
-pub mod bits;
+pub(crate) mod area;
+pub(crate) mod bits;
 mod branches;
-pub mod channels;
-mod coarse;
+pub(crate) mod channels;
+pub(crate) mod coarse;
 mod crease;
 mod flat_water;
 mod flood;
-pub mod flow;
-pub mod frame;
+pub(crate) mod flow;
+pub(crate) mod frame;
 mod gathered;
-pub mod grid;
+pub(crate) mod grid;
 mod heap;
-mod kept;
+pub(crate) mod kept;
 mod lines;
 mod net;
 mod own;
@@ -26,27 +26,30 @@ mod parting;
 mod peaks;
 mod prune;
 mod shores;
-pub mod slope;
+pub(crate) mod slope;
 mod smooth;
 mod steepest;
-pub mod threshold;
+pub(crate) mod threshold;
 mod tops;
 mod trace;
 mod water;
-mod whole;
+pub(crate) mod whole;
 
 use glam::DVec2;
 
-pub use coarse::{lowest_and_highest, on_samples, spacing};
-pub use crease::{Crease, LandWanted};
+pub(crate) use coarse::spacing;
+pub(crate) use crease::{Crease, LandWanted};
 pub use flat_water::FlatWater;
-pub use gathered::Gathered;
-pub use kept::FlowLines;
-pub use own::{own_lines, own_lines_if_any};
+pub(crate) use gathered::Gathered;
+pub(crate) use kept::FlowLines;
+pub use own::own_lines;
+pub(crate) use own::own_lines_if_any;
 pub use peaks::{Base, Peak, peaks};
 pub use shores::Shores;
-pub use slope::{Need, Needed, SlopeBlock, SlopeLine, SlopePoint, SlopeRules, Slopes};
-pub use whole::{ChannelArea, Relief, auto_cells};
+pub(crate) use slope::{Need, Needed, SlopeLine, SlopePoint};
+pub use slope::{SlopeRules, Slopes};
+pub(crate) use whole::auto_cells;
+pub use whole::{ChannelArea, Relief};
 
 /// What a line of the land is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]

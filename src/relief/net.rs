@@ -6,8 +6,8 @@
 
 use glam::DVec2;
 
-use super::frame::Frame;
-use super::trace::{Place, SPACING};
+use super::frame::FramedGrid;
+use super::trace::{CurvePlace, SPACING};
 
 /// How near two lines come before they join, cells: so near that they could cross between two places.
 const NEAR: f64 = 0.6;
@@ -23,7 +23,7 @@ const NOTHING: u32 = u32::MAX;
 
 /// A place of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Joint {
+pub(super) struct Joint {
     /// Which line.
     pub line: u32,
     /// Which of its places.
@@ -32,9 +32,9 @@ pub struct Joint {
 
 /// A line that lies.
 #[derive(Debug)]
-pub struct Laid {
+pub(super) struct Laid {
     /// At least two.
-    pub places: Vec<Place>,
+    pub places: Vec<CurvePlace>,
     /// The place of another that the last one is.
     pub joint: Option<Joint>,
     /// How many of its places are not beside lines that lay before.
@@ -43,7 +43,7 @@ pub struct Laid {
 
 /// Lines by the cells that they run through.
 #[derive(Debug)]
-pub struct Net {
+pub(super) struct Net {
     /// All, as they were laid.
     pub lines: Vec<Laid>,
     /// Columns and rows.
@@ -56,7 +56,7 @@ pub struct Net {
 
 impl Net {
     /// No line on a grid.
-    pub fn new(frame: Frame) -> Self {
+    pub(super) fn new(frame: FramedGrid) -> Self {
         Self {
             lines: Vec::new(),
             size: frame.size,
@@ -67,7 +67,7 @@ impl Net {
 
     /// Lays a line where it is not near another, if it is anywhere not, and tells whether it did. Whether it joins one in the
     /// end is known.
-    pub fn lay(&mut self, mut line: Vec<Place>, is_branch: bool) -> bool {
+    pub(super) fn lay(&mut self, mut line: Vec<CurvePlace>, is_branch: bool) -> bool {
         let Some(first) = line.iter().position(|place| self.near(place.at, NEAR).is_none()) else { return false };
         line.drain(..first);
         let meets = line.iter().position(|place| self.near(place.at, NEAR).is_some());
@@ -88,7 +88,7 @@ impl Net {
     }
 
     /// Moves the end of a line onto its joint, and what comes before it less and less.
-    fn bend(&self, line: &mut Vec<Place>, joint: Joint) {
+    fn bend(&self, line: &mut Vec<CurvePlace>, joint: Joint) {
         let to = self.lines[joint.line as usize].places[joint.place as usize].at;
         let last = line.len() - 1;
         let by = to - line[last].at;
@@ -98,14 +98,14 @@ impl Net {
             line[last - k].at += by * (share * share);
         }
         line[last].at = to;
-        let close = |pair: &[Place]| pair[0].at.distance(pair[1].at) < SPACING / 4.0;
+        let close = |pair: &[CurvePlace]| pair[0].at.distance(pair[1].at) < SPACING / 4.0;
         while line.len() > 2 && close(&line[line.len() - 2..]) {
             line.remove(line.len() - 2);
         }
     }
 
-    fn keep(&mut self, places: Vec<Place>, joint: Option<Joint>) {
-        let is_free = |place: &&Place| self.around(place.at, BESIDE).all(|(distance, _)| distance >= BESIDE);
+    fn keep(&mut self, places: Vec<CurvePlace>, joint: Option<Joint>) {
+        let is_free = |place: &&CurvePlace| self.around(place.at, BESIDE).all(|(distance, _)| distance >= BESIDE);
         let free = places.iter().filter(is_free).count();
         for (k, place) in places.iter().enumerate() {
             let at = Joint { line: self.lines.len() as u32, place: k as u32 };

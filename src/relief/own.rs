@@ -38,7 +38,7 @@ pub fn own_lines(path: &Path, given: &OwnLines, dem: &Dem, first: usize) -> Resu
 ///
 /// # Errors
 /// As [`own_lines`], but for that.
-pub fn own_lines_if_any(path: &Path, given: &OwnLines, dem: &Dem, first: usize) -> Result<Vec<SurfaceLine>> {
+pub(crate) fn own_lines_if_any(path: &Path, given: &OwnLines, dem: &Dem, first: usize) -> Result<Vec<SurfaceLine>> {
     on_dem(path, given, dem, first).map(|(lines, _)| lines)
 }
 

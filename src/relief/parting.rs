@@ -13,7 +13,7 @@ use super::flow::Flow;
 
 /// Water that parts.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Parting {
+pub(super) struct Parting {
     /// Metres that the shorter of two flows runs until they meet; 0 of waters that do not part.
     pub length: f32,
     /// Metres that it falls on the way.
@@ -22,7 +22,7 @@ pub struct Parting {
 
 /// Beds, their branches, and how far they lead.
 #[derive(Debug)]
-pub struct Beds<'a> {
+pub(super) struct Beds<'a> {
     flow: &'a Flow,
     heights: &'a [f32],
     channels: Channels,
@@ -46,7 +46,7 @@ struct End {
 }
 
 /// Water on its way to a bed.
-struct Run {
+struct WaterRun {
     sample: usize,
     metres: f32,
     node: Option<usize>,
@@ -54,7 +54,13 @@ struct Run {
 
 impl<'a> Beds<'a> {
     /// Of a flow over heights; all channels and the branches into which they are cut.
-    pub fn new(flow: &'a Flow, area: &Area, heights: &'a [f32], channels: Channels, branches: &[Branch]) -> Self {
+    pub(super) fn new(
+        flow: &'a Flow,
+        area: &Area,
+        heights: &'a [f32],
+        channels: Channels,
+        branches: &[Branch],
+    ) -> Self {
         let metres = flow.frame().distances().map(|metres| metres as f32);
         let mut branch = vec![0; channels.samples.len()];
         for (number, of) in (0..).zip(branches) {
@@ -75,12 +81,12 @@ impl<'a> Beds<'a> {
     }
 
     /// Whether a bed lies at a sample.
-    pub fn is_bed(&self, sample: usize) -> bool {
+    pub(super) fn is_bed(&self, sample: usize) -> bool {
         self.channels.numbers.number(sample).is_some()
     }
 
     /// Whether a step to the neighbour of a number crosses a bed.
-    pub fn crosses(&self, sample: usize, k: usize) -> bool {
+    pub(super) fn crosses(&self, sample: usize, k: usize) -> bool {
         let steps = self.flow.frame().steps();
         // Beds from one neighbour beside that to the other.
         let mut beside =
@@ -89,10 +95,10 @@ impl<'a> Beds<'a> {
     }
 
     /// How the waters of two samples part.
-    pub fn parting(&self, sides: [usize; 2]) -> Parting {
+    pub(super) fn parting(&self, sides: [usize; 2]) -> Parting {
         let runs = sides.map(|side| self.run(side));
-        let whole = |run: &Run| run.metres + run.node.map_or(0.0, |node| self.left[node]);
-        let end = |run: &Run| run.node.map_or(run.sample, |node| self.outlet(node));
+        let whole = |run: &WaterRun| run.metres + run.node.map_or(0.0, |node| self.left[node]);
+        let end = |run: &WaterRun| run.node.map_or(run.sample, |node| self.outlet(node));
         let ends = [end(&runs[0]), end(&runs[1])];
         let mut metres = [whole(&runs[0]), whole(&runs[1])];
         let mut lowest = ends;
@@ -109,7 +115,7 @@ impl<'a> Beds<'a> {
     }
 
     /// Down to a bed, or to where the water ends before.
-    fn run(&self, mut sample: usize) -> Run {
+    fn run(&self, mut sample: usize) -> WaterRun {
         let distances = self.flow.frame().distances();
         let mut metres = 0.0;
         loop {
@@ -119,7 +125,7 @@ impl<'a> Beds<'a> {
                     metres += distances[k] as f32;
                     sample = down;
                 }
-                _ => return Run { sample, metres, node },
+                _ => return WaterRun { sample, metres, node },
             }
         }
     }

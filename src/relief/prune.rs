@@ -28,7 +28,7 @@ const GONE: usize = usize::MAX;
 
 /// How a line lies.
 #[derive(Debug, Clone)]
-pub struct Lie {
+pub(super) struct Lie {
     /// How many of its points are not beside lines that are longer.
     pub free: usize,
     /// Whether the land rises, or falls, from each point to both sides.
@@ -36,7 +36,7 @@ pub struct Lie {
 }
 
 /// The lines, each after the one it joins; those left, in the same order.
-pub fn pruned(grid: &Grid, lines: Vec<SurfaceLine>, lies: &[Lie]) -> Vec<SurfaceLine> {
+pub(super) fn pruned(grid: &Grid, lines: Vec<SurfaceLine>, lies: &[Lie]) -> Vec<SurfaceLine> {
     // Of each line the first point that stays.
     let mut begins = vec![GONE; lines.len()];
     for (k, line) in lines.iter().enumerate().rev() {

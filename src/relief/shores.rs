@@ -51,7 +51,7 @@ impl Crossing {
 }
 
 /// Samples between which shores are looked for.
-struct Grid<'a> {
+struct ShoreGrid<'a> {
     water: &'a FlatWater,
     samples: &'a Samples,
     columns: usize,
@@ -65,7 +65,7 @@ impl Shores {
     /// As [`Dem::held`].
     pub fn of(dem: &Dem, exaggeration: f64) -> Result<Self> {
         let water = FlatWater::of(dem, exaggeration)?;
-        let grid = Grid { water: &water, samples: dem.held()?, columns: dem.columns(), rows: dem.rows() };
+        let grid = ShoreGrid { water: &water, samples: dem.held()?, columns: dem.columns(), rows: dem.rows() };
         let chains = chains(&grid.links());
         let lines = chains.into_iter().filter_map(|(sides, closed)| {
             let mut crossings: Vec<Crossing> = sides.into_iter().map(|side| grid.crossing(side)).collect();
@@ -77,6 +77,10 @@ impl Shores {
     }
 }
 
+impl FlatWater {}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
 impl FlatWater {
     /// Blanks what of a line lies in the water.
     pub fn blank(&self, line: &mut SurfaceLine) {
@@ -89,7 +93,7 @@ impl FlatWater {
     }
 }
 
-impl Grid<'_> {
+impl ShoreGrid<'_> {
     /// For each side of a cell that a shore crosses, the sides that it crosses before and after it.
     fn links(&self) -> FxHashMap<u32, [u32; 2]> {
         let mut links = FxHashMap::default();

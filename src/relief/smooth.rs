@@ -3,7 +3,7 @@
 //! Voids have no weight, and what is left of the weights is brought to 1 by a division. Cost: some 30 multiplications a sample, in
 //! loops that the compiler turns into vectors; memory of a few rows.
 
-use super::frame::Frame;
+use super::frame::FramedGrid;
 
 /// Standard deviation, cells.
 const DEVIATION: f64 = 0.8;
@@ -12,7 +12,7 @@ const REACH: usize = 3;
 const TAPS: usize = 2 * REACH + 1;
 
 /// The framed heights smoothed, NaN where they are.
-pub fn smoothed(frame: Frame, heights: &[f32]) -> Vec<f32> {
+pub(super) fn smoothed(frame: FramedGrid, heights: &[f32]) -> Vec<f32> {
     let weights: [f32; TAPS] =
         std::array::from_fn(|k| (-((k as f64 - REACH as f64) / DEVIATION).powi(2) / 2.0).exp() as f32);
     let [columns, rows] = frame.size;

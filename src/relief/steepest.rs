@@ -4,17 +4,17 @@
 //! lower of SE and SW is not the goal would have it beside itself, nearer than its own goal and no higher: steeper. Cost: 8
 //! multiplications a sample, in vectors. Not handled: water that spreads, as over a cone; it all goes one way.
 
-use super::frame::Frame;
+use super::frame::FramedGrid;
 
 /// No neighbour is lower: a pit or a flat.
-pub const NONE: u8 = 8;
+pub(super) const NONE: u8 = 8;
 /// Water ends here.
-pub const OUTLET: u8 = 9;
+pub(super) const OUTLET: u8 = 9;
 /// There is no land.
-pub const VOID: u8 = 10;
+pub(super) const VOID: u8 = 10;
 
 /// Of each sample the number of the neighbour, [`NONE`] or [`VOID`].
-pub fn steepest(frame: Frame, heights: &[f32]) -> Vec<u8> {
+pub(super) fn steepest(frame: FramedGrid, heights: &[f32]) -> Vec<u8> {
     let mut to = vec![VOID; frame.samples()];
     let mut best = vec![0.0_f32; frame.size[0]];
     let mut which = vec![0_u32; frame.size[0]];

@@ -11,17 +11,17 @@ use super::channels::Channels;
 use super::grid::Grid;
 
 /// Samples of the least area that is tried.
-pub const FIRST: u32 = 10;
+pub(crate) const FIRST: u32 = 10;
 /// How many times the last the next is.
 const GROWTH: f64 = 1.67;
 /// |t| from which the means differ.
-pub const LIMIT: f64 = 2.0;
+pub(crate) const LIMIT: f64 = 2.0;
 /// Least streams of the first order and of higher ones.
-pub const ENOUGH: [usize; 2] = [20, 5];
+pub(crate) const ENOUGH: [usize; 2] = [20, 5];
 
 /// An area that was tried.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Trial {
+pub struct AreaTrial {
     /// Samples.
     pub cells: u32,
     /// Streams of the first order and of higher ones.
@@ -31,7 +31,7 @@ pub struct Trial {
 }
 
 /// All areas with enough streams, the least first.
-pub fn trials(grid: &Grid, channels: &Channels, area: &Area) -> Vec<Trial> {
+pub(crate) fn trials(grid: &Grid, channels: &Channels, area: &Area) -> Vec<AreaTrial> {
     let mut least = f64::from(FIRST);
     let trial = || {
         let cells = least.round() as u32;
@@ -39,14 +39,14 @@ pub fn trials(grid: &Grid, channels: &Channels, area: &Area) -> Vec<Trial> {
         let [first, higher] = falls(grid, channels, area, cells);
         let streams = [first.len(), higher.len()];
         let t = student(&first, &higher);
-        (streams[0] >= ENOUGH[0] && streams[1] >= ENOUGH[1]).then_some(Trial { cells, streams, t })
+        (streams[0] >= ENOUGH[0] && streams[1] >= ENOUGH[1]).then_some(AreaTrial { cells, streams, t })
     };
     std::iter::from_fn(trial).collect()
 }
 
 /// The one that they find.
-pub fn found(trials: &[Trial]) -> Option<Trial> {
-    let stays = |pair: &&[Trial]| pair.iter().all(|trial| trial.t.abs() < LIMIT);
+pub fn found(trials: &[AreaTrial]) -> Option<AreaTrial> {
+    let stays = |pair: &&[AreaTrial]| pair.iter().all(|trial| trial.t.abs() < LIMIT);
     trials.windows(2).find(stays).map(|pair| pair[0])
 }
 

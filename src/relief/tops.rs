@@ -3,10 +3,10 @@
 //! Pieces hang together by sides and corners. Cost: a pass; memory of an eighth of a byte a sample and for the front.
 
 use super::bits::Bits;
-use super::frame::Frame;
+use super::frame::FramedGrid;
 
 /// Of framed heights, NaN at voids, where the lowest of each piece is: heights are negated.
-pub fn tops(frame: Frame, negated: &[f32]) -> Bits {
+pub(super) fn tops(frame: FramedGrid, negated: &[f32]) -> Bits {
     let [mut tops, mut seen] = [Bits::none(frame.samples()), Bits::none(frame.samples())];
     let steps = frame.steps();
     let mut front = Vec::new();

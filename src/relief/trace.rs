@@ -12,7 +12,7 @@ use super::grid::Grid;
 
 /// What a line follows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Follows {
+pub(super) enum Follows {
     /// The lowest places across it.
     Valley,
     /// The highest.
@@ -21,7 +21,7 @@ pub enum Follows {
 
 impl Follows {
     /// What makes of heights those of which the lowest are followed.
-    pub fn sign(self) -> f32 {
+    pub(super) fn sign(self) -> f32 {
         match self {
             Self::Valley => 1.0,
             Self::Crest => -1.0,
@@ -31,7 +31,7 @@ impl Follows {
 
 /// A place of a curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Place {
+pub(super) struct CurvePlace {
     /// Column and row, fractional.
     pub at: DVec2,
     /// How many nodes of the branch lie before it, fractional.
@@ -41,7 +41,7 @@ pub struct Place {
 }
 
 /// Cells between places.
-pub const SPACING: f64 = 0.5;
+pub(super) const SPACING: f64 = 0.5;
 /// How far across the bottom is looked for each time, cells, and in how many steps to each side.
 const REACH: [f64; 6] = [6.0, 6.0, 4.0, 2.0, 1.0, 0.5];
 const STEPS: i32 = 8;
@@ -62,9 +62,9 @@ const DIRECTION: f64 = 5.0;
 const AHEAD: usize = 6;
 
 /// The curve of at least two nodes; one place, where they are at one corner of the grid.
-pub fn trace(grid: &Grid, nodes: &[DVec2], follows: Follows) -> Vec<Place> {
-    let nodes = nodes.iter().enumerate().map(|(k, at)| Place { at: *at, node: k as f64, is_lowest: false });
-    let mut places: Vec<Place> = nodes.collect();
+pub(super) fn trace(grid: &Grid, nodes: &[DVec2], follows: Follows) -> Vec<CurvePlace> {
+    let nodes = nodes.iter().enumerate().map(|(k, at)| CurvePlace { at: *at, node: k as f64, is_lowest: false });
+    let mut places: Vec<CurvePlace> = nodes.collect();
     let mut farthest = f64::INFINITY;
     for reach in REACH {
         if reach > MOVE && farthest < MOVE / 2.0 {
@@ -75,7 +75,7 @@ pub fn trace(grid: &Grid, nodes: &[DVec2], follows: Follows) -> Vec<Place> {
         farthest = moves.iter().flatten().map(|by| by.length()).fold(0.0, f64::max);
         let height = |at: DVec2| follows.sign() * grid.smooth(at);
         // Taken along, but not over a crest, or out of the valley that a crest stands over.
-        let moved = |((place, by), own): ((&Place, DVec2), &Option<DVec2>)| {
+        let moved = |((place, by), own): ((&CurvePlace, DVec2), &Option<DVec2>)| {
             let is_up = own.is_none() && height(place.at + by) > height(place.at);
             if is_up { place.at } else { place.at + by }
         };
@@ -103,7 +103,7 @@ pub fn trace(grid: &Grid, nodes: &[DVec2], follows: Follows) -> Vec<Place> {
 }
 
 /// By how much each place lies off the lowest place across the way, or the highest; `None` where there is none within reach.
-fn moves(grid: &Grid, places: &[Place], reach: f64, follows: Follows) -> Vec<Option<DVec2>> {
+fn moves(grid: &Grid, places: &[CurvePlace], reach: f64, follows: Follows) -> Vec<Option<DVec2>> {
     let places: Vec<DVec2> = places.iter().map(|place| place.at).collect();
     let way = smoothed(&places, DIRECTION);
     let one = |k: usize| {
@@ -160,7 +160,7 @@ fn gaussian(deviation: f64) -> Vec<f64> {
 }
 
 /// Places half a cell apart, about, on the polyline.
-fn resampled(places: &[Place]) -> Vec<Place> {
+fn resampled(places: &[CurvePlace]) -> Vec<CurvePlace> {
     let lengths = places.windows(2).map(|pair| pair[0].at.distance(pair[1].at));
     let total: f64 = lengths.clone().sum();
     let count = (total / SPACING).round().max(1.0);
@@ -169,7 +169,7 @@ fn resampled(places: &[Place]) -> Vec<Place> {
         while next * total < (done + length) * count {
             let share = if length > 0.0 { (next * total / count - done) / length } else { 0.0 };
             let node = pair[0].node + (pair[1].node - pair[0].node) * share;
-            out.push(Place { at: pair[0].at.lerp(pair[1].at, share), node, is_lowest: pair[0].is_lowest });
+            out.push(CurvePlace { at: pair[0].at.lerp(pair[1].at, share), node, is_lowest: pair[0].is_lowest });
             next += 1.0;
         }
         done += length;

@@ -4,13 +4,13 @@
 //! a byte a sample and for the front. Not handled: lakes, which water leaves; seas of another height.
 
 use super::bits::Bits;
-use super::frame::Frame;
+use super::frame::FramedGrid;
 
 /// Least samples of a sea.
 const LEAST: usize = 32;
 
 /// Which of the framed heights are sea.
-pub fn sea(frame: Frame, heights: &[f32]) -> Bits {
+pub(super) fn sea(frame: FramedGrid, heights: &[f32]) -> Bits {
     let [mut sea, mut seen] = [Bits::none(frame.samples()), Bits::none(frame.samples())];
     let steps = frame.steps();
     let mut piece = Vec::new();

@@ -7,9 +7,9 @@ use super::branches::{branches, lasting};
 use super::channels::Channels;
 use super::flow::{Ends, Flow};
 use super::grid::Grid;
-use super::lines::{Node, lines};
+use super::lines::{NetNode, lines};
 use super::parting::{Beds, Parting};
-use super::threshold::{FIRST, Trial, found, trials};
+use super::threshold::{AreaTrial, FIRST, found, trials};
 use super::tops::tops;
 use super::trace::Follows;
 use super::water::sea;
@@ -35,7 +35,7 @@ pub enum ChannelArea {
 
 /// Samples that make a channel where the falls of the streams tell this: at least 25, which are taken where they tell nothing, at
 /// most 100.
-pub fn auto_cells(found: Option<Trial>) -> u32 {
+pub fn auto_cells(found: Option<AreaTrial>) -> u32 {
     found.map_or(CELLS, |trial| trial.cells.clamp(CELLS, MOST_CELLS))
 }
 
@@ -74,34 +74,6 @@ impl Relief {
         &self.grid
     }
 
-    /// Its sea, in the grid's frame.
-    pub fn sea(&self) -> &Bits {
-        &self.sea
-    }
-
-    /// Where water goes.
-    pub fn flow(&self) -> &Flow {
-        &self.flow
-    }
-
-    /// How much of it gathers.
-    pub fn area(&self) -> &Area {
-        &self.area
-    }
-
-    /// Areas from which water may run in beds, and how streams then fall.
-    pub fn trials(&self) -> Vec<Trial> {
-        trials(&self.grid, &Channels::of(&self.flow, &self.area, FIRST), &self.area)
-    }
-
-    /// Samples that make a channel.
-    pub fn channel_cells(&self, area: ChannelArea) -> u32 {
-        match area {
-            ChannelArea::Auto => auto_cells(found(&self.trials())),
-            ChannelArea::SquareMetres(area) => (area / self.grid.frame.area()).ceil().max(1.0) as u32,
-        }
-    }
-
     /// The lines along which water runs, the largest first, each after the one it joins.
     pub fn drainage(&self, area: ChannelArea) -> Vec<SurfaceLine> {
         let least = self.channel_cells(area);
@@ -115,7 +87,7 @@ impl Relief {
         let node = |branch: usize, node: u32| {
             let i = sample(node);
             let drop = tops[branch] - self.grid.smoothed[i];
-            Node { at: self.grid.frame.at(i), length: self.area.length[i], drop, order: orders[node as usize] }
+            NetNode { at: self.grid.frame.at(i), length: self.area.length[i], drop, order: orders[node as usize] }
         };
         lines(&self.grid, &branches, Follows::Valley, node)
     }
@@ -146,7 +118,7 @@ impl Relief {
             let sides = [2, 6].map(|turn| i.wrapping_add(steps[(k + turn) % 8]));
             let is_land = sides.iter().all(|side| self.flow.is_land(*side));
             let Parting { length, drop } = if is_land { beds.parting(sides) } else { Parting::default() };
-            Node { at: frame.at(i), length, drop, order: 1 }
+            NetNode { at: frame.at(i), length, drop, order: 1 }
         };
         Ok(lines(&self.grid, &branches, Follows::Crest, node))
     }
@@ -166,5 +138,37 @@ impl Relief {
             i = from;
         }
         i
+    }
+}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
+impl Relief {
+    /// Its sea, in the grid's frame.
+    pub fn sea(&self) -> &Bits {
+        &self.sea
+    }
+
+    /// Where water goes.
+    pub fn flow(&self) -> &Flow {
+        &self.flow
+    }
+
+    /// How much of it gathers.
+    pub fn area(&self) -> &Area {
+        &self.area
+    }
+
+    /// Areas from which water may run in beds, and how streams then fall.
+    pub fn trials(&self) -> Vec<AreaTrial> {
+        trials(&self.grid, &Channels::of(&self.flow, &self.area, FIRST), &self.area)
+    }
+
+    /// Samples that make a channel.
+    pub fn channel_cells(&self, area: ChannelArea) -> u32 {
+        match area {
+            ChannelArea::Auto => auto_cells(found(&self.trials())),
+            ChannelArea::SquareMetres(area) => (area / self.grid.frame.area()).ceil().max(1.0) as u32,
+        }
     }
 }

@@ -4,12 +4,12 @@ use super::Renderer;
 use crate::error::Result;
 use crate::gpu::clock::Timer;
 use crate::gpu::uniforms::Segment;
-use crate::gpu::work::Work;
+use crate::gpu::work::FrameWork;
 use crate::line::cover::Cover;
 use crate::line::detail::From;
-use crate::line::hachures::{self, Seen};
+use crate::line::hachures::{self, Viewer};
 use crate::line::{Chain, Curve, InkRaster, Laid, link, visible};
-use crate::plan::{Frame, LandLines, Piece};
+use crate::plan::{Frame, LandLines, PagePiece};
 
 impl Renderer {
     /// Finds the curves of the last frame and brings them back.
@@ -21,16 +21,6 @@ impl Renderer {
         let (frame, piece) = self.last_whole()?;
         let segments = self.segments(&frame, piece)?;
         Ok(link(segments, &frame.lattice, &self.perspective(&frame)))
-    }
-
-    /// What the eye sees of the curves of the last frame.
-    ///
-    /// # Errors
-    /// As [`Self::curves`].
-    pub fn chains(&mut self) -> Result<Vec<Chain>> {
-        let curves = self.curves()?;
-        let size = self.last().map_or([0; 2], |frame| frame.pieces.page());
-        Ok(visible::chains(curves, size))
     }
 
     /// Lays lines on the land over a frame that has room for them: those that its page shows, and not what its pixels, where they
@@ -45,7 +35,7 @@ impl Renderer {
         let mut bare = None;
         if let (Some(slopes), Some(look)) = (land.slopes(), &frame.plan.hachures) {
             let cover = pixels.map(Cover::new);
-            let seen = Seen::By(&perspective, frame.camera.azimuth, cover.as_ref());
+            let seen = Viewer::By(&perspective, frame.camera.azimuth, cover.as_ref());
             let hatched = hachures::hatched(slopes, look, seen)?;
             ways.extend(hatched.ways);
             bare = hatched.bare;
@@ -58,7 +48,7 @@ impl Renderer {
     }
 
     /// The segments of curves whose middles lie in a piece that was drawn.
-    pub(super) fn segments(&mut self, frame: &Frame, piece: Piece) -> Result<Vec<Segment>> {
+    pub(super) fn segments(&mut self, frame: &Frame, piece: PagePiece) -> Result<Vec<Segment>> {
         self.last = None;
         let found = loop {
             self.find_segments(frame, piece, None)?;
@@ -80,10 +70,24 @@ impl Renderer {
     }
 
     /// The passes that list segments, over a piece that was drawn.
-    pub(super) fn find_segments(&self, frame: &Frame, piece: Piece, timer: Option<&mut Timer>) -> Result<()> {
-        let mut work = Work::new(self.on_device(), frame, piece, timer);
+    pub(super) fn find_segments(&self, frame: &Frame, piece: PagePiece, timer: Option<&mut Timer>) -> Result<()> {
+        let mut work = FrameWork::new(self.on_device(), frame, piece, timer);
         work.clear(&["turning", "tally"])?;
         frame.of_curves().into_iter().try_for_each(|(pass, batch)| work.run(pass, [batch, 0]))?;
         work.finish()
+    }
+}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
+impl Renderer {
+    /// What the eye sees of the curves of the last frame.
+    ///
+    /// # Errors
+    /// As [`Self::curves`].
+    pub fn chains(&mut self) -> Result<Vec<Chain>> {
+        let curves = self.curves()?;
+        let size = self.last().map_or([0; 2], |frame| frame.pieces.page());
+        Ok(visible::chains(curves, size))
     }
 }

@@ -42,7 +42,7 @@ const OF_DRAWING: u64 = 3 * 24;
 
 /// What a frame may take.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Estimate {
+pub(crate) struct Estimate {
     /// Samples of the DEM, or of the part of it that is taken: at most so many are read.
     pub samples: u64,
     /// Facets.
@@ -59,10 +59,10 @@ pub struct Estimate {
 
 impl Estimate {
     /// What is done already.
-    pub const NOTHING: Self = Self { samples: 0, facets: 0, start: 0.0, seconds: 0.0, memory: 0, device: 0 };
+    pub(crate) const NOTHING: Self = Self { samples: 0, facets: 0, start: 0.0, seconds: 0.0, memory: 0, device: 0 };
 
     /// Of the plan of a DEM, which no device sees.
-    pub fn of_plan(dem: &Dem, land: &LandWanted) -> Self {
+    pub(crate) fn of_plan(dem: &Dem, land: &LandWanted) -> Self {
         let samples = samples(dem);
         let [hatched, of_slopes] = if land.slopes.is_some() { [samples, OF_SLOPES] } else { [0; 2] };
         Self {
@@ -78,7 +78,7 @@ impl Estimate {
     ///
     /// # Errors
     /// As [`sizes::of_page`].
-    pub fn of(frame: &Frame, surface: &Surface) -> Result<Self> {
+    pub(crate) fn of(frame: &Frame, surface: &Surface) -> Result<Self> {
         let (facets, [width, height]) = (frame.facets(surface), frame.pieces.page());
         let pixels = u64::from(width) * u64::from(height);
         let least = Capacity::of(&frame.lattice);

@@ -9,7 +9,7 @@ use crate::relief::LandWanted;
 
 /// All that a drawing is made by, but what it shows and from where.
 #[derive(Debug, Clone)]
-pub struct Illustration {
+pub(crate) struct Illustration {
     /// What is found.
     pub plan: Plan,
     /// How it is stroked.
@@ -30,7 +30,7 @@ pub struct Illustration {
 
 impl Illustration {
     /// What of it the mask depends on, in words: neither style nor sheet.
-    pub fn of_mask(&self) -> String {
+    pub(crate) fn of_mask(&self) -> String {
         format!(
             "{:?} {:?}",
             Plan { curves: Curves::Off, land: LandLines::Off, hachures: None, ..self.plan },
@@ -39,7 +39,7 @@ impl Illustration {
     }
 
     /// How far smoothing may move a line, px.
-    pub fn tolerance(&self) -> f64 {
+    pub(crate) fn tolerance(&self) -> f64 {
         self.style.tolerance * self.sheet.placement(self.frame).px_per_mm
     }
 
@@ -47,7 +47,7 @@ impl Illustration {
     ///
     /// # Errors
     /// As [`ink::draw`].
-    pub fn drawing(&self, page: &Page) -> Result<(Lines, Drawing)> {
+    pub(crate) fn drawing(&self, page: &Page) -> Result<(Lines, Drawing)> {
         let own = self.land.own_layers.clone();
         let lines = Lines { own, ..page.lines(&self.economy, self.tolerance()) };
         let drawing = ink::draw(&lines, &self.sheet, &self.style, &self.split)?;

@@ -4,7 +4,7 @@ use super::{Drawn, Renderer};
 use crate::error::Result;
 use crate::gpu::uniforms::Segment;
 use crate::line::{Chain, Economy, Laid, Line, Lines, Mark, Marks, link, marks, one_pixel_wide, rest, toned, visible};
-use crate::plan::{Curves, Frame, Piece, Plan, Yields};
+use crate::plan::{Curves, Frame, PagePiece, Plan, Yields};
 use crate::view::{Camera, Perspective};
 
 /// The ink of a frame on a page of any size, and its curves.
@@ -49,7 +49,7 @@ impl Page {
 
     /// The lines of a plan with curves among which economy chooses, before it does: those that [`Self::lines`] begins with, in its
     /// order.
-    pub fn competing(&self, economy: &Economy, tolerance: f64) -> Vec<Chain> {
+    pub(crate) fn competing(&self, economy: &Economy, tolerance: f64) -> Vec<Chain> {
         let Self { marks, chains, land, perspective, .. } = self;
         let rest = rest(chains, marks, perspective, economy, tolerance);
         let land = land.iter().filter(|chain| !is_hachure(chain));
@@ -62,7 +62,7 @@ fn is_hachure(chain: &Chain) -> bool {
 }
 
 /// What the device has found of a page: all that is left is done without it, by whatever thread.
-pub struct Found {
+pub struct PageFindings {
     seen: Listed,
     /// With hidden curves.
     all: Option<Listed>,
@@ -79,7 +79,7 @@ struct Listed {
     perspective: Perspective,
 }
 
-impl Found {
+impl PageFindings {
     /// The page: curves linked, and what of them is seen.
     pub fn page(self) -> Page {
         let hidden = self.all.map(|all| all.page().hidden);
@@ -114,33 +114,7 @@ impl Renderer {
     /// # Errors
     /// As [`Self::frame`] and [`Self::read`].
     pub fn page(&mut self, plan: &Plan, camera: &Camera, progress: impl Fn(f64)) -> Result<Page> {
-        self.find(plan, camera, progress).map(Found::page)
-    }
-
-    /// The part of it that needs the device.
-    ///
-    /// # Errors
-    /// As [`Self::page`].
-    pub fn find(&mut self, plan: &Plan, camera: &Camera, progress: impl Fn(f64)) -> Result<Found> {
-        if plan.curves != Curves::All {
-            let frame = self.plan(plan, camera)?;
-            return Ok(Found { seen: self.list(frame, progress)?, all: None });
-        }
-        // Land behind the horizon is as fine as before it, which may make that finer too: what is seen is not to change.
-        // Of what it finds hidden curves alone are kept, and hachures are none.
-        let all = self.plan(&Plan { hachures: None, ..*plan }, camera)?;
-        let all = self.list(all, |share| progress(share / 2.0))?;
-        let seen = self.plan(&Plan { curves: Curves::On, ..*plan }, camera)?;
-        let seen = self.list(seen, |share| progress(0.5 + share / 2.0))?;
-        Ok(Found { seen, all: Some(all) })
-    }
-
-    /// A page of a frame that is planned, which may be [cut](Frame::cut) in a way of its own.
-    ///
-    /// # Errors
-    /// As [`Self::page`].
-    pub fn page_of(&mut self, frame: Frame, progress: impl Fn(f64)) -> Result<Page> {
-        self.list(frame, progress).map(Listed::page)
+        self.find(plan, camera, progress).map(PageFindings::page)
     }
 
     fn list(&mut self, frame: Frame, progress: impl Fn(f64)) -> Result<Listed> {
@@ -170,12 +144,42 @@ impl Renderer {
         let laid = laid.unwrap_or_default();
         Ok(Listed { marks: list, segments, laid, covered, longest_walk, frame, perspective })
     }
+}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
+impl Renderer {
+    /// The part of it that needs the device.
+    ///
+    /// # Errors
+    /// As [`Self::page`].
+    pub fn find(&mut self, plan: &Plan, camera: &Camera, progress: impl Fn(f64)) -> Result<PageFindings> {
+        if plan.curves != Curves::All {
+            let frame = self.plan(plan, camera)?;
+            return Ok(PageFindings { seen: self.list(frame, progress)?, all: None });
+        }
+        // Land behind the horizon is as fine as before it, which may make that finer too: what is seen is not to change.
+        // Of what it finds hidden curves alone are kept, and hachures are none.
+        let all = self.plan(&Plan { hachures: None, ..*plan }, camera)?;
+        let all = self.list(all, |share| progress(share / 2.0))?;
+        let seen = self.plan(&Plan { curves: Curves::On, ..*plan }, camera)?;
+        let seen = self.list(seen, |share| progress(0.5 + share / 2.0))?;
+        Ok(PageFindings { seen, all: Some(all) })
+    }
+
+    /// A page of a frame that is planned, which may be [cut](Frame::cut) in a way of its own.
+    ///
+    /// # Errors
+    /// As [`Self::page`].
+    pub fn page_of(&mut self, frame: Frame, progress: impl Fn(f64)) -> Result<Page> {
+        self.list(frame, progress).map(Listed::page)
+    }
 
     /// Draws a piece of a frame and brings it back, halo and all: `piece.drawn` of the page.
     ///
     /// # Errors
     /// As [`Self::page`].
-    pub fn draw_piece(&mut self, frame: &Frame, piece: Piece) -> Result<Drawn> {
+    pub fn draw_piece(&mut self, frame: &Frame, piece: PagePiece) -> Result<Drawn> {
         self.upload(frame)?;
         self.passes(frame, piece, None)?;
         self.read_piece(frame, piece)

@@ -10,17 +10,6 @@ use crate::plan::{Frame, Plan, Yields};
 use crate::view::Camera;
 
 impl Renderer {
-    /// Makes ready for frames of a plan on pages of the camera's size, so that the first one takes no longer than others:
-    /// compiles its passes, makes room, uploads the lattice of a uniform level.
-    ///
-    /// # Errors
-    /// As [`Self::frame`].
-    pub fn prepare(&mut self, plan: &Plan, camera: &Camera) -> Result<()> {
-        let frame = Frame::before_any(plan, &self.surface, camera, self.gpu.int64, &mut self.kept)?;
-        self.upload(&frame)?;
-        self.surface.dem().check()
-    }
-
     /// Draws a frame and says how long each pass took, over all pieces, by the [`Clock`] of the device. By the wall clock
     /// the whole is more than an undisturbed frame takes: see [`Self::time_of_frame`].
     ///
@@ -48,6 +37,21 @@ impl Renderer {
             Ok(time.and(&times))
         })?;
         Ok(time)
+    }
+}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
+impl Renderer {
+    /// Makes ready for frames of a plan on pages of the camera's size, so that the first one takes no longer than others:
+    /// compiles its passes, makes room, uploads the lattice of a uniform level.
+    ///
+    /// # Errors
+    /// As [`Self::frame`].
+    pub fn prepare(&mut self, plan: &Plan, camera: &Camera) -> Result<()> {
+        let frame = Frame::before_any(plan, &self.surface, camera, self.gpu.int64, &mut self.kept)?;
+        self.upload(&frame)?;
+        self.surface.dem().check()
     }
 
     /// Draws a frame and says how long it took, ms: by the wall clock around [`Self::frame`], or by the device's

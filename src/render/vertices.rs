@@ -7,6 +7,10 @@ use crate::plan::PassName::{Project, Seam, Tessellate};
 use crate::plan::{Frame, Plan};
 use crate::view::Camera;
 
+impl Renderer {}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
 impl Renderer {
     /// Uploads the camera and records the vertices of the frame's only batch, for callers that submit them and draw them by
     /// other means. Chunks that cannot appear keep what they had, zeros at first.

@@ -11,9 +11,9 @@ use plotters::coord::combinators::{LogCoord, WithKeyPoints};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::labels::{Page, Placed, Rect};
+use super::labels::{Obstacles, Placed, Rect};
 use crate::error::{Error, Result};
-use crate::plan::registry::{Look, Marker};
+use crate::plan::registry::{Marker, PlotLook};
 
 /// Width of a plot, px.
 const WIDTH: u32 = 960;
@@ -143,10 +143,10 @@ pub(super) fn place(chart: &Chart, at: [f64; 2]) -> [f64; 2] {
 }
 
 /// A page for labels between the axes, clear of these lines.
-pub(super) fn label_page(chart: &Chart, lines: Vec<[[f64; 2]; 2]>) -> Page {
+pub(super) fn label_page(chart: &Chart, lines: Vec<[[f64; 2]; 2]>) -> Obstacles {
     let (across, down) = chart.plotting_area().get_pixel_range();
     let inside = Rect([across.start + 2, down.start + 2, across.end - 2, down.end - 2].map(f64::from));
-    Page { inside, taken: Vec::new(), lines, text_px: TEXT_PX }
+    Obstacles { inside, taken: Vec::new(), lines, text_px: TEXT_PX }
 }
 
 /// The straight lines between points that follow one another.
@@ -155,7 +155,7 @@ pub(super) fn segments(points: &[[f64; 2]]) -> Vec<[[f64; 2]; 2]> {
 }
 
 /// Draws a line with a marker at each point.
-pub(super) fn draw_curve(root: &Area, points: &[[f64; 2]], look: &Look) -> Drawn {
+pub(super) fn draw_curve(root: &Area, points: &[[f64; 2]], look: &PlotLook) -> Drawn {
     draw_line(root, points, rgb(look.colour), look.dash)?;
     points.iter().try_for_each(|point| draw_marker(root, whole(*point), look))
 }
@@ -170,7 +170,7 @@ pub(super) fn draw_line(root: &Area, points: &[[f64; 2]], colour: RGBColor, dash
     }
 }
 
-fn draw_marker(root: &Area, (x, y): (i32, i32), look: &Look) -> Drawn {
+fn draw_marker(root: &Area, (x, y): (i32, i32), look: &PlotLook) -> Drawn {
     let colour = rgb(look.colour);
     let filled = colour.filled();
     let polygon = |corners: &[(i32, i32)]| {
@@ -237,7 +237,7 @@ pub(super) fn whole([x, y]: [f64; 2]) -> (i32, i32) {
 
 impl<'a> Axis<'a> {
     /// An axis that holds all values with room to spare; where it reaches down to a floor, it ends there.
-    pub fn new(
+    pub(super) fn new(
         name: &'a str,
         number: fn(&f64) -> String,
         values: impl Iterator<Item = f64>,

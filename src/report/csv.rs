@@ -12,7 +12,7 @@ use std::io::{self, Write};
 use serde_json::{Map, Value};
 
 use super::{Results, merge};
-use crate::measure::figures::{Place, Run};
+use crate::measure::figures::{PlaceOffsets, Run};
 
 /// Writes a line of names and a line for each run; nothing where there is none.
 ///
@@ -36,7 +36,7 @@ pub fn write_csv(results: &Results, out: impl Write) -> io::Result<()> {
 /// The cells of a run with the names of their columns.
 fn row(run: &Run) -> io::Result<Vec<(String, String)>> {
     // A method without places has the columns too: NaN becomes null, which is an empty cell.
-    let place = run.place.clone().unwrap_or(Place { mean_px: f64::NAN, p95_px: f64::NAN });
+    let place = run.place.clone().unwrap_or(PlaceOffsets { mean_px: f64::NAN, p95_px: f64::NAN });
     let run = Run { place: Some(place), ..run.clone() };
     let Value::Object(fields) = serde_json::to_value(run)? else {
         return Err(io::Error::other("a run is no object"));

@@ -15,7 +15,7 @@ const FILES: [&str; 4] = ["report.html", "results.json", "results.csv", "error-t
 
 /// A folder for a report.
 #[derive(Debug)]
-pub struct Folder {
+pub(crate) struct Folder {
     path: PathBuf,
     /// Folders that were made for it, the outermost first.
     made: Vec<PathBuf>,
@@ -32,7 +32,7 @@ struct Files {
 
 /// What goes into the four files.
 #[derive(Debug)]
-pub struct Contents {
+pub(crate) struct Contents {
     /// `report.html`.
     pub page: String,
     /// `results.json`.
@@ -50,7 +50,7 @@ impl Folder {
     /// # Errors
     /// [`Error::Setting`] where one is taken;
     /// [`Error::Output`] where it is a file or something cannot be written.
-    pub fn open(path: &Path, pictures: impl Iterator<Item = String>, mut taken: Taken) -> Result<Self> {
+    pub(crate) fn open(path: &Path, pictures: impl Iterator<Item = String>, mut taken: Taken) -> Result<Self> {
         let failed = |why: io::Error| Error::output(path, &why);
         if path.exists() && !path.is_dir() {
             return Err(failed(io::Error::other("it is a file, and a report is a folder")));
@@ -75,7 +75,7 @@ impl Folder {
     }
 
     /// Where the page will be.
-    pub fn page(&self) -> PathBuf {
+    pub(crate) fn page(&self) -> PathBuf {
         self.path.join(FILES[0])
     }
 
@@ -83,7 +83,7 @@ impl Folder {
     ///
     /// # Errors
     /// [`Error::Output`] where something cannot be written.
-    pub fn publish(mut self, contents: &Contents, pictures: &[Picture]) -> Result<()> {
+    pub(crate) fn publish(mut self, contents: &Contents, pictures: &[Picture]) -> Result<()> {
         let Some(mut files) = self.files.take() else { return Ok(()) };
         files.page.write(|file| file.write_all(contents.page.as_bytes()))?;
         files.json.write(|file| file.write_all(&contents.json))?;

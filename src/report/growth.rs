@@ -12,7 +12,7 @@ use super::labels::{self, Choice, Rect};
 use super::words::milliseconds;
 use crate::error::Result;
 use crate::measure::Growth;
-use crate::plan::registry::{Look, Marker};
+use crate::plan::registry::{Marker, PlotLook};
 
 const PROMISED: RGBColor = RGBColor(184, 58, 0);
 
@@ -43,7 +43,7 @@ fn draw(growth: &Growth, root: &Area, panel: &Area) -> Drawn {
     let chart = axes(panel, &growth.caption, &x, &y)?;
     let on_page = |points: &[[f64; 2]]| points.iter().map(|at| place(&chart, *at)).collect::<Vec<_>>();
     let (points, promise) = (on_page(&growth.points), on_page(&promise));
-    let look = Look { colour: [INK.0, INK.1, INK.2], dash: None, marker: Marker::Disc };
+    let look = PlotLook { colour: [INK.0, INK.1, INK.2], dash: None, marker: Marker::Disc };
     draw_line(root, &promise, PROMISED, Some([6, 4]))?;
     draw_curve(root, &points, &look)?;
     let mut page = label_page(&chart, [segments(&points), segments(&promise)].concat());

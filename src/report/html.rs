@@ -23,7 +23,7 @@ use crate::measure::figures::{PassFigures, Run};
 
 /// What the template sees.
 #[derive(Serialize)]
-struct Page<'a> {
+struct ReportPage<'a> {
     results: &'a Results,
     words: Words,
     runs: Vec<Row<'a>>,
@@ -50,7 +50,7 @@ struct Row<'a> {
     truth_fragments: Option<f64>,
     /// Share of short chains of the scene's truth.
     truth_short_chains: Option<f64>,
-    /// In the order of [`Page::pass_names`].
+    /// In the order of [`ReportPage::pass_names`].
     of_passes: Vec<Option<&'a PassFigures>>,
 }
 
@@ -60,7 +60,7 @@ struct Row<'a> {
 /// [`Error::Mistake`] where a picture is missing that the results name, or the template fails.
 pub fn report_html(results: &Results, plot_svg: &str, pictures: &[Picture]) -> Result<String> {
     let pass_names = merge(results.runs.iter().map(|run| run.passes.iter().map(|pass| pass.name).collect()));
-    let page = Page {
+    let page = ReportPage {
         runs: results.runs.iter().map(|run| row(run, results, &pass_names)).collect(),
         words: words(results),
         pictures: data_uris(results, pictures)?,
@@ -74,7 +74,7 @@ pub fn report_html(results: &Results, plot_svg: &str, pictures: &[Picture]) -> R
     render(&page).map_err(|e| Error::no_report(format_args!("the page: {e:#}")))
 }
 
-fn render(page: &Page) -> std::result::Result<String, minijinja::Error> {
+fn render(page: &ReportPage) -> std::result::Result<String, minijinja::Error> {
     let mut engine = Environment::new();
     engine.set_auto_escape_callback(|_| AutoEscape::Html);
     // A key that is not there is a mistake in the template, never an empty place on the page.

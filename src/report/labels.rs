@@ -27,7 +27,7 @@ pub(super) struct Placed<'a> {
 }
 
 /// What labels must stay clear of.
-pub(super) struct Page {
+pub(super) struct Obstacles {
     /// Where labels may stand.
     pub inside: Rect,
     /// Rectangles around markers, and labels that stand already.
@@ -48,12 +48,12 @@ const LETTER: f64 = 0.66;
 
 impl Rect {
     /// The square around a point.
-    pub fn around(point: [f64; 2], half: f64) -> Self {
+    pub(super) fn around(point: [f64; 2], half: f64) -> Self {
         Self([point[0] - half, point[1] - half, point[0] + half, point[1] + half])
     }
 
     /// The place in it that is nearest to a point.
-    pub fn nearest(&self, point: [f64; 2]) -> [f64; 2] {
+    pub(super) fn nearest(&self, point: [f64; 2]) -> [f64; 2] {
         let [l, t, r, b] = self.0;
         [point[0].clamp(l, r), point[1].clamp(t, b)]
     }
@@ -90,7 +90,7 @@ impl Rect {
 /// A place for each label, which is one of several choices, in their order; `None` where the page has none left.
 ///
 /// Places that were found are taken from then on.
-pub(super) fn place<'a>(labels: &'a [Vec<Choice>], page: &mut Page) -> Vec<Option<Placed<'a>>> {
+pub(super) fn place<'a>(labels: &'a [Vec<Choice>], page: &mut Obstacles) -> Vec<Option<Placed<'a>>> {
     let mut places = Vec::with_capacity(labels.len());
     for label in labels {
         let free = |rect: &Rect| page.inside.holds(rect) && !page.taken.iter().any(|other| other.meets(rect));
@@ -128,8 +128,8 @@ fn beside(choice: &Choice, direction: [f64; 2], distance: f64, text_px: f64) -> 
 mod tests {
     use super::*;
 
-    fn page() -> Page {
-        Page { inside: Rect([0.0, 0.0, 200.0, 100.0]), taken: Vec::new(), lines: Vec::new(), text_px: 10.0 }
+    fn page() -> Obstacles {
+        Obstacles { inside: Rect([0.0, 0.0, 200.0, 100.0]), taken: Vec::new(), lines: Vec::new(), text_px: 10.0 }
     }
 
     fn labels(count: usize) -> Vec<Vec<Choice>> {
@@ -151,7 +151,7 @@ mod tests {
     #[test]
     fn labels_keep_off_markers_and_lines() {
         let (labels, marker) = (labels(1), Rect::around([60.0, 42.0], 4.0));
-        let mut obstructed = Page { taken: vec![marker], lines: vec![[[50.0, 50.0], [150.0, 62.0]]], ..page() };
+        let mut obstructed = Obstacles { taken: vec![marker], lines: vec![[[50.0, 50.0], [150.0, 62.0]]], ..page() };
         let placed = place(&labels, &mut obstructed).remove(0).expect("a place");
         assert!(!placed.rect.meets(&marker) && !placed.rect.is_crossed_by(&obstructed.lines[0]));
         // Without obstacles the label stands where one was: the test can fail.

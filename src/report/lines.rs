@@ -1,23 +1,23 @@
 //! What a comparison finds, in lines for those who wait.
 
 use super::words::milliseconds;
-use crate::measure::compare::Found;
+use crate::measure::compare::Finding;
 use crate::measure::figures::{ChainFigures, Convergence, FloorFigures, Run, SequenceRun, TruthReport};
 
 /// Lines on what was found: those for everyone, and those for who wants to know more. Pictures speak for themselves.
-pub fn lines(found: &Found<'_>) -> [Vec<String>; 2] {
+pub fn lines(found: &Finding<'_>) -> [Vec<String>; 2] {
     match found {
-        Found::Truth(scene, truth, convergence) => {
+        Finding::Truth(scene, truth, convergence) => {
             let mut lines = vec![truth_line(scene, truth)];
             lines.extend(convergence.and_then(|convergence| convergence_line(scene, convergence)));
             [lines, Vec::new()]
         }
-        Found::Run(run) => [
+        Finding::Run(run) => [
             vec![run_line(run), chains_line(&run.of_chains)],
             vec![format!("  masks of the warm frames: {}", run.mask_hashes.join(" "))],
         ],
-        Found::Sequence(run) => [vec![sequence_line(run)], Vec::new()],
-        Found::Picture(..) => [Vec::new(), Vec::new()],
+        Finding::Sequence(run) => [vec![sequence_line(run)], Vec::new()],
+        Finding::Picture(..) => [Vec::new(), Vec::new()],
     }
 }
 

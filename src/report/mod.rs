@@ -4,15 +4,15 @@
 //! nothing else.
 
 mod chart;
-pub mod csv;
-pub mod folder;
-pub mod growth;
-pub mod html;
+pub(crate) mod csv;
+pub(crate) mod folder;
+pub(crate) mod growth;
+pub(crate) mod html;
 mod labels;
-pub mod lines;
-pub mod pictures;
-pub mod plot;
-pub mod results;
+pub(crate) mod lines;
+pub(crate) mod pictures;
+pub(crate) mod plot;
+pub(crate) mod results;
 mod words;
 
 pub use csv::write_csv;
@@ -20,7 +20,7 @@ pub use growth::growth_svg;
 pub use html::report_html;
 pub use pictures::Picture;
 pub use plot::error_time_svg;
-pub use results::Results;
+pub(crate) use results::Results;
 
 /// Every name once, a new one behind the one it follows: lists that share an order become one in that order.
 fn merge<'a, T: PartialEq + ?Sized>(lists: impl Iterator<Item = Vec<&'a T>>) -> Vec<&'a T> {

@@ -4,12 +4,12 @@ use std::io;
 
 use crate::error::{Error, Result};
 use crate::ink;
-use crate::measure::compare::Shown;
+use crate::measure::compare::ShownPicture;
 use crate::truth::Mask;
 use crate::truth::metrics::Measured;
 
 /// Paper, then the inks of agreement, of a missed line, of a spurious one.
-pub const PALETTE: [[u8; 3]; 4] = [[255, 255, 255], [26, 26, 26], [0, 90, 200], [213, 70, 0]];
+pub(crate) const PALETTE: [[u8; 3]; 4] = [[255, 255, 255], [26, 26, 26], [0, 90, 200], [213, 70, 0]];
 const AGREED: u8 = 1;
 const MISSED: u8 = 2;
 const SPURIOUS: u8 = 3;
@@ -27,11 +27,11 @@ pub struct Picture {
 ///
 /// # Errors
 /// [`Error::Output`] where PNG cannot hold it.
-pub fn of_shown(name: String, shown: Shown<'_>) -> Result<Picture> {
+pub fn of_shown(name: String, shown: ShownPicture<'_>) -> Result<Picture> {
     match shown {
-        Shown::Truth(truth) => truth_picture(name, truth),
-        Shown::Mask(mask) => mask_picture(name, mask),
-        Shown::Difference(mask, measured) => difference_picture(name, mask, measured),
+        ShownPicture::Truth(truth) => truth_picture(name, truth),
+        ShownPicture::Mask(mask) => mask_picture(name, mask),
+        ShownPicture::Difference(mask, measured) => difference_picture(name, mask, measured),
     }
 }
 

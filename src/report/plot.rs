@@ -13,12 +13,12 @@ use super::Results;
 use super::chart::{
     Area, Axis, Drawn, INK, MARKER, axes, draw_curve, draw_label, label_page, place, plot, rgb, segments, whole,
 };
-use super::labels::{self, Choice, Page, Rect};
-use super::results::Scene;
+use super::labels::{self, Choice, Obstacles, Rect};
+use super::results::ComparedScene;
 use crate::error::{Error, Result};
 use crate::measure::figures::Run;
 use crate::plan::Method;
-use crate::plan::registry::Look;
+use crate::plan::registry::PlotLook;
 
 /// Least 1 - F that is told from 0: truth is some thousand pixels long.
 const FLOOR: f64 = 1e-4;
@@ -49,7 +49,7 @@ pub fn error_time_svg(results: &Results) -> Result<String> {
 
 /// What a panel shows.
 struct Panel<'a> {
-    scene: &'a Scene,
+    scene: &'a ComparedScene,
     runs: Vec<&'a Run>,
     curves: Vec<Curve<'a>>,
 }
@@ -57,11 +57,11 @@ struct Panel<'a> {
 /// The runs of a method, by level, and how they look.
 struct Curve<'a> {
     runs: Vec<&'a Run>,
-    look: Look,
+    look: PlotLook,
 }
 
 impl<'a> Panel<'a> {
-    fn of(scene: &'a Scene, results: &'a Results) -> Result<Self> {
+    fn of(scene: &'a ComparedScene, results: &'a Results) -> Result<Self> {
         let runs: Vec<&Run> = results.runs.iter().filter(|run| run.scene == scene.name).collect();
         let curve = |runs: Vec<&'a Run>| Ok(Curve { look: look(runs[0].method)?, runs });
         Ok(Self { scene, curves: curves(&runs).into_iter().map(curve).collect::<Result<_>>()?, runs })
@@ -132,7 +132,7 @@ fn front(runs: &[&Run], place: &impl Fn(&Run) -> [f64; 2]) -> Vec<[f64; 2]> {
 }
 
 /// The method's name beside one point of its curve, levels beside the others.
-fn draw_labels(root: &Area, curves: &[Curve], mut page: Page, place: &impl Fn(&Run) -> [f64; 2]) -> Drawn {
+fn draw_labels(root: &Area, curves: &[Curve], mut page: Obstacles, place: &impl Fn(&Run) -> [f64; 2]) -> Drawn {
     let choice = |run: &Run, text: String| Choice { point: place(run), text };
     let named = |run: &&Run| choice(run, format!("{}, level {}", run.method, run.level));
     // Names are wide: they choose first, and beside which point.
@@ -167,7 +167,7 @@ fn error(run: &Run) -> f64 {
 }
 
 /// How the curve of a method looks.
-fn look(method: &str) -> Result<Look> {
+fn look(method: &str) -> Result<PlotLook> {
     let none = || Error::mistake(format!("no method is called {method}"));
     Ok(Method::named(method).ok_or_else(none)?.entry().look)
 }

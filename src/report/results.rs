@@ -24,7 +24,7 @@ pub struct Results {
     /// Of the scene whose truth is surest of itself the least: the limit of every figure here.
     pub truth: TruthSummary,
     /// What was drawn: views times sizes.
-    pub scenes: Vec<Scene>,
+    pub scenes: Vec<ComparedScene>,
     /// Methods times levels, scene by scene.
     pub runs: Vec<Run>,
     /// Methods times levels over runs of frames; none unless they were asked for.
@@ -61,7 +61,7 @@ pub struct TruthSummary {
 
 /// A view on a page, and its truth.
 #[derive(Debug, Clone, Serialize)]
-pub struct Scene {
+pub struct ComparedScene {
     /// Unique in the report; file names begin with it.
     pub name: String,
     /// Files of the DEM as named.

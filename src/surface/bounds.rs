@@ -45,7 +45,7 @@ pub(super) struct Bounds {
 
 impl Bounds {
     /// Of no patch.
-    pub const NONE: Self = Self {
+    pub(super) const NONE: Self = Self {
         low: f64::INFINITY,
         high: f64::NEG_INFINITY,
         limit: 0.0,
@@ -55,7 +55,7 @@ impl Bounds {
     };
 
     /// Of these and others.
-    pub fn with(self, other: Self) -> Self {
+    pub(super) fn with(self, other: Self) -> Self {
         Self {
             low: least(self.low, other.low),
             high: most(self.high, other.high),
@@ -69,7 +69,7 @@ impl Bounds {
 
 impl Corners {
     /// Of row `r` of `surface`, whose samples there are these, with their gradients in memory.
-    pub fn of(surface: &Surface, samples: &Samples, r: usize) -> Self {
+    pub(super) fn of(surface: &Surface, samples: &Samples, r: usize) -> Self {
         let heights: Vec<f64> = samples.row(r).iter().map(|height| f64::from(*height)).collect();
         let [mut x, mut y, mut z] = [(); 3].map(|()| vec![0.0; heights.len()]);
         let [east, north] = surface.gradients_of_row(r);

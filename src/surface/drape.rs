@@ -27,7 +27,7 @@ const AROUND: usize = 2;
 const ALONG: u32 = 16;
 
 /// A surface on which lines are laid.
-pub struct Drape<'a> {
+pub(crate) struct Drape<'a> {
     surface: &'a Surface,
     /// Of a DEM that stays in its file, the part read last, by its first sample.
     part: RefCell<Option<([usize; 2], Surface)>>,
@@ -37,7 +37,7 @@ pub struct Drape<'a> {
 
 impl<'a> Drape<'a> {
     /// Of a surface, for lines that leave it by no more than so many metres.
-    pub fn new(surface: &'a Surface, tolerance: f64) -> Self {
+    pub(crate) fn new(surface: &'a Surface, tolerance: f64) -> Self {
         Self { surface, part: RefCell::default(), tolerance }
     }
 
@@ -45,7 +45,7 @@ impl<'a> Drape<'a> {
     ///
     /// # Errors
     /// As [`Surface::part`].
-    pub fn line(&self, map: &[DVec2]) -> Result<Vec<DVec3>> {
+    pub(crate) fn line(&self, map: &[DVec2]) -> Result<Vec<DVec3>> {
         let mut line: Vec<DVec3> = Vec::new();
         for pair in map.windows(2) {
             let places = cuts(self.grid(pair[0]), self.grid(pair[1]));
@@ -66,7 +66,7 @@ impl<'a> Drape<'a> {
     ///
     /// # Errors
     /// As [`Surface::part`].
-    pub fn place(&self, map: DVec2) -> Result<DVec3> {
+    pub(crate) fn place(&self, map: DVec2) -> Result<DVec3> {
         let patches = self.patches(map)?;
         let over = patches.iter().find_map(|patch| over(patch, map, self.surface.dem().cell()));
         let beside = || patches.iter().flat_map(|patch| sides(patch, map)).min_by(|a, b| a.0.total_cmp(&b.0));

@@ -18,7 +18,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::quadtree::{Growth, Quadtree};
+use super::quadtree::{Quadtree, Splits};
 use crate::dem::{Dem, LARGEST_SIDE, Validity};
 use crate::error::{Error, Result, Setting};
 use crate::message;
@@ -187,7 +187,7 @@ impl Lattice {
     ///
     /// # Errors
     /// As [`Self::uniform`].
-    pub fn grow(dem: &Dem, coarsest_step: u32, from: [f64; 2], growth: &mut impl Growth) -> Result<Quadtree> {
+    pub fn grow(dem: &Dem, coarsest_step: u32, from: [f64; 2], growth: &mut impl Splits) -> Result<Quadtree> {
         let mut tree = Self::empty(dem, coarsest_step)?.tree;
         tree.grow(from, growth);
         tree.balance(growth);

@@ -2,20 +2,22 @@
 
 mod bounds;
 mod drape;
-pub mod lattice;
-pub mod normals;
-pub mod patch;
+pub(crate) mod lattice;
+pub(crate) mod normals;
+pub(crate) mod patch;
 mod prepared;
-pub mod pyramid;
-pub mod quadtree;
-pub mod ray;
-pub mod rim;
+pub(crate) mod pyramid;
+pub(crate) mod quadtree;
+pub(crate) mod ray;
+pub(crate) mod rim;
 mod slopes;
-pub mod tile;
+pub(crate) mod tile;
 
-pub use drape::Drape;
-pub use lattice::{Chunk, Lattice, LatticePoint, Level};
-pub use patch::{Patch, Surface, SurfaceBand};
-pub use pyramid::{Pyramid, PyramidBuilder};
-pub use ray::Met;
-pub use tile::Tile;
+pub(crate) use drape::Drape;
+pub use lattice::Level;
+pub(crate) use lattice::{Chunk, Lattice, LatticePoint};
+pub use patch::Surface;
+pub(crate) use patch::{Patch, SurfaceBand};
+pub(crate) use pyramid::{Pyramid, PyramidBuilder};
+pub(crate) use ray::Met;
+pub(crate) use tile::Tile;

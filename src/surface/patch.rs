@@ -49,6 +49,53 @@ impl Surface {
         &self.dem
     }
 
+    /// Gives it a pyramid that was kept, unless it has one.
+    pub(crate) fn remember(&self, pyramid: Pyramid) {
+        let _ = self.pyramid.set(pyramid);
+    }
+
+    /// Gradients of row `r`, see [`Gradients::components`]; nothing where they are not in memory.
+    pub(super) fn gradients_of_row(&self, r: usize) -> [&[f32]; 2] {
+        self.gradients.as_ref().map_or([&[]; 2], |gradients| gradients.row(r))
+    }
+
+    /// The same surface with the samples of a window and their gradients in memory: bit by bit those of the whole, for
+    /// work that looks at each of them. Samples farther out than one read as voids.
+    ///
+    /// # Errors
+    /// As [`Dem::window`].
+    pub fn part(&self, first: [usize; 2], size: [usize; 2]) -> Result<Self> {
+        let samples = with_one_around(&self.dem, first, size)?;
+        let gradients = of_samples(&samples, first, cut(&self.dem, first, size), self.dem.cell());
+        Ok(Self { dem: self.dem.with_samples(samples), gradients: Some(gradients), pyramid: OnceLock::new() })
+    }
+
+    /// World position in metres of a lattice vertex; `None` where a sample it depends on is void or outside.
+    pub fn position(&self, at: LatticePoint) -> Option<DVec3> {
+        let (c, r) = ((at.x / CELL_STEPS) as usize, (at.y / CELL_STEPS) as usize);
+        let u = f64::from(at.x % CELL_STEPS) / f64::from(CELL_STEPS);
+        let v = f64::from(at.y % CELL_STEPS) / f64::from(CELL_STEPS);
+        // Corners NW, SE and the third one of the patch: SW below the diagonal, NE above it.
+        let third = if v >= u { (c, r + 1) } else { (c + 1, r) };
+        let weights = [1.0 - u.max(v), u.min(v), (u - v).abs()];
+        let corners = [(c, r), (c + 1, r + 1), third];
+        let mut points = [DVec3::ZERO; 3];
+        let mut normals = [DVec3::Z; 3];
+        for i in (0..3).filter(|&i| weights[i] > 0.0) {
+            let (c, r) = corners[i];
+            if c >= self.dem.columns() || r >= self.dem.rows() || self.dem.height(c, r).is_none() {
+                return None;
+            }
+            points[i] = self.dem.position(c, r);
+            normals[i] = (-self.gradient(c, r)).extend(1.0).normalize();
+        }
+        Some(Patch::new(points, normals).point(weights))
+    }
+}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
+impl Surface {
     /// Gradients of all samples, dz/d east and dz/d north, see [`Gradients::components`].
     ///
     /// # Errors
@@ -74,33 +121,12 @@ impl Surface {
         }
     }
 
-    /// Gives it a pyramid that was kept, unless it has one.
-    pub fn remember(&self, pyramid: Pyramid) {
-        let _ = self.pyramid.set(pyramid);
-    }
-
     /// Gradient of sample (c, r): dz/d east, dz/d north. (0, 0) where it cannot be read, see [`Dem::check`].
     pub fn gradient(&self, c: usize, r: usize) -> DVec2 {
         match &self.gradients {
             Some(gradients) => gradients.get(c, r).unwrap_or_default(),
             None => self.dem.kept(gradients(&self.dem, [c, r], [1, 1])).and_then(|g| g.get(c, r)).unwrap_or_default(),
         }
-    }
-
-    /// Gradients of row `r`, see [`Gradients::components`]; nothing where they are not in memory.
-    pub(super) fn gradients_of_row(&self, r: usize) -> [&[f32]; 2] {
-        self.gradients.as_ref().map_or([&[]; 2], |gradients| gradients.row(r))
-    }
-
-    /// The same surface with the samples of a window and their gradients in memory: bit by bit those of the whole, for
-    /// work that looks at each of them. Samples farther out than one read as voids.
-    ///
-    /// # Errors
-    /// As [`Dem::window`].
-    pub fn part(&self, first: [usize; 2], size: [usize; 2]) -> Result<Self> {
-        let samples = with_one_around(&self.dem, first, size)?;
-        let gradients = of_samples(&samples, first, cut(&self.dem, first, size), self.dem.cell());
-        Ok(Self { dem: self.dem.with_samples(samples), gradients: Some(gradients), pyramid: OnceLock::new() })
     }
 
     /// All rows once, in order, with `halo` rows above and below each band: see [`Dem::bands`].
@@ -121,28 +147,6 @@ impl Surface {
             };
             Ok(SurfaceBand { rows, surface })
         })
-    }
-
-    /// World position in metres of a lattice vertex; `None` where a sample it depends on is void or outside.
-    pub fn position(&self, at: LatticePoint) -> Option<DVec3> {
-        let (c, r) = ((at.x / CELL_STEPS) as usize, (at.y / CELL_STEPS) as usize);
-        let u = f64::from(at.x % CELL_STEPS) / f64::from(CELL_STEPS);
-        let v = f64::from(at.y % CELL_STEPS) / f64::from(CELL_STEPS);
-        // Corners NW, SE and the third one of the patch: SW below the diagonal, NE above it.
-        let third = if v >= u { (c, r + 1) } else { (c + 1, r) };
-        let weights = [1.0 - u.max(v), u.min(v), (u - v).abs()];
-        let corners = [(c, r), (c + 1, r + 1), third];
-        let mut points = [DVec3::ZERO; 3];
-        let mut normals = [DVec3::Z; 3];
-        for i in (0..3).filter(|&i| weights[i] > 0.0) {
-            let (c, r) = corners[i];
-            if c >= self.dem.columns() || r >= self.dem.rows() || self.dem.height(c, r).is_none() {
-                return None;
-            }
-            points[i] = self.dem.position(c, r);
-            normals[i] = (-self.gradient(c, r)).extend(1.0).normalize();
-        }
-        Some(Patch::new(points, normals).point(weights))
     }
 
     /// Position and unit normal of each sample of row `r`, heights of voids being 0; nothing outside.
@@ -214,7 +218,7 @@ pub struct Bulge {
 }
 
 /// World position in metres and unit normal of a sample.
-pub type Corner = (DVec3, DVec3);
+pub(crate) type Corner = (DVec3, DVec3);
 
 impl Patch {
     /// Patch 0 (NW, SW, SE) or 1 (NW, SE, NE) of the cell with corners NW, SW, SE, NE.

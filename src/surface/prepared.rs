@@ -17,7 +17,7 @@ mod heights;
 use std::cell::RefCell;
 
 use super::{Pyramid, Surface};
-use crate::cache::{Cache, Hearing, Key, Sheet};
+use crate::cache::{Cache, CacheKey, CacheObserver, NewEntry};
 use crate::dem::Dem;
 use crate::error::{Message, Result};
 
@@ -27,13 +27,13 @@ use heights::{Heights, HeightsBuilder};
 const WORDS: [&str; 2] = ["what was made of the DEM", "what was kept of the DEM"];
 
 /// A surface with what is to be found or made of it.
-struct Work<'a> {
+struct SurfaceWork<'a> {
     cache: &'a Cache,
     surface: &'a Surface,
     /// Its samples without exaggeration, where that is not 1.
     plain: Option<&'a Dem>,
-    bounds: Key,
-    heights: Key,
+    bounds: CacheKey,
+    heights: CacheKey,
     warn: &'a dyn Fn(&Message),
 }
 
@@ -49,7 +49,7 @@ impl Cache {
         let Some(stamp) = self.folder().and_then(|_| dem.stamp()) else { return Ok(()) };
         let plain = dem.plain();
         let exaggeration = plain.as_ref().map_or(1.0, |(_, exaggeration)| *exaggeration);
-        let work = Work {
+        let work = SurfaceWork {
             cache: self,
             surface,
             plain: plain.as_ref().map(|(plain, _)| plain),
@@ -82,16 +82,16 @@ impl Cache {
     }
 }
 
-impl Work<'_> {
+impl SurfaceWork<'_> {
     /// Both, found or made.
     fn done(&self, progress: &dyn Fn(f64)) -> Result<(Pyramid, Heights)> {
         let found = RefCell::new(None);
-        let make = |sheet: Option<Sheet>, progress: &dyn Fn(f64)| {
+        let make = |sheet: Option<NewEntry>, progress: &dyn Fn(f64)| {
             let (pyramid, heights) = self.with_heights(sheet, progress)?;
             found.replace(Some(heights));
             Ok(pyramid)
         };
-        let hearing = Hearing { warn: self.warn, progress };
+        let hearing = CacheObserver { warn: self.warn, progress };
         let pyramid = self.cache.get(&self.bounds, hearing, |kept| bounds::recall(self.surface.dem(), kept), make)?;
         let heights = match found.into_inner() {
             Some(heights) => heights,
@@ -101,11 +101,11 @@ impl Work<'_> {
     }
 
     /// The bounds, made and kept in a sheet, and the heights, found or made in the same look.
-    fn with_heights(&self, sheet: Option<Sheet>, progress: &dyn Fn(f64)) -> Result<(Pyramid, Heights)> {
+    fn with_heights(&self, sheet: Option<NewEntry>, progress: &dyn Fn(f64)) -> Result<(Pyramid, Heights)> {
         // That nothing can be kept was told when there was no sheet.
         let warn = if sheet.is_some() { self.warn } else { &|_: &Message| () };
         let mut made = None;
-        let heights = self.heights(Hearing { warn, progress }, |sheet, progress| {
+        let heights = self.heights(CacheObserver { warn, progress }, |sheet, progress| {
             let (pyramid, heights) = self.in_one_look(sheet, warn, progress)?;
             made = Some(pyramid);
             Ok(heights)
@@ -120,7 +120,7 @@ impl Work<'_> {
 
     fn in_one_look(
         &self,
-        sheet: Option<Sheet>,
+        sheet: Option<NewEntry>,
         warn: &dyn Fn(&Message),
         progress: &dyn Fn(f64),
     ) -> Result<(Pyramid, Heights)> {
@@ -141,8 +141,8 @@ impl Work<'_> {
     /// The heights, found or made so.
     fn heights(
         &self,
-        hearing: Hearing<'_>,
-        make: impl FnOnce(Option<Sheet>, &dyn Fn(f64)) -> Result<Heights>,
+        hearing: CacheObserver<'_>,
+        make: impl FnOnce(Option<NewEntry>, &dyn Fn(f64)) -> Result<Heights>,
     ) -> Result<Heights> {
         self.cache.get(&self.heights, hearing, |kept| heights::recall(self.plain(), kept), make)
     }

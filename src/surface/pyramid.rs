@@ -31,16 +31,16 @@ const COARSEST_CELLS: usize = 64;
 /// Squares of 4, 8, 16 ... cells, each layer a grid from the north-west, up to one square or 64 cells between vertices.
 #[derive(Debug, Clone)]
 pub struct Pyramid {
-    layers: Vec<Layer>,
+    layers: Vec<PyramidLayer>,
     samples: [usize; 2],
     cell: DVec2,
 }
 
 /// A pyramid in the making, from bands of its surface.
-pub struct PyramidBuilder(Pyramid);
+pub(crate) struct PyramidBuilder(Pyramid);
 
 #[derive(Debug, Clone)]
-struct Layer {
+struct PyramidLayer {
     columns: usize,
     /// Cells along a square.
     size: usize,
@@ -49,7 +49,7 @@ struct Layer {
 
 /// Where the surface over a square lies, metres.
 #[derive(Debug, Clone, Copy)]
-pub struct Relief {
+pub struct SquareBounds {
     /// Exaggerated height below all of it.
     pub low: f32,
     /// Above all of it; below `low` where there is none.
@@ -133,7 +133,7 @@ impl Pyramid {
         let needed =
             |size: &usize| *size <= LEVEL_1_CELLS || *size / 2 < longest && *size <= COARSEST_CELLS * LEVEL_1_CELLS;
         let sizes = std::iter::successors(Some(finest), |size| Some(2 * size)).take_while(needed);
-        Self { layers: sizes.map(|size| Layer::new(cells, size)).collect(), samples, cell: dem.cell() }
+        Self { layers: sizes.map(|size| PyramidLayer::new(cells, size)).collect(), samples, cell: dem.cell() }
     }
 
     /// All that is known, in parts, to be kept with the DEM.
@@ -178,9 +178,9 @@ impl Pyramid {
     }
 
     /// Between which heights the surface of the chunk at `origin` lies, and how far it reaches beyond its square.
-    pub fn relief(&self, origin: [u32; 2], step: u32) -> Relief {
+    pub fn relief(&self, origin: [u32; 2], step: u32) -> SquareBounds {
         let Square { low, high, bulge, .. } = self.square(origin, step);
-        Relief { low, high, beyond: bulge }
+        SquareBounds { low, high, beyond: bulge }
     }
 
     /// Lowest and highest slope dz/d east and dz/d north of the sides of facets of the chunk at `origin`.
@@ -219,10 +219,10 @@ impl Pyramid {
 
 impl PyramidBuilder {
     /// Rows around a band that must be there.
-    pub const HALO: usize = 1;
+    pub(crate) const HALO: usize = 1;
 
     /// Of a DEM, nothing known yet.
-    pub fn new(dem: &Dem) -> Self {
+    pub(crate) fn new(dem: &Dem) -> Self {
         Self(Pyramid::unknown(dem))
     }
 
@@ -230,7 +230,7 @@ impl PyramidBuilder {
     ///
     /// # Errors
     /// [`Error::Limit`](crate::error::Error::Limit) where the band is not in memory.
-    pub fn take(&mut self, SurfaceBand { rows, surface }: &SurfaceBand<'_>) -> Result<()> {
+    pub(crate) fn take(&mut self, SurfaceBand { rows, surface }: &SurfaceBand<'_>) -> Result<()> {
         let (cells, level_1) = (self.0.samples.map(|samples| samples - 1), self.0.level_1());
         let (layers, samples) = (&mut self.0.layers, surface.dem().held()?);
         layers[0].bound(surface, samples, rows);
@@ -240,7 +240,7 @@ impl PyramidBuilder {
     }
 
     /// The pyramid, when all rows have been taken in.
-    pub fn finish(self) -> Pyramid {
+    pub(crate) fn finish(self) -> Pyramid {
         let Self(mut pyramid) = self;
         let level_1 = pyramid.level_1();
         for number in 1..pyramid.layers.len() {
@@ -251,7 +251,7 @@ impl PyramidBuilder {
     }
 }
 
-impl Layer {
+impl PyramidLayer {
     /// Squares of `size` cells over so many, nothing known of them.
     fn new(cells: [usize; 2], size: usize) -> Self {
         let [columns, rows] = cells.map(|cells| cells.div_ceil(size));

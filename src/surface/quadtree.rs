@@ -20,7 +20,7 @@ pub struct Quadtree {
 type Square = ([u32; 2], u32);
 
 /// How far a tree is split.
-pub trait Growth {
+pub trait Splits {
     /// Whether the square with this north-west corner and size is split.
     fn splits(&mut self, corner: [u32; 2], size: u32) -> bool;
 
@@ -57,7 +57,7 @@ impl Quadtree {
 
     /// Splits the roots as `growth` says, from a lattice place outwards: what lies before a square as seen from there is
     /// done before it.
-    pub fn grow(&mut self, from: [f64; 2], growth: &mut impl Growth) {
+    pub fn grow(&mut self, from: [f64; 2], growth: &mut impl Splits) {
         let eye = from.map(|at| (at / f64::from(self.root_size)).floor());
         let corners = (0..self.roots[1]).flat_map(|y| (0..self.roots[0]).map(move |x| [x, y]));
         let mut roots: Vec<[u32; 2]> = corners.collect();
@@ -69,7 +69,7 @@ impl Quadtree {
         }
     }
 
-    fn grow_node(&mut self, node: usize, square: Square, from: [f64; 2], growth: &mut impl Growth) {
+    fn grow_node(&mut self, node: usize, square: Square, from: [f64; 2], growth: &mut impl Splits) {
         let splits = growth.splits(square.0, square.1);
         if splits {
             let children = self.split_leaf(node, square);
@@ -85,7 +85,7 @@ impl Quadtree {
 
     /// Splits leaves until none is more than twice as large as another that touches it, be it in a corner, nor larger
     /// than one that `growth` wants among equals.
-    pub fn balance(&mut self, growth: &impl Growth) {
+    pub fn balance(&mut self, growth: &impl Splits) {
         let mut open = self.leaves();
         while let Some((_, square)) = open.pop() {
             let largest = square.1 * if growth.stands_among_equals(square.0, square.1) { 1 } else { 2 };

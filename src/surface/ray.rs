@@ -16,7 +16,7 @@ use crate::error::Result;
 
 /// Where a ray meets the surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Met {
+pub(crate) struct Met {
     /// The share of the way that leads there, 0 to 1.
     pub share: f64,
     /// Metres of the exaggerated world, on a facet of the level.
@@ -48,7 +48,7 @@ impl Surface {
     ///
     /// # Errors
     /// As [`Self::pyramid`] and [`Self::part`].
-    pub fn first_met(&self, from: DVec3, to: DVec3, level: Level) -> Result<Option<Met>> {
+    pub(crate) fn first_met(&self, from: DVec3, to: DVec3, level: Level) -> Result<Option<Met>> {
         let pyramid = self.pyramid()?;
         let way = to - from;
         let ray = Ray { way, inverse: way.recip() };

@@ -15,16 +15,16 @@ pub(super) struct Slopes {
 
 impl Slopes {
     /// None known.
-    pub const NONE: Self = Self { low: [i8::MAX; 2], high: [i8::MIN; 2] };
+    pub(super) const NONE: Self = Self { low: [i8::MAX; 2], high: [i8::MIN; 2] };
 
     /// Between these.
-    pub fn between(low: [f64; 2], high: [f64; 2]) -> Self {
+    pub(super) fn between(low: [f64; 2], high: [f64; 2]) -> Self {
         let coded = |slope: f64| 127.0 * slope / (1.0 + slope.abs());
         Self { low: low.map(|slope| coded(slope).floor() as i8), high: high.map(|slope| coded(slope).ceil() as i8) }
     }
 
     /// Of these and others.
-    pub fn with(self, other: Self) -> Self {
+    pub(super) fn with(self, other: Self) -> Self {
         Self {
             low: [0, 1].map(|axis| self.low[axis].min(other.low[axis])),
             high: [0, 1].map(|axis| self.high[axis].max(other.high[axis])),
@@ -32,7 +32,7 @@ impl Slopes {
     }
 
     /// Lowest and highest slopes: dz/d east, dz/d north.
-    pub fn range(self) -> [DVec2; 2] {
+    pub(super) fn range(self) -> [DVec2; 2] {
         let decoded = |q: i8| f64::from(q) / (127.0 - f64::from(q).abs()).max(1e-9);
         [self.low, self.high].map(|slopes| DVec2::from(slopes.map(decoded)))
     }

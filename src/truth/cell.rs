@@ -15,7 +15,7 @@ pub(super) struct Cell {
 
 impl Cell {
     /// Cell (c, r), relative to `eye`; without patches outside the grid.
-    pub fn new(surface: &Surface, eye: DVec3, c: isize, r: isize) -> Self {
+    pub(super) fn new(surface: &Surface, eye: DVec3, c: isize, r: isize) -> Self {
         let dem = surface.dem();
         let inside = |i: isize, samples: usize| (0..samples as isize - 1).contains(&i);
         if !inside(c, dem.columns()) || !inside(r, dem.rows()) {

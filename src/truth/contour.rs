@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use super::Truth;
 use super::cell::{Cell, point, vertices};
 use super::facing::{Facing, halves_toward, is_toward, of_patch};
-use super::page::{Line, Page, Piece};
+use super::page::{Projection, TruthLine, TruthPiece};
 use super::sight::{Blocker, Sight};
 use super::terrain::Terrain;
 use crate::surface::Level;
@@ -34,7 +34,7 @@ struct Facings {
 /// What a row of cells adds.
 #[derive(Default)]
 struct Found {
-    pieces: Vec<Piece>,
+    pieces: Vec<TruthPiece>,
     facets: u64,
     rays: u64,
     blocker: Blocker,
@@ -57,16 +57,16 @@ impl Terrain<'_> {
         truth
     }
 
-    pub(super) fn page(&self, camera: &Camera) -> Page {
-        Page::new(camera, self.surface.dem().cell().min_element() * NEAR)
+    pub(super) fn page(&self, camera: &Camera) -> Projection {
+        Projection::new(camera, self.surface.dem().cell().min_element() * NEAR)
     }
 
     /// Whether a cell may show on the page.
-    pub(super) fn may_show(&self, c: isize, r: isize, eye: DVec3, page: &Page) -> bool {
+    pub(super) fn may_show(&self, c: isize, r: isize, eye: DVec3, page: &Projection) -> bool {
         self.bounding_box(0, c, r, eye).is_some_and(|bounds| page.may_show(&bounds.corners()))
     }
 
-    fn facings(&self, eye: DVec3, page: &Page) -> Facings {
+    fn facings(&self, eye: DVec3, page: &Projection) -> Facings {
         let [columns, rows] = self.grid(0).map(|n| n as isize);
         let row = |r: isize| {
             (-1..=columns).map(move |c| {
@@ -215,7 +215,7 @@ impl Side {
 
 impl Sight<'_> {
     /// The lines that the cells of row `r` own.
-    fn row(&self, r: isize, facings: &Facings, page: &Page) -> Found {
+    fn row(&self, r: isize, facings: &Facings, page: &Projection) -> Found {
         let mut found = Found::default();
         let columns = self.terrain.grid(0)[0] as isize;
         for c in (-1..columns).filter(|&c| facings.may_own_line(c, r)) {
@@ -229,7 +229,7 @@ impl Sight<'_> {
     }
 
     /// The visible pieces of an edge where facing flips or one facet is missing.
-    fn line(&self, sides: [Option<Side>; 2], page: &Page, found: &mut Found) {
+    fn line(&self, sides: [Option<Side>; 2], page: &Projection, found: &mut Found) {
         let (edge, up, line) = match sides {
             [Some(a), Some(b)] => {
                 let (toward, away) = if a.toward { (a, b) } else { (b, a) };
@@ -238,9 +238,9 @@ impl Sight<'_> {
                 if toward.normal().dot(away.facet[away.opposite] - edge[0]) >= 0.0 {
                     return;
                 }
-                (edge, toward.normal().normalize_or_zero() + away.normal().normalize_or_zero(), Line::Contour)
+                (edge, toward.normal().normalize_or_zero() + away.normal().normalize_or_zero(), TruthLine::Contour)
             }
-            [Some(only), None] | [None, Some(only)] if only.toward => (only.edge(), only.normal(), Line::Border),
+            [Some(only), None] | [None, Some(only)] if only.toward => (only.edge(), only.normal(), TruthLine::Border),
             _ => return,
         };
         let nudge = up.normalize_or_zero() * (NUDGE * edge[0].distance(edge[1]));

@@ -5,13 +5,17 @@ use rayon::prelude::*;
 
 use super::cell::Cell;
 use super::contour::NUDGE;
-use super::page::Page;
+use super::page::Projection;
 use super::sight::{Blocker, Sight};
 use super::terrain::Terrain;
 use crate::surface::lattice::CELL_STEPS;
 use crate::surface::{Level, Patch};
 use crate::view::Camera;
 
+impl Terrain<'_> {}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
 impl Terrain<'_> {
     /// The least level at which no edge of a facet in a visible cell is longer than a pixel, 64 at most, the sides of
     /// cells taken as straight and divided evenly on the page; `None` where no cell is visible. A cell counts as visible
@@ -35,7 +39,7 @@ impl Terrain<'_> {
 }
 
 /// Longest straight line between corners of a cell, px, rounded up.
-fn longest_edge(cell: &Cell, page: &Page) -> f32 {
+fn longest_edge(cell: &Cell, page: &Projection) -> f32 {
     let corners = cell.patches.iter().flatten().map(corners);
     let edges = corners.flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]);
     let longest = edges.map(|edge| page.edge_length(edge)).fold(0.0, f64::max);

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::{Piece, Truth};
+use super::{Truth, TruthPiece};
 
 /// The inked pixels of a page.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,8 +38,8 @@ impl Mask {
     }
 
     /// The pixels that hold the middle of a piece; all middles must be on the page.
-    pub(super) fn of_pieces<'a>(size: [u32; 2], pieces: impl Iterator<Item = &'a Piece>) -> Self {
-        let inked = |piece: &Piece| {
+    pub(super) fn of_pieces<'a>(size: [u32; 2], pieces: impl Iterator<Item = &'a TruthPiece>) -> Self {
+        let inked = |piece: &TruthPiece| {
             let place = piece.middle().as_uvec2();
             Inked { column: place.x, row: place.y, distance: piece.distance }
         };
@@ -56,6 +56,37 @@ impl Mask {
         pixels
     }
 
+    /// Share of the inked pixels with ink of `other` in the 3 x 3 pixels around them: what does not pop; 1 without ink.
+    pub fn beside(&self, other: &Self) -> f64 {
+        match self.inked.len() {
+            0 => 1.0,
+            inked => (inked - self.alone(other)) as f64 / inked as f64,
+        }
+    }
+
+    /// How many inked pixels have no ink of `other` in the 3 x 3 pixels around them.
+    fn alone(&self, other: &Self) -> usize {
+        let there = other.pixels();
+        self.inked.iter().filter(|p| !self.block(p).any(|i| there[i])).count()
+    }
+
+    /// Place of a pixel on the page, row by row.
+    fn index(&self, p: &Inked) -> usize {
+        p.row as usize * self.size[0] as usize + p.column as usize
+    }
+
+    /// Places of the 3 x 3 pixels around a pixel, where they are on the page.
+    fn block(&self, p: &Inked) -> impl Iterator<Item = usize> {
+        let [width, height] = self.size;
+        let span = |at: u32, size: u32| at.saturating_sub(1)..=(at + 1).min(size - 1);
+        let (columns, rows) = (span(p.column, width), span(p.row, height));
+        rows.flat_map(move |row| columns.clone().map(move |column| row as usize * width as usize + column as usize))
+    }
+}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
+impl Mask {
     /// The 8-connected sets of inked pixels, as places in [`Self::inked`], in the order of their first pixels.
     pub fn components(&self) -> Vec<Vec<usize>> {
         const NONE: usize = usize::MAX;
@@ -91,32 +122,5 @@ impl Mask {
     /// ink.
     pub fn pop(&self, next: &Self) -> f64 {
         self.alone(next) as f64 / self.inked.len().max(1) as f64
-    }
-
-    /// Share of the inked pixels with ink of `other` in the 3 x 3 pixels around them: what does not pop; 1 without ink.
-    pub fn beside(&self, other: &Self) -> f64 {
-        match self.inked.len() {
-            0 => 1.0,
-            inked => (inked - self.alone(other)) as f64 / inked as f64,
-        }
-    }
-
-    /// How many inked pixels have no ink of `other` in the 3 x 3 pixels around them.
-    fn alone(&self, other: &Self) -> usize {
-        let there = other.pixels();
-        self.inked.iter().filter(|p| !self.block(p).any(|i| there[i])).count()
-    }
-
-    /// Place of a pixel on the page, row by row.
-    fn index(&self, p: &Inked) -> usize {
-        p.row as usize * self.size[0] as usize + p.column as usize
-    }
-
-    /// Places of the 3 x 3 pixels around a pixel, where they are on the page.
-    fn block(&self, p: &Inked) -> impl Iterator<Item = usize> {
-        let [width, height] = self.size;
-        let span = |at: u32, size: u32| at.saturating_sub(1)..=(at + 1).min(size - 1);
-        let (columns, rows) = (span(p.column, width), span(p.row, height));
-        rows.flat_map(move |row| columns.clone().map(move |column| row as usize * width as usize + column as usize))
     }
 }

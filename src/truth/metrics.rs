@@ -14,7 +14,7 @@ use rstar::primitives::Line as Segment;
 use rstar::{PointDistance, RTree};
 
 pub use self::chains::ChainScores;
-use super::{Mask, Piece, Truth};
+use super::{Mask, Truth, TruthPiece};
 
 mod chains;
 
@@ -115,7 +115,7 @@ pub struct Judge<'a> {
 impl<'a> Judge<'a> {
     /// `None` where no line is on the page: then there is nothing to judge by.
     pub fn new(truth: &'a Truth) -> Option<Self> {
-        let segment = |piece: &Piece| Segment::new(piece.ends[0].to_array(), piece.ends[1].to_array());
+        let segment = |piece: &TruthPiece| Segment::new(piece.ends[0].to_array(), piece.ends[1].to_array());
         let mut depths: Vec<_> = truth.on_page().map(|piece| (piece.distance, piece.length())).collect();
         let length = truth.length();
         depths.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -136,21 +136,14 @@ impl<'a> Judge<'a> {
         summary(distances)
     }
 
-    /// Distances of the pieces of another truth from this one, by length; `None` where it has none on the page.
-    pub fn offsets_of(&self, other: &Truth) -> Option<Offsets> {
-        let pieces: Vec<_> = other.on_page().collect();
-        let distances = pieces.par_iter().map(|piece| (self.distance(piece.middle()), piece.length()));
-        summary(distances.collect())
-    }
-
     /// Measures a mask of the same page against truth, and truth against the mask.
     pub fn measure<'m>(&'m self, mask: &'m Mask) -> Measured<'m> {
         let centres = RTree::bulk_load(mask.inked.iter().map(|p| p.centre().to_array()).collect());
-        let to_ink = |piece: &&Piece| {
+        let to_ink = |piece: &&TruthPiece| {
             let middle = piece.middle().to_array();
             centres.nearest_neighbor(middle).map_or(f64::INFINITY, |centre| centre.distance_2(&middle).sqrt())
         };
-        let pieces: Vec<&Piece> = self.truth.on_page().collect();
+        let pieces: Vec<&TruthPiece> = self.truth.on_page().collect();
         Measured {
             judge: self,
             mask,
@@ -161,13 +154,24 @@ impl<'a> Judge<'a> {
     }
 }
 
+/// What other stages and tests look into.
+#[doc(hidden)]
+impl<'a> Judge<'a> {
+    /// Distances of the pieces of another truth from this one, by length; `None` where it has none on the page.
+    pub fn offsets_of(&self, other: &Truth) -> Option<Offsets> {
+        let pieces: Vec<_> = other.on_page().collect();
+        let distances = pieces.par_iter().map(|piece| (self.distance(piece.middle()), piece.length()));
+        summary(distances.collect())
+    }
+}
+
 /// A mask and truth with their distances from each other.
 pub struct Measured<'a> {
     judge: &'a Judge<'a>,
     mask: &'a Mask,
     /// Of each inked pixel, px.
     to_truth: Vec<f64>,
-    pieces: Vec<&'a Piece>,
+    pieces: Vec<&'a TruthPiece>,
     /// Of each piece, px; infinite without ink.
     to_ink: Vec<f64>,
 }
@@ -196,12 +200,6 @@ impl Measured<'_> {
     /// Whether each inked pixel lies within 1 px of truth, in the order of the mask.
     pub fn agrees(&self) -> impl Iterator<Item = bool> {
         self.to_truth.iter().map(|distance| *distance <= WITHIN)
-    }
-
-    /// The pixels of truth, drawn one pixel wide, that have no ink within 1 px.
-    pub fn missed(&self) -> Mask {
-        let missed = self.pieces.iter().zip(&self.to_ink).filter(|(_, distance)| **distance > WITHIN);
-        Mask::of_pieces(self.mask.size, missed.map(|(piece, _)| *piece))
     }
 
     fn band(&self, band: usize) -> BandScore {
@@ -233,6 +231,16 @@ impl Measured<'_> {
     fn lines(&self, holds: impl Fn(f64) -> bool) -> Vec<(f64, f64)> {
         let pieces = self.pieces.iter().zip(&self.to_ink).filter(|(p, _)| holds(p.distance));
         pieces.map(|(piece, distance)| (*distance, piece.length())).collect()
+    }
+}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
+impl Measured<'_> {
+    /// The pixels of truth, drawn one pixel wide, that have no ink within 1 px.
+    pub fn missed(&self) -> Mask {
+        let missed = self.pieces.iter().zip(&self.to_ink).filter(|(_, distance)| **distance > WITHIN);
+        Mask::of_pieces(self.mask.size, missed.map(|(piece, _)| *piece))
     }
 }
 

@@ -24,7 +24,7 @@ mod sight;
 mod terrain;
 
 pub use mask::{Inked, Mask};
-pub use page::{Line, Piece};
+pub use page::{TruthLine, TruthPiece};
 pub use terrain::Terrain;
 
 use crate::surface::Level;
@@ -38,7 +38,7 @@ pub struct Truth {
     pub size: [u32; 2],
     /// Pieces of line of at most a quarter pixel; those of up to four pixels beyond the page belong to it, for ink at the
     /// page's edge may lie near them.
-    pub pieces: Vec<Piece>,
+    pub pieces: Vec<TruthPiece>,
     /// Facets whose facing was computed one by one.
     pub facets: u64,
     /// Rays cast.
@@ -52,13 +52,13 @@ impl Truth {
     }
 
     /// Pieces whose middle is on the page.
-    pub fn on_page(&self) -> impl Iterator<Item = &Piece> {
+    pub fn on_page(&self) -> impl Iterator<Item = &TruthPiece> {
         self.pieces.iter().filter(|piece| piece.is_on(self.size))
     }
 
     /// The same without border lines.
     pub fn without_border(mut self) -> Self {
-        self.pieces.retain(|piece| piece.line == Line::Contour);
+        self.pieces.retain(|piece| piece.line == TruthLine::Contour);
         self
     }
 }

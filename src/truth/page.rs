@@ -12,7 +12,7 @@ const MARGIN: f64 = 4.0;
 
 /// Which line a piece belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Line {
+pub enum TruthLine {
     /// Between surface toward the eye and surface away from it.
     Contour,
     /// The rim of the DEM or of a void.
@@ -21,16 +21,16 @@ pub enum Line {
 
 /// A visible piece of line on the page.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Piece {
+pub struct TruthPiece {
     /// Its ends, px from the page's top left corner.
     pub ends: [DVec2; 2],
     /// Metres along the view axis to its middle.
     pub distance: f64,
     /// Which line.
-    pub line: Line,
+    pub line: TruthLine,
 }
 
-impl Piece {
+impl TruthPiece {
     /// Its middle on the page, px.
     pub fn middle(&self) -> DVec2 {
         self.ends[0].midpoint(self.ends[1])
@@ -42,14 +42,14 @@ impl Piece {
     }
 
     /// Whether its middle is on a page of this size.
-    pub fn is_on(&self, [width, height]: [u32; 2]) -> bool {
+    pub(crate) fn is_on(&self, [width, height]: [u32; 2]) -> bool {
         let middle = self.middle();
         middle.cmpge(DVec2::ZERO).all() && middle.x < f64::from(width) && middle.y < f64::from(height)
     }
 }
 
 /// A camera, with what projecting takes worked out.
-pub(super) struct Page {
+pub(super) struct Projection {
     axes: [DVec3; 3],
     focal: f64,
     size: DVec2,
@@ -57,14 +57,14 @@ pub(super) struct Page {
     near: f64,
 }
 
-impl Page {
-    pub fn new(camera: &Camera, near: f64) -> Self {
+impl Projection {
+    pub(super) fn new(camera: &Camera, near: f64) -> Self {
         let size = DVec2::new(f64::from(camera.width), f64::from(camera.height));
         Self { axes: camera.axes(), focal: camera.focal(), size, near }
     }
 
     /// Whether something with these corners, metres from the eye, may show on the page or in its margin.
-    pub fn may_show(&self, corners: &[DVec3]) -> bool {
+    pub(super) fn may_show(&self, corners: &[DVec3]) -> bool {
         let [right, up, forward] = self.axes;
         let reach = (self.size / 2.0 + MARGIN) / self.focal;
         let sides = [
@@ -78,13 +78,19 @@ impl Page {
     }
 
     /// Length on the page of an edge, metres from the eye; endless where it comes nearer than the near plane.
-    pub fn edge_length(&self, edge: [DVec3; 2]) -> f64 {
+    pub(super) fn edge_length(&self, edge: [DVec3; 2]) -> f64 {
         let [a, b] = edge.map(|p| self.project(p));
         if a.1 < self.near || b.1 < self.near { f64::INFINITY } else { a.0.distance(b.0) }
     }
 
     /// The visible pieces of an edge, metres from the eye; `sees` judges a piece by its middle.
-    pub fn pieces(&self, edge: [DVec3; 2], line: Line, mut sees: impl FnMut(DVec3) -> bool, out: &mut Vec<Piece>) {
+    pub(super) fn pieces(
+        &self,
+        edge: [DVec3; 2],
+        line: TruthLine,
+        mut sees: impl FnMut(DVec3) -> bool,
+        out: &mut Vec<TruthPiece>,
+    ) {
         let Some([p, q]) = self.before_eye(edge) else { return };
         let [(a, near_a), (b, near_b)] = [self.project(p), self.project(q)];
         let Some([from, to]) = share_within([DVec2::splat(-MARGIN), self.size + MARGIN], a, b) else { return };
@@ -97,7 +103,7 @@ impl Page {
             let place = p.lerp(q, along);
             if sees(place) {
                 let distance = place.dot(self.axes[2]);
-                out.push(Piece { ends: [a.lerp(b, start), a.lerp(b, end)], distance, line });
+                out.push(TruthPiece { ends: [a.lerp(b, start), a.lerp(b, end)], distance, line });
             }
         }
     }

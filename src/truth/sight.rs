@@ -47,7 +47,7 @@ pub(super) struct Blocker(Option<Cell>);
 
 impl Sight<'_> {
     /// Whether no facet stands between the eye and `target`, metres from the eye. `last` is where to look first.
-    pub fn reaches(&self, target: DVec3, last: &mut Blocker) -> bool {
+    pub(super) fn reaches(&self, target: DVec3, last: &mut Blocker) -> bool {
         let ray = Ray { target, inverse: target.recip() };
         if last.0.as_ref().is_some_and(|cell| self.cell_blocks(cell, &ray)) {
             return false;

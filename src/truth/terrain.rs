@@ -29,10 +29,10 @@ pub struct Terrain<'a> {
     /// What it bounds.
     pub surface: &'a Surface,
     /// Cells first, then nodes of 2 x 2, 4 x 4 ... of them, up to one.
-    layers: Vec<Layer>,
+    layers: Vec<TerrainLayer>,
 }
 
-struct Layer {
+struct TerrainLayer {
     columns: usize,
     rows: usize,
     nodes: Vec<Bounds>,
@@ -50,7 +50,7 @@ impl<'a> Terrain<'a> {
     pub fn new(surface: &'a Surface) -> Self {
         let (columns, rows) = (surface.dem().columns() - 1, surface.dem().rows() - 1);
         let nodes = (0..rows).into_par_iter().flat_map_iter(|r| (0..columns).map(move |c| bounds(surface, c, r)));
-        let mut layers = vec![Layer { columns, rows, nodes: nodes.collect() }];
+        let mut layers = vec![TerrainLayer { columns, rows, nodes: nodes.collect() }];
         while let Some(below) = layers.last().filter(|layer| layer.nodes.len() > 1) {
             layers.push(below.halved());
         }
@@ -93,7 +93,7 @@ impl<'a> Terrain<'a> {
     }
 }
 
-impl Layer {
+impl TerrainLayer {
     /// The layer of nodes twice as wide.
     fn halved(&self) -> Self {
         let (columns, rows) = (self.columns.div_ceil(2), self.rows.div_ceil(2));
@@ -109,7 +109,7 @@ impl Layer {
 
 impl Box3 {
     /// The eight corners.
-    pub fn corners(&self) -> [DVec3; 8] {
+    pub(super) fn corners(&self) -> [DVec3; 8] {
         let pick = |bit: bool, low: f64, high: f64| if bit { high } else { low };
         [0, 1, 2, 3, 4, 5, 6, 7].map(|i: u8| {
             let (l, h) = (self.low, self.high);

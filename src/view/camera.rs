@@ -64,15 +64,10 @@ impl Camera {
         forward + right * d.x - up * d.y
     }
 
-    /// The page's map projection as two inward normals: see [`Self::wedge_of`].
-    pub fn wedge(&self) -> Option<[DVec2; 2]> {
-        self.wedge_of(DVec2::ZERO, DVec2::new(f64::from(self.width), f64::from(self.height)))
-    }
-
     /// The map projection of a rectangle of the page, given in pixels, as two inward normals in the map (x east, y
-    /// north): a direction v is in it only where both n . v >= 0. `None` where the projection is no wedge of less than
+    /// north): a direction v is in it only where both n . v >= 0. `None` where the projection is no frustum of less than
     /// half the horizon. A pixel of margin.
-    pub fn wedge_of(&self, low: DVec2, high: DVec2) -> Option<[DVec2; 2]> {
+    pub(crate) fn frustum_of(&self, low: DVec2, high: DVec2) -> Option<[DVec2; 2]> {
         let (low, high) = (low - 1.0, high + 1.0);
         let sees = |d: DVec3| {
             let (place, w) = self.project(self.eye + d);
@@ -96,5 +91,14 @@ impl Camera {
         }
         let normal = |angle: f64| DVec2::new((ahead + angle).cos(), -(ahead + angle).sin());
         Some([normal(low), -normal(high)])
+    }
+}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
+impl Camera {
+    /// The page's map projection as two inward normals: see [`Self::frustum_of`].
+    pub fn frustum(&self) -> Option<[DVec2; 2]> {
+        self.frustum_of(DVec2::ZERO, DVec2::new(f64::from(self.width), f64::from(self.height)))
     }
 }

@@ -242,7 +242,7 @@ impl Flight {
     }
 
     /// Whether some of it is over land of the DEM.
-    pub fn is_over_land(&self) -> bool {
+    pub(crate) fn is_over_land(&self) -> bool {
         self.heights.over_land
     }
 

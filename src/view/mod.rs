@@ -1,10 +1,10 @@
 //! The camera, how it sees, the choice of a view where none is given, and flights; lines on its page, cut.
 
-pub mod camera;
-pub mod choose;
-pub mod cut;
+pub(crate) mod camera;
+pub(crate) mod choose;
+pub(crate) mod cut;
 pub mod flight;
-pub mod perspective;
+pub(crate) mod perspective;
 
 pub use camera::{Camera, direction};
 pub use choose::{Fixed, choose};

@@ -67,18 +67,9 @@ impl Perspective {
         self.eye + (forward + right * d.x - up * d.y) * (self.near / depth)
     }
 
-    /// How the place on the page of a point of the world moves where this moves so, px; meaningless where its distance is not
-    /// positive.
-    pub fn moves(&self, point: DVec3, by: DVec3) -> DVec2 {
-        let [right, up, forward] = self.axes;
-        let (p, distance) = (point - self.eye, self.distance(point));
-        let (at, ahead) = (DVec2::new(p.dot(right), -p.dot(up)) / distance, by.dot(forward));
-        (DVec2::new(by.dot(right), -by.dot(up)) - at * ahead) * (self.focal / distance)
-    }
-
     /// Most pixels that a metre across takes on the page in a box of the world, by its low and high corner; 0 where that lies
     /// beside the page.
-    pub fn most_px_per_metre(&self, [low, high]: [DVec3; 2]) -> f64 {
+    pub(crate) fn most_px_per_metre(&self, [low, high]: [DVec3; 2]) -> f64 {
         let corner = |k: usize| DVec3::new([low, high][k & 1].x, [low, high][k >> 1 & 1].y, [low, high][k >> 2].z);
         let [right, up, forward] = self.axes;
         // What the page shows, in tangents.
@@ -96,5 +87,18 @@ impl Perspective {
         let stretch = 1.0 + half.length_squared();
         let nearest = self.eye.clamp(low, high).distance(self.eye);
         self.focal * stretch / nearest.max(self.near)
+    }
+}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
+impl Perspective {
+    /// How the place on the page of a point of the world moves where this moves so, px; meaningless where its distance is not
+    /// positive.
+    pub fn moves(&self, point: DVec3, by: DVec3) -> DVec2 {
+        let [right, up, forward] = self.axes;
+        let (p, distance) = (point - self.eye, self.distance(point));
+        let (at, ahead) = (DVec2::new(p.dot(right), -p.dot(up)) / distance, by.dot(forward));
+        (DVec2::new(by.dot(right), -by.dot(up)) - at * ahead) * (self.focal / distance)
     }
 }

@@ -6,10 +6,11 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use hachure::dem::Dem;
+use hachure::door::gpu::Capacity;
 use hachure::door::gpu::sizes::{LIST_HEADER, RIM_EDGE_BYTES, of_page, of_scene};
-use hachure::door::gpu::{Capacity, project};
 use hachure::door::measure::cost::{PassCost, Quantities, Traffic};
 use hachure::door::measure::costs;
+use hachure::door::plan::PassName;
 use hachure::door::surface::Lattice;
 use hachure::door::surface::lattice::{CHUNK_FACETS, CHUNK_VERTICES, CHUNK_WORDS};
 use hachure::door::surface::rim::rim_length;
@@ -22,7 +23,7 @@ use hachure::view::Camera;
 
 use super::{bytes, flat, frame, from_south, in_two_batches, on_page};
 use crate::frames::{METHODS, Planned};
-use crate::reflection::{Bound, bound, shaders};
+use crate::reflection::{Bound, bound, shader_of, shaders};
 use crate::scenes::{gpu, gpu_without_int64, level, rough};
 
 /// What passes bind and costs leave out: the pass, the buffers, why.
@@ -337,6 +338,6 @@ fn buffers_hold_whole_items_as_shaders_lay_them_out() {
     let missed: Vec<_> = items.keys().filter(|name| !seen.iter().any(|seen| seen == *name)).collect();
     assert!(missed.is_empty(), "no pass binds {missed:?}");
     // A chunk that grows in the shader alone.
-    let grown = project::SOURCE.replacen("pad: u32,", "pad: u32, more: vec2<u32>,", 1);
+    let grown = shader_of(PassName::Project).replacen("pad: u32,", "pad: u32, more: vec2<u32>,", 1);
     assert_ne!(sizes["chunks"], chunks * bound("project", &grown)["chunks"].item);
 }

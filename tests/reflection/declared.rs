@@ -5,11 +5,12 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use hachure::door::gpu::seam;
+use hachure::door::gpu::shaders::OWN_CONSTANTS as OF_ONE_PASS;
 use hachure::door::gpu::sizes::LIST_HEADER;
+use hachure::door::plan::PassName;
 use wgpu::naga;
 
-use super::{all_modules, bound, constants, layouts, shared_constants, shared_structs};
+use super::{all_modules, bound, constants, layouts, shader_of, shared_constants, shared_structs};
 
 /// Constants that are the shaders' own, and why Rust need not know them.
 const OWN_CONSTANTS: [(&str, &str); 34] = [
@@ -106,12 +107,14 @@ fn declares(source: &str, name: &str) -> bool {
     code.filter_map(|line| line.split_once(&wanted)).any(|(_, declared)| !declared.starts_with(" Self"))
 }
 
-/// Pipeline constants of a pass that nobody sets: neither its own source nor one of all passes says their names.
-fn unset<'a>(pass: &str, module: &'a naga::Module, sources: &[(String, String)], passes: &[&str]) -> Vec<&'a str> {
+/// Pipeline constants of a pass that nobody sets: neither the table of those of one pass nor a source beside it says their names.
+fn unset<'a>(pass: &str, module: &'a naga::Module, sources: &[(String, String)]) -> Vec<&'a str> {
     let names = module.overrides.iter().filter_map(|(_, constant)| constant.name.as_deref());
-    let speaks = |file: &str| file == pass || !passes.contains(&file);
+    let speaks = |file: &str| file != "shaders";
+    let own = |name: &str| OF_ONE_PASS.iter().any(|(of, (constant, _))| of.name() == pass && *constant == name);
     let is_set = |name: &&str| {
         sources.iter().any(|(file, source)| speaks(file) && source.contains(&format!("\"{name}\"")))
+            || own(name)
             || LEFT_AT_DEFAULT.iter().any(|(of, constant, _)| of == &pass && constant == name)
     };
     names.filter(|name| !is_set(name)).collect()
@@ -159,9 +162,8 @@ fn every_pipeline_constant_is_set_or_left_on_purpose() {
     // The registry of methods sets those of their own passes.
     let sources = sources(&["gpu", "plan"]);
     let modules = all_modules();
-    let passes: Vec<_> = modules.iter().map(|(name, _)| *name).collect();
     for (name, module) in modules.iter().filter(|(name, _)| *name != "depth_draw") {
-        let unset = unset(name, module, &sources, &passes);
+        let unset = unset(name, module, &sources);
         assert!(unset.is_empty(), "nobody sets {unset:?} of {name}");
     }
     for (pass, constant, why) in LEFT_AT_DEFAULT {
@@ -175,23 +177,20 @@ fn every_pipeline_constant_is_set_or_left_on_purpose() {
 
 #[test]
 fn what_is_new_in_a_shader_is_noticed() {
-    let parse = |more: &str| naga::front::wgsl::parse_str(&format!("{}\n{more}", seam::SOURCE)).expect("WGSL");
+    let parse =
+        |more: &str| naga::front::wgsl::parse_str(&format!("{}\n{more}", shader_of(PassName::Seam))).expect("WGSL");
     let strangers =
         |more: &str| constants(&parse(more)).into_keys().filter(|name| !is_declared(name)).collect::<Vec<_>>();
     assert_eq!(strangers(""), Vec::<String>::new());
     assert_eq!(strangers("const MOST_STEPS: u32 = 12u;"), ["MOST_STEPS"]);
     let tree = "struct Tree { root: u32 } @group(0) @binding(30) var<storage, read> trees: array<Tree>;";
     assert!(bound_structs(&parse(tree)).contains("Tree") && !bound_structs(&parse("")).contains("Tree"));
-    let (sources, passes) = (sources(&["gpu"]), ["seam", "walk_rest", "lay", "sight"]);
-    assert_eq!(unset("seam", &parse(""), &sources, &passes), Vec::<&str>::new());
-    assert_eq!(unset("seam", &parse("override most_steps: u32 = 1u;"), &sources, &passes), ["most_steps"]);
-    assert_eq!(
-        unset("seam", &parse("override defers: bool = true;"), &sources, &passes),
-        ["defers"],
-        "of walk_rest alone"
-    );
+    let sources = sources(&["gpu"]);
+    assert_eq!(unset("seam", &parse(""), &sources), Vec::<&str>::new());
+    assert_eq!(unset("seam", &parse("override most_steps: u32 = 1u;"), &sources), ["most_steps"]);
+    assert_eq!(unset("seam", &parse("override defers: bool = true;"), &sources), ["defers"], "of walk_rest alone");
     assert!(declares("    pub const LEFT: i32 = 1;", "LEFT") && !declares("const LEFT_OUT: i32 = 1;", "LEFT"));
     assert!(!declares("    pub const LEFT: Self = Self(1);", "LEFT") && !declares("// const LEFT: i32", "LEFT"));
-    let reads = seam::SOURCE.replacen("out_places", "places_of_all", 99);
+    let reads = shader_of(PassName::Seam).replacen("out_places", "places_of_all", 99);
     assert!(std::panic::catch_unwind(|| bound("seam", &reads)).is_err(), "a buffer is written that is not called out_");
 }

@@ -114,7 +114,7 @@ fn strokes() -> Vec<(&'static str, f64, Stroke)> {
         ("a repeated dot", 10.0, even([o, o, o])),
         ("a closed dot", 1.0, closed(dot(o))),
         ("a line", 0.3, even([o, o + 9.0])),
-        ("a wedge", 2.0, widths([(o, 0.0), (o + 9.0, 1.0)])),
+        ("a frustum", 2.0, widths([(o, 0.0), (o + 9.0, 1.0)])),
         ("a drop", 4.0, widths([(o, 0.0), (o + 2.0, 1.0)])),
         ("a bent horn", 4.0, widths((0..6).map(|i| (o + horn(i), 0.1 * f64::from(i))))),
         ("a waist", 2.0, widths([(o, 1.0), (o + 5.0, 0.0), (o + dvec2(10.0, 3.0), 1.0)])),

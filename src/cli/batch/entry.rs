@@ -17,7 +17,7 @@ use crate::error::{Error, Result, Setting, shown};
 use crate::files::typed::{self, meant, place};
 use crate::files::{Taken, straight};
 use crate::job::name::Naming;
-use crate::job::{Content, Job, Made};
+use crate::job::{Content, Job, JobFile};
 
 /// Keys of a drawing that are no flags of it.
 const OWN: [&str; 2] = ["name", "dem"];
@@ -29,7 +29,7 @@ const NONE: [&str; 9] =
 const AS_DRAWN: &str = "see `hachure draw --help`";
 
 /// A drawing of the file.
-pub struct Entry {
+pub(super) struct BatchEntry {
     /// In words, for lines about it.
     pub called: String,
     /// As if typed.
@@ -37,7 +37,7 @@ pub struct Entry {
 }
 
 /// What the files of DEMs hold, as far as it is known.
-pub struct Contents<'a> {
+pub(super) struct Contents<'a> {
     /// So far.
     pub known: Vec<Content>,
     /// Where it is kept.
@@ -82,7 +82,7 @@ struct Source<'a> {
 ///
 /// # Errors
 /// [`Error::Input`] where it cannot be read, or what stands in it is no drawing: where, what, and what was meant.
-pub fn read(path: &Path) -> Result<Vec<Entry>> {
+pub(super) fn read(path: &Path) -> Result<Vec<BatchEntry>> {
     let text = typed::text(path)?;
     let source = Source { path, text: &text, known: known() };
     let table = DeTable::parse(&text)
@@ -156,7 +156,7 @@ impl Source<'_> {
     }
 
     /// A drawing with its own keys, and the defaults for others.
-    fn entry(&self, n: u32, span: &Range<usize>, defaults: &Keys, own: &Keys) -> Result<Entry> {
+    fn entry(&self, n: u32, span: &Range<usize>, defaults: &Keys, own: &Keys) -> Result<BatchEntry> {
         let is_own = |flag: &String| own.iter().any(|(other, ..)| other == flag);
         let keys = own.iter().chain(defaults.iter().filter(|(flag, ..)| !is_own(flag)));
         let (mut called, mut words, mut dems) = (format!("drawing {n}"), Vec::new(), Vec::new());
@@ -190,7 +190,7 @@ impl Source<'_> {
             let what = in_words(&called, &e);
             self.wrong(spoken(&what), &what, AS_DRAWN)
         })?;
-        let entry = Entry { called, draw: typed.draw };
+        let entry = BatchEntry { called, draw: typed.draw };
         let checked = match entry.draw.scale() {
             Some(_) => plan::check(&entry.draw).map(drop),
             None => entry.draw.check().map(drop),
@@ -238,7 +238,7 @@ impl Source<'_> {
 ///
 /// # Errors
 /// [`Error::Input`].
-pub fn each_output_once(file: &Path, entries: &[Entry]) -> Result<()> {
+pub(super) fn each_output_once(file: &Path, entries: &[BatchEntry]) -> Result<()> {
     let read = entries.iter().flat_map(|entry| &entry.draw.terrain.dems).map(PathBuf::as_path);
     let mut taken = Taken::inputs(read.chain([file]));
     // Of folders that are not there yet nothing is known but their names.
@@ -268,18 +268,18 @@ fn in_words(called: &str, error: &clap::Error) -> String {
     format!("{called}: {}", all.join(" "))
 }
 
-impl Entry {
+impl BatchEntry {
     /// The names of all that its drawing and its mask are made of; of what cannot be made, why.
-    pub fn names(&self, contents: &mut Contents) -> [u128; 2] {
+    pub(super) fn names(&self, contents: &mut Contents) -> [u128; 2] {
         let names = contents.of(&self.draw).and_then(|dem| self.draw.names(&dem));
         names.unwrap_or_else(|error| [Naming::new().with("failed", words::line(&error)).name(); 2])
     }
 
     /// The job that makes it.
-    pub fn job(&self, number: u32, [drawing, of_mask]: [u128; 2]) -> Job {
+    pub(super) fn job(&self, number: u32, [drawing, of_mask]: [u128; 2]) -> Job {
         let (drawings, mask) = self.draw.outputs.files();
-        let drawings = drawings.iter().map(|path| Made { path: path.clone(), name: drawing });
-        let mask = mask.map(|path| Made { path: path.to_owned(), name: of_mask });
+        let drawings = drawings.iter().map(|path| JobFile { path: path.clone(), name: drawing });
+        let mask = mask.map(|path| JobFile { path: path.to_owned(), name: of_mask });
         Job { number, called: self.called.clone(), files: drawings.chain(mask).collect() }
     }
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use glam::DVec2;
 
-use super::entry::Entry;
+use super::entry::BatchEntry;
 use crate::cache::Cache;
 use crate::cli::talk::Talk;
 use crate::cli::values;
@@ -25,7 +25,7 @@ const MARK: &str = "{sheet}";
 /// The flags, as typed.
 #[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "Sheets")]
-pub struct SheetArguments {
+pub(super) struct SheetArguments {
     /// Make each drawing once for each sheet of a map, squares of this system of coordinates in which there is land of the DEM;
     /// names of outputs hold {sheet}, which becomes the sheet's south-western corner; sheets without any of --lines are drawn
     /// without. In a system that is turned against that
@@ -42,7 +42,7 @@ pub struct SheetArguments {
 }
 
 /// Squares of a grid.
-struct Grid {
+struct SheetGrid {
     crs: Crs,
     /// Metres, and units of the grid.
     side: f64,
@@ -55,7 +55,7 @@ impl SheetArguments {
     ///
     /// # Errors
     /// [`Error::Setting`]; whatever keeps a DEM from being read.
-    pub fn sheets(&self, entries: Vec<Entry>, cache: &Cache, talk: &Talk) -> Result<Vec<Entry>> {
+    pub(super) fn sheets(&self, entries: Vec<BatchEntry>, cache: &Cache, talk: &Talk) -> Result<Vec<BatchEntry>> {
         let (Some(code), Some(side)) = (self.grid, self.sheet) else { return self.without_grid(entries) };
         if side <= 0.0 {
             return Err(Error::setting(Setting::Sheet, "a sheet of no length holds nothing", "give its side, as 10km"));
@@ -65,8 +65,8 @@ impl SheetArguments {
             let what = format!("{} counts degrees, a sheet is so many metres long", crs.label());
             return Err(Error::setting(Setting::Grid, what, "give a system of metres, as that of a UTM zone"));
         };
-        let grid = Grid { crs, side: side / metres, halo: self.halo / metres, metres };
-        let (mut sheets, mut last): (Vec<Entry>, Option<(String, Dem)>) = Default::default();
+        let grid = SheetGrid { crs, side: side / metres, halo: self.halo / metres, metres };
+        let (mut sheets, mut last): (Vec<BatchEntry>, Option<(String, Dem)>) = Default::default();
         for entry in entries {
             let of = entry.draw.scene();
             if last.as_ref().is_none_or(|(other, _)| *other != of) {
@@ -97,7 +97,7 @@ impl SheetArguments {
     }
 
     /// The drawings as they are, none of which may ask for sheets.
-    fn without_grid(&self, entries: Vec<Entry>) -> Result<Vec<Entry>> {
+    fn without_grid(&self, entries: Vec<BatchEntry>) -> Result<Vec<BatchEntry>> {
         let has_mark = |path: &&PathBuf| path.to_string_lossy().contains(MARK);
         let marked = entries.iter().flat_map(|entry| entry.draw.outputs.files().0).find(has_mark);
         marked.map_or(Ok(()), |path| {
@@ -112,7 +112,7 @@ impl SheetArguments {
     }
 }
 
-impl Grid {
+impl SheetGrid {
     /// South-western corners of the sheets that hold land, from south to north and from west to east, in sides.
     fn corners(&self, dem: &Dem) -> Result<Vec<[i64; 2]>> {
         let ([west, south, east, north], georeference) = (dem.extent(), dem.georeference());
@@ -161,7 +161,7 @@ impl Grid {
     }
 
     /// The drawing of a sheet.
-    fn sheet(&self, entry: &Entry, dem: &Dem, corner: [i64; 2]) -> Result<Entry> {
+    fn sheet(&self, entry: &BatchEntry, dem: &Dem, corner: [i64; 2]) -> Result<BatchEntry> {
         let low = DVec2::new(corner[0] as f64, corner[1] as f64) * self.side;
         let georeference = dem.georeference();
         let in_world = |place: DVec2| georeference.world_place(&self.crs, place);
@@ -193,7 +193,7 @@ impl Grid {
                 }
             }
         })?;
-        Ok(Entry { called, draw })
+        Ok(BatchEntry { called, draw })
     }
 
     /// A sheet is called after its corner: in kilometres where these are whole, else in metres.

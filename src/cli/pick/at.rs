@@ -6,7 +6,7 @@ use glam::DVec2;
 use serde::Serialize;
 
 use super::cause::LineAnswer;
-use super::found::{self, Page};
+use super::found::{self, PickedPage};
 use super::place::{Located, Sighting, Slope, above_horizon, bearing};
 use super::station::Station;
 use super::{Answer, PickArguments, left_out};
@@ -25,7 +25,7 @@ use crate::surface::Met;
 
 /// What is told of a pixel.
 #[derive(Serialize)]
-pub struct AtAnswer {
+pub(super) struct AtAnswer {
     version: &'static str,
     pixel: [u32; 2],
     size: [u32; 2],
@@ -75,7 +75,7 @@ struct Sky {
 ///
 /// # Errors
 /// Whatever went wrong; [`Error::Setting`] for a pixel beside the page.
-pub fn answer(
+pub(super) fn answer(
     arguments: &PickArguments,
     pixel: [u32; 2],
     reading: Reading,
@@ -103,7 +103,7 @@ pub fn answer(
     let middle = DVec2::new(f64::from(pixel[0]), f64::from(pixel[1])) + 0.5;
     let met = station.behind(middle)?;
     let shown =
-        Page { illustration: &illustration, page: &page, lines: &lines, hidden: &hidden, drawn: &drawn, middle };
+        PickedPage { illustration: &illustration, page: &page, lines: &lines, hidden: &hidden, drawn: &drawn, middle };
     let mut found = found::lines(&shown, &station)?;
     found.extend(left_out::lines(arguments, &shown, &station, met.as_ref(), &surface, cache, talk)?);
     surface.dem().check()?;

@@ -6,7 +6,7 @@ use super::place::{HiddenBy, Located};
 use crate::line::{Lack, Little};
 
 /// A rule as it applied to a line.
-pub enum Rule {
+pub(super) enum Rule {
     /// It is drawn.
     Drawn { layer: String, width_mm: f64, faded: Option<Box<Rule>>, weight: f64 },
     /// Too little farther lies what is behind.
@@ -37,7 +37,7 @@ pub enum Rule {
 
 /// A line, or that there is none, as it is told.
 #[derive(Serialize)]
-pub struct LineAnswer {
+pub(super) struct LineAnswer {
     pub kind: Option<String>,
     /// What the drawing calls its chain.
     pub id: Option<String>,
@@ -55,7 +55,7 @@ pub struct LineAnswer {
 
 impl Rule {
     /// As scripts know it.
-    pub fn name(&self) -> &'static str {
+    pub(super) fn name(&self) -> &'static str {
         match self {
             Self::Drawn { .. } => "drawn",
             Self::MinJump { .. } => "min-jump",
@@ -72,12 +72,12 @@ impl Rule {
         }
     }
 
-    pub fn is_drawn(&self) -> bool {
+    pub(super) fn is_drawn(&self) -> bool {
         matches!(self, Self::Drawn { .. })
     }
 
     /// What it says, numbers and all.
-    pub fn words(&self) -> String {
+    pub(super) fn words(&self) -> String {
         match self {
             Self::Drawn { layer, width_mm, faded: None, .. } => format!("drawn {width_mm:.2} mm wide in layer {layer}"),
             Self::Drawn { layer, width_mm, faded: Some(rule), weight } => format!(
@@ -131,7 +131,7 @@ impl Rule {
     }
 
     /// Its numbers, for scripts.
-    pub fn numbers(&self) -> Vec<(&'static str, f64)> {
+    pub(super) fn numbers(&self) -> Vec<(&'static str, f64)> {
         match self {
             Self::Drawn { width_mm, weight, .. } => vec![("width_mm", *width_mm), ("weight", *weight)],
             Self::MinJump { jump, min_jump } => vec![("jump", *jump), ("min_jump", *min_jump)],
@@ -157,7 +157,7 @@ impl Rule {
     }
 
     /// Flags that would change it, where they do not depend on other lines.
-    pub fn flags(&self) -> Option<String> {
+    pub(super) fn flags(&self) -> Option<String> {
         match self {
             Self::Hidden(_) => Some("--hidden dashed".to_owned()),
             Self::Detail(Lack { what: Little::Length | Little::Drop | Little::ReliefOnPage, .. }) => {
@@ -185,7 +185,7 @@ fn words_of(Lack { what, is, asked: [least, whole] }: &Lack) -> String {
 }
 
 /// A number by its first three digits.
-pub fn short(number: f64) -> String {
+pub(super) fn short(number: f64) -> String {
     if number == 0.0 || !number.is_finite() {
         return if number.is_finite() { "0".to_owned() } else { "endlessly much".to_owned() };
     }

@@ -12,7 +12,7 @@ use crate::render::{self, Illustration};
 use crate::surface::Met;
 
 /// How far about a pixel lines are told of, px.
-pub const REACH: f64 = 8.0;
+pub(super) const REACH: f64 = 8.0;
 /// A stroke may lie so far off its chain, px, beside what a hand strays.
 const OFF_CHAIN: f64 = 1.5;
 /// From this share of its weight on a line counts as whole.
@@ -21,7 +21,7 @@ const WHOLE: f64 = 0.99;
 const EDGE: f64 = 2.0;
 
 /// A page with its lines and its drawing, and the middle of the pixel that is asked about.
-pub struct Page<'a> {
+pub(super) struct PickedPage<'a> {
     pub illustration: &'a Illustration,
     pub page: &'a render::Page,
     pub lines: &'a Lines,
@@ -32,7 +32,7 @@ pub struct Page<'a> {
 }
 
 /// A line about the pixel.
-pub struct Found {
+pub(super) struct Found {
     pub line: Line,
     pub id: Option<Id>,
     /// From the middle of the pixel to it.
@@ -48,8 +48,8 @@ pub struct Found {
 ///
 /// # Errors
 /// As [`Station::hides`].
-pub fn lines(page: &Page, station: &Station) -> Result<Vec<Found>> {
-    let Page { illustration, lines, hidden, middle, .. } = page;
+pub(super) fn lines(page: &PickedPage, station: &Station) -> Result<Vec<Found>> {
+    let PickedPage { illustration, lines, hidden, middle, .. } = page;
     let px_per_mm = page.drawn.sheet.placement(illustration.frame).px_per_mm;
     let stray = OFF_CHAIN + (illustration.style.wobble.reach + illustration.style.tolerance) * px_per_mm;
     let inks = page.drawn.inked_near(illustration.frame, *middle, REACH + stray);
@@ -106,7 +106,7 @@ fn drawn(ink: &InkedNear, faded: Option<Rule>, weight: f32) -> Rule {
     Rule::Drawn { layer: ink.layer.to_owned(), width_mm: ink.width, faded: faded.map(Box::new), weight: weight.into() }
 }
 
-impl Page<'_> {
+impl PickedPage<'_> {
     /// Which rule lowers the weight of a line most, if one does.
     fn lowered(&self, near: &Near, merit: &Merit) -> Option<Rule> {
         let economy = &self.illustration.economy;
@@ -163,7 +163,12 @@ impl Found {
 ///
 /// # Errors
 /// As [`Station::located`].
-pub fn told(mut found: Vec<Found>, page: &Page, station: &Station, land: Option<&Met>) -> Result<Vec<LineAnswer>> {
+pub(super) fn told(
+    mut found: Vec<Found>,
+    page: &PickedPage,
+    station: &Station,
+    land: Option<&Met>,
+) -> Result<Vec<LineAnswer>> {
     found.sort_by(|a, b| {
         let (a, b) = (a.rank(), b.rank());
         a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
@@ -186,7 +191,7 @@ pub fn told(mut found: Vec<Found>, page: &Page, station: &Station, land: Option<
     Ok(answers)
 }
 
-fn answer(found: &Found, page: &Page, station: &Station) -> Result<LineAnswer> {
+fn answer(found: &Found, page: &PickedPage, station: &Station) -> Result<LineAnswer> {
     let Found { line, id, px, world, rule, flags, .. } = found;
     let has_place = !matches!(rule, Rule::ChannelArea { .. });
     let kind = kind(*line, &page.lines.own);
@@ -215,7 +220,7 @@ fn answer(found: &Found, page: &Page, station: &Station) -> Result<LineAnswer> {
 }
 
 /// That no silhouette is there, and why.
-fn facing(page: &Page, land: Option<&Met>) -> LineAnswer {
+fn facing(page: &PickedPage, land: Option<&Met>) -> LineAnswer {
     let ray = page.page.perspective.unproject(page.middle, page.page.perspective.near()) - page.page.perspective.eye();
     let degrees = land.map(|met| met.normal.dot(ray.normalize()).abs().min(1.0).asin().to_degrees());
     let bounds = near(&page.lines.chains, page.middle, f64::INFINITY);

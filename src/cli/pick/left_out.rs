@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 
 use super::PickArguments;
 use super::cause::Rule;
-use super::found::{Found, Page, REACH};
+use super::found::{Found, PickedPage, REACH};
 use super::place::HiddenBy;
 use super::station::Station;
 use crate::cache::Cache;
@@ -26,9 +26,9 @@ use crate::view::Perspective;
 ///
 /// # Errors
 /// As [`LandArguments::land`](crate::cli::land::LandArguments::land), [`rim`] and [`Gathered::at`].
-pub fn lines(
+pub(super) fn lines(
     arguments: &PickArguments,
-    page: &Page,
+    page: &PickedPage,
     station: &Station,
     met: Option<&Met>,
     surface: &Arc<Surface>,
@@ -66,7 +66,7 @@ fn of(line: Line, px: f64, world: DVec3, rule: Rule) -> Found {
 }
 
 /// The visible rim about the pixel, where the border is not drawn.
-fn border(page: &Page, station: &Station) -> Option<Result<Vec<Found>>> {
+fn border(page: &PickedPage, station: &Station) -> Option<Result<Vec<Found>>> {
     (page.page.frame.plan.border == Border::Off).then(|| {
         let dem = station.surface.dem();
         let ends = |sample: [u32; 2], direction: u32| {
@@ -89,7 +89,7 @@ fn border(page: &Page, station: &Station) -> Option<Result<Vec<Found>>> {
 }
 
 /// Lines of the land about the pixel that were left out before anybody looked whether the eye sees them, and those that it does not.
-fn creases(land: &Land, page: &Page, station: &Station) -> Result<Vec<Found>> {
+fn creases(land: &Land, page: &PickedPage, station: &Station) -> Result<Vec<Found>> {
     let perspective = &page.page.perspective;
     let from = From::Eye(perspective.eye(), perspective.focal());
     let shown = land.shown(from);

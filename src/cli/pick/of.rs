@@ -20,7 +20,7 @@ use crate::view::direction;
 
 /// What is told of a place.
 #[derive(Serialize)]
-pub struct OfAnswer {
+pub(super) struct OfAnswer {
     version: &'static str,
     crs: String,
     #[serde(flatten)]
@@ -57,7 +57,7 @@ enum WhyNot {
 ///
 /// # Errors
 /// Whatever went wrong; [`Error::Setting`] for a place without land.
-pub fn answer(
+pub(super) fn answer(
     arguments: &PickArguments,
     place: DVec2,
     reading: Reading,

@@ -12,7 +12,7 @@ const LONLAT: usize = 8;
 
 /// Where something lies: in the system of the DEM's file, on the globe, and how high. Heights are without exaggeration.
 #[derive(Debug, Clone, Serialize)]
-pub struct Located {
+pub(super) struct Located {
     /// In the CRS of the DEM's file; `None` where that has no such place.
     pub place: Option<[f64; 2]>,
     pub lonlat: Option<[f64; 2]>,
@@ -23,7 +23,7 @@ pub struct Located {
 
 /// How it lies from the eye, on a flat Earth.
 #[derive(Debug, Clone, Serialize)]
-pub struct Sighting {
+pub(super) struct Sighting {
     pub distance_m: f64,
     /// On the map.
     pub map_distance_m: f64,
@@ -39,7 +39,7 @@ pub struct Sighting {
 
 /// How the land lies there.
 #[derive(Debug, Clone, Serialize)]
-pub struct Slope {
+pub(super) struct Slope {
     /// Degrees from level.
     pub slope: f64,
     /// Where it falls to, degrees clockwise from true north, or from grid north where that is all that is known; `None` where it is
@@ -51,7 +51,7 @@ pub struct Slope {
 
 /// The land that hides a place.
 #[derive(Serialize)]
-pub struct HiddenBy {
+pub(super) struct HiddenBy {
     #[serde(flatten)]
     pub located: Located,
     #[serde(flatten)]
@@ -62,14 +62,14 @@ pub struct HiddenBy {
 
 /// Decimals of metres and of degrees that tell a hundredth of a cell.
 #[derive(Debug, Clone, Copy)]
-pub struct Decimals {
+pub(super) struct Decimals {
     more: usize,
     is_geographic: bool,
 }
 
 impl Decimals {
     /// Of places of a DEM.
-    pub fn of(dem: &Dem) -> Self {
+    pub(super) fn of(dem: &Dem) -> Self {
         let smallest = dem.cell().min_element().log10().floor();
         let is_geographic = dem.georeference().file().is_geographic();
         Self { more: (-smallest).clamp(0.0, 6.0) as usize, is_geographic }
@@ -86,7 +86,7 @@ impl Decimals {
 
 impl Located {
     /// Its coordinates.
-    pub fn words(&self) -> String {
+    pub(super) fn words(&self) -> String {
         let lonlat = self.lonlat.map(|place| self.decimals.pair(place, LONLAT));
         let decimals = if self.decimals.is_geographic { LONLAT } else { COORDINATES };
         let place = self.place.map(|place| self.decimals.pair(place, decimals));
@@ -99,13 +99,13 @@ impl Located {
         }
     }
 
-    pub fn elevation(&self) -> String {
+    pub(super) fn elevation(&self) -> String {
         format!("{} m", self.decimals.metres(self.elevation_m))
     }
 }
 
 impl Sighting {
-    pub fn rows(&self) -> [(&'static str, String); 3] {
+    pub(super) fn rows(&self) -> [(&'static str, String); 3] {
         let [slant, map] = [self.distance_m, self.map_distance_m].map(|metres| self.decimals.metres(metres));
         [
             ("distance", format!("{slant} m, on the map {map} m")),
@@ -115,13 +115,13 @@ impl Sighting {
     }
 
     /// How far it is.
-    pub fn distance(&self) -> String {
+    pub(super) fn distance(&self) -> String {
         format!("{} m", self.decimals.metres(self.distance_m))
     }
 }
 
 impl Slope {
-    pub fn words(&self) -> String {
+    pub(super) fn words(&self) -> String {
         let Self { slope, falls_towards, north } = self;
         let towards = falls_towards.map(|to| format!(", falling towards {} degrees from {north} north", direction(to)));
         format!("{slope:.DIRECTION$} degrees{}", towards.unwrap_or_default())
@@ -130,7 +130,7 @@ impl Slope {
 
 impl HiddenBy {
     /// How far that lies, where, and how high.
-    pub fn words(&self) -> String {
+    pub(super) fn words(&self) -> String {
         let from = self.seen_from_m.map(|metres| format!("; from {metres:.1} m above its ground on it is seen"));
         let (away, at, high) = (self.sighting.distance(), self.located.words(), self.located.elevation());
         format!("{away} away at {at}, {high} high{}", from.unwrap_or_default())
@@ -138,7 +138,7 @@ impl HiddenBy {
 }
 
 /// A direction that is known from one north, from both, or from none.
-pub fn bearing(true_bearing: Option<f64>, grid_bearing: Option<f64>) -> String {
+pub(super) fn bearing(true_bearing: Option<f64>, grid_bearing: Option<f64>) -> String {
     match (true_bearing.map(direction), grid_bearing.map(direction)) {
         (Some(of_true), Some(of_grid)) => format!("{of_true} degrees from true north, {of_grid} from grid north"),
         (Some(of_true), None) => format!("{of_true} degrees from true north"),
@@ -154,7 +154,7 @@ fn direction(degrees: f64) -> String {
 }
 
 /// A vertical angle, degrees.
-pub fn above_horizon(degrees: f64) -> String {
+pub(super) fn above_horizon(degrees: f64) -> String {
     format!("{} degrees above the horizon", unsigned(degrees, DIRECTION))
 }
 

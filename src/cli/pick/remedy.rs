@@ -12,7 +12,7 @@ const WHOLE: f32 = 0.99;
 const SAME: f64 = 1.0;
 
 /// The flags, by the rule that left the line out or faded it: the least change first, none of the two rules last.
-pub fn flags(rule: &Rule, chains: &[Chain], economy: &Economy, number: usize, place: DVec2) -> Option<String> {
+pub(super) fn flags(rule: &Rule, chains: &[Chain], economy: &Economy, number: usize, place: DVec2) -> Option<String> {
     let (rule, enough) = match rule {
         Rule::Drawn { faded: Some(rule), .. } => (&**rule, WHOLE),
         rule => (rule, DRAWN),

@@ -18,7 +18,7 @@ const CLOSELY: f64 = 0.01;
 
 /// An eye over a surface.
 #[derive(Clone, Copy)]
-pub struct Station<'a> {
+pub(super) struct Station<'a> {
     pub surface: &'a Surface,
     pub view: &'a View,
     pub perspective: Perspective,
@@ -30,7 +30,7 @@ pub struct Station<'a> {
 
 impl<'a> Station<'a> {
     /// The eye of a view of a surface whose heights are exaggerated by a factor, told by facets of a level.
-    pub fn new(surface: &'a Surface, view: &'a View, exaggeration: f64, level: Level) -> Self {
+    pub(super) fn new(surface: &'a Surface, view: &'a View, exaggeration: f64, level: Level) -> Self {
         let perspective = Perspective::new(&view.camera, near_plane(surface.dem()));
         Self { surface, view, perspective, exaggeration, level }
     }
@@ -39,7 +39,7 @@ impl<'a> Station<'a> {
     ///
     /// # Errors
     /// As [`Surface::first_met`].
-    pub fn behind(&self, place: DVec2) -> Result<Option<Met>> {
+    pub(super) fn behind(&self, place: DVec2) -> Result<Option<Met>> {
         let (eye, ray) = (self.perspective.eye(), self.view.camera.ray(place));
         let [west, south, east, north] = self.surface.dem().extent();
         let [low, high] = self.heights();
@@ -53,7 +53,7 @@ impl<'a> Station<'a> {
     ///
     /// # Errors
     /// As [`Surface::first_met`].
-    pub fn below(&self, map: DVec2) -> Result<Option<Met>> {
+    pub(super) fn below(&self, map: DVec2) -> Result<Option<Met>> {
         let [low, high] = self.heights();
         self.surface.first_met(map.extend(high), map.extend(low), self.level)
     }
@@ -69,7 +69,7 @@ impl<'a> Station<'a> {
     ///
     /// # Errors
     /// As [`Surface::first_met`].
-    pub fn hides(&self, place: DVec3) -> Result<Option<Met>> {
+    pub(super) fn hides(&self, place: DVec3) -> Result<Option<Met>> {
         let eye = self.perspective.eye();
         let way = place - eye;
         let over = OVER * way.length() / self.perspective.focal();
@@ -83,7 +83,7 @@ impl<'a> Station<'a> {
     ///
     /// # Errors
     /// As [`Self::hides`] and [`Self::located`].
-    pub fn hidden_by(&self, met: &Met, place: DVec3) -> Result<HiddenBy> {
+    pub(super) fn hidden_by(&self, met: &Met, place: DVec3) -> Result<HiddenBy> {
         let (closely, highest) = (CLOSELY * self.exaggeration, HIGHEST * place.distance(self.perspective.eye()));
         let is_seen = |height: f64| Ok(self.hides(place + DVec3::Z * height)?.is_none());
         let mut heights = [0.0, closely];
@@ -105,7 +105,7 @@ impl<'a> Station<'a> {
     ///
     /// # Errors
     /// Those of [`Georeference::lonlat`](crate::dem::Georeference::lonlat).
-    pub fn located(&self, world: DVec3) -> Result<Located> {
+    pub(super) fn located(&self, world: DVec3) -> Result<Located> {
         let georeference = self.surface.dem().georeference();
         let map = world.truncate();
         Ok(Located {
@@ -117,7 +117,7 @@ impl<'a> Station<'a> {
     }
 
     /// How a place of the exaggerated world lies from the eye.
-    pub fn sighting(&self, world: DVec3) -> Sighting {
+    pub(super) fn sighting(&self, world: DVec3) -> Sighting {
         let way = (world - self.perspective.eye()) * DVec3::new(1.0, 1.0, self.exaggeration.recip());
         let (map_distance_m, norths) = (way.truncate().length(), self.view.norths.bearings);
         let azimuth = (map_distance_m > 0.0).then(|| way.x.atan2(way.y).to_degrees());
@@ -136,7 +136,7 @@ impl<'a> Station<'a> {
     ///
     /// # Errors
     /// Those of [`Georeference::bearings`](crate::dem::Georeference::bearings).
-    pub fn slope(&self, met: &Met) -> Result<Slope> {
+    pub(super) fn slope(&self, met: &Met) -> Result<Slope> {
         // Heights of the land are lower by the exaggeration, and its normal is steeper by that.
         let normal = met.normal * DVec3::new(1.0, 1.0, self.exaggeration);
         let level = normal.truncate().length();
@@ -154,7 +154,7 @@ impl<'a> Station<'a> {
     }
 
     /// The view that it is of.
-    pub fn view_report(&self) -> ViewReport {
+    pub(super) fn view_report(&self) -> ViewReport {
         ViewReport::of(self.view, self.surface.dem().georeference(), self.exaggeration)
     }
 }

@@ -59,7 +59,7 @@ struct Facet {
 
 /// The facets about all corners of a window's blocks, row by row from the north-west.
 #[derive(Debug)]
-pub struct Facets {
+pub(super) struct Facets {
     window: Window,
     sides: [usize; 2],
     /// Column and row of the first block, counted in blocks of the DEM.
@@ -70,7 +70,7 @@ pub struct Facets {
 
 impl Facets {
     /// Fits planes to 4 x 4 blocks of `sides` columns and rows of a window's `heights`.
-    pub fn fitted(heights: &[f32], window: Window, sides: [usize; 2]) -> Self {
+    pub(super) fn fitted(heights: &[f32], window: Window, sides: [usize; 2]) -> Self {
         let first = [0, 1].map(|i| window.first[i] / sides[i]);
         let blocks = [0, 1].map(|i| (window.first[i] + window.size[i]).div_ceil(sides[i]) - first[i]);
         let mut sums = vec![Sums::default(); blocks[0] * blocks[1]];
@@ -93,7 +93,7 @@ impl Facets {
 
     /// The weighted mean of the facets about each sample; `heights` where there is none. A facet's weight is its variance,
     /// `least` square metres more, to the power of `-power`.
-    pub fn surface(&self, heights: &[f32], power: i32, least: f64) -> Vec<f32> {
+    pub(super) fn surface(&self, heights: &[f32], power: i32, least: f64) -> Vec<f32> {
         let weights: Vec<_> =
             self.facets.iter().map(|facet| facet.share * (facet.variance + least).powi(-power)).collect();
         let near = self.sides.map(nearness);

@@ -13,18 +13,18 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 /// Samples along a line in which changes are looked for.
-pub const REACH: usize = 28;
+pub(super) const REACH: usize = 28;
 /// Weight of a line that rises, or falls, to both sides.
 const SAME: f32 = 0.1;
 /// Columns and rows of a tile.
 const TILE: usize = 192;
 
 /// A surface within `half` of `heights`, guessed.
-pub fn between(heights: &[f32], half: &[f32], width: usize, parallel: bool) -> Vec<f32> {
+pub(super) fn between(heights: &[f32], half: &[f32], width: usize, parallel: bool) -> Vec<f32> {
     let mut guess = vec![f32::NAN; heights.len()];
     let task = |(at, rows): (usize, &mut [f32])| {
         for first in (0..width).step_by(TILE) {
-            Tile::new(heights, half, width, [first, at * TILE]).fill(rows);
+            ContourTile::new(heights, half, width, [first, at * TILE]).fill(rows);
         }
     };
     match parallel {
@@ -35,7 +35,7 @@ pub fn between(heights: &[f32], half: &[f32], width: usize, parallel: bool) -> V
 }
 
 /// Some samples with those around them that they depend on.
-struct Tile<'a> {
+struct ContourTile<'a> {
     heights: &'a [f32],
     half: &'a [f32],
     width: usize,
@@ -49,7 +49,7 @@ struct Tile<'a> {
 /// Signed samples to the nearest change along a row's lines, 0 where there is none: positive where heights rise.
 type Changes = [Vec<f32>; 3];
 
-impl<'a> Tile<'a> {
+impl<'a> ContourTile<'a> {
     fn new(heights: &'a [f32], half: &'a [f32], width: usize, [c, r]: [usize; 2]) -> Self {
         let height = heights.len() / width;
         let (columns, rows) = (c..(c + TILE).min(width), r..(r + TILE).min(height));

@@ -6,7 +6,7 @@ use crate::dem::window::Window;
 
 /// The band on one level.
 #[derive(Debug)]
-pub struct Level<'a> {
+pub(super) struct Level<'a> {
     /// Which of the level's blocks.
     pub window: Window,
     /// Metres in the middle of the band, NaN where there is no sample.
@@ -17,18 +17,18 @@ pub struct Level<'a> {
 
 impl<'a> Level<'a> {
     /// The samples themselves.
-    pub fn finest(heights: &'a [f32], half: &'a [f32], window: Window) -> Self {
+    pub(super) fn finest(heights: &'a [f32], half: &'a [f32], window: Window) -> Self {
         Self { window, middle: Cow::Borrowed(heights), half: Cow::Borrowed(half) }
     }
 
     /// The level of blocks of 2 x 2 of this one.
-    pub fn coarser(&self) -> Level<'static> {
+    pub(super) fn coarser(&self) -> Level<'static> {
         let (middle, half) = (self.halved(&self.middle), self.halved(&self.half));
         Level { window: halved(self.window), middle: Cow::Owned(middle), half: Cow::Owned(half) }
     }
 
     /// Means of `values` over what is there of blocks of 2 x 2.
-    pub fn halved(&self, values: &[f32]) -> Vec<f32> {
+    pub(super) fn halved(&self, values: &[f32]) -> Vec<f32> {
         let (fine, coarse) = (self.window, halved(self.window));
         let mut means = Vec::with_capacity(coarse.size[0] * coarse.size[1]);
         for r in 0..coarse.size[1] {
@@ -46,7 +46,7 @@ impl<'a> Level<'a> {
 
     /// A surface on this level's blocks at the places of a finer `window`: parabolas through three neighbours, along rows,
     /// then along columns.
-    pub fn refined(&self, surface: &[f32], window: Window) -> Vec<f32> {
+    pub(super) fn refined(&self, surface: &[f32], window: Window) -> Vec<f32> {
         let coarse = self.window;
         let mut rows = Vec::with_capacity(window.size[0] * coarse.size[1]);
         for row in surface.chunks_exact(coarse.size[0]) {
@@ -68,7 +68,7 @@ impl<'a> Level<'a> {
     }
 
     /// A surface moved into the band; no surface where there is no band.
-    pub fn within(&self, mut surface: Vec<f32>) -> Vec<f32> {
+    pub(super) fn within(&self, mut surface: Vec<f32>) -> Vec<f32> {
         for ((height, middle), half) in surface.iter_mut().zip(&*self.middle).zip(&*self.half) {
             *height = if middle.is_nan() { f32::NAN } else { clamped(*height, *middle, *half) };
         }
@@ -77,7 +77,7 @@ impl<'a> Level<'a> {
 }
 
 /// A height moved into a band; NaN stays.
-pub fn clamped(height: f32, middle: f32, half: f32) -> f32 {
+pub(super) fn clamped(height: f32, middle: f32, half: f32) -> f32 {
     let (low, high) = (middle - half, middle + half);
     let height = if height < low { low } else { height };
     if height > high { high } else { height }

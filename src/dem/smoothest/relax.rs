@@ -14,7 +14,7 @@ const ROWS: usize = 32;
 const COLUMNS: usize = 64;
 
 /// `surface` after so many sweeps on a level.
-pub fn relaxed(level: &Level, mut surface: Vec<f32>, sweeps: usize, parallel: bool) -> Vec<f32> {
+pub(super) fn relaxed(level: &Level, mut surface: Vec<f32>, sweeps: usize, parallel: bool) -> Vec<f32> {
     let width = level.window.size[0];
     let bands = level.middle.chunks(ROWS * width).zip(level.half.chunks(ROWS * width));
     let runs: Vec<_> = bands.map(|(middle, half)| loose(middle, half, width)).collect();

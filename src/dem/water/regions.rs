@@ -7,7 +7,7 @@
 //! disagree, water has no open end ([`ENDS`]). The sea, at exactly 0, may have more of its shore below; where no run of it
 //! ends at a shore it is believed.
 
-use super::Run;
+use super::EqualHeights;
 
 /// Fewest samples of a body of water: smaller ones are gone on a page, and as likely a hollow.
 const LEAST: u64 = 64;
@@ -21,7 +21,7 @@ const WIDER: u32 = 8;
 /// by the shore.
 const ENDS: u64 = 2;
 /// No region, no run.
-pub const NONE: u32 = u32::MAX;
+pub(super) const NONE: u32 = u32::MAX;
 
 /// Equal heights that hang together, as far as rows were seen.
 #[derive(Debug, Clone, Copy)]
@@ -48,7 +48,7 @@ struct Region {
 
 /// Where a run ends at a terrace: its length, the width of the terrace, and whether that was seen to its end.
 #[derive(Debug, Clone, Copy)]
-pub struct Ending {
+pub(super) struct Ending {
     pub length: u32,
     pub width: u32,
     pub is_seen: bool,
@@ -56,7 +56,7 @@ pub struct Ending {
 
 /// Regions that are open, with their runs; what is closed makes room for others.
 #[derive(Default)]
-pub struct Regions {
+pub(super) struct Regions {
     all: Vec<Region>,
     free: Vec<u32>,
     /// Those that became part of others since the last row.
@@ -86,7 +86,7 @@ impl Region {
 
 impl Regions {
     /// A region of this run alone.
-    pub fn add(&mut self, row: u32, run: Run) -> u32 {
+    pub(super) fn add(&mut self, row: u32, run: EqualHeights) -> u32 {
         let node = [row, run.first, run.end, NONE];
         let node = put(&mut self.runs, &mut self.free_runs, node);
         let (runs, samples) = ([node; 2], u64::from(run.end - run.first));
@@ -107,7 +107,7 @@ impl Regions {
     }
 
     /// The region that this one is part of by now.
-    pub fn root(&mut self, mut region: u32) -> u32 {
+    pub(super) fn root(&mut self, mut region: u32) -> u32 {
         while self.all[region as usize].parent != NONE {
             let parent = self.all[region as usize].parent;
             let beyond = self.all[parent as usize].parent;
@@ -121,7 +121,7 @@ impl Regions {
     }
 
     /// Makes two regions one.
-    pub fn join(&mut self, one: u32, other: u32) {
+    pub(super) fn join(&mut self, one: u32, other: u32) {
         let [one, other] = [one, other].map(|region| self.root(region));
         if one == other {
             return;
@@ -144,7 +144,7 @@ impl Regions {
     }
 
     /// Counts so many edges between two runs of different heights; one may be void.
-    pub fn shore(&mut self, runs: [&Run; 2], edges: u32) {
+    pub(super) fn shore(&mut self, runs: [&EqualHeights; 2], edges: u32) {
         for (run, other) in [(runs[0], runs[1]), (runs[1], runs[0])] {
             if run.region == NONE {
                 continue;
@@ -161,7 +161,7 @@ impl Regions {
     }
 
     /// Counts the end of a run of a region along rows (0) or columns (1).
-    pub fn end(&mut self, region: u32, axis: usize, Ending { length, width, is_seen }: Ending) {
+    pub(super) fn end(&mut self, region: u32, axis: usize, Ending { length, width, is_seen }: Ending) {
         let is_steep = length / WIDER >= width;
         if length < WIDER || is_steep && !is_seen {
             return;
@@ -173,7 +173,7 @@ impl Regions {
     }
 
     /// The region, to be known until it is let go; `None` where a run of that length tells nothing.
-    pub fn hold(&mut self, region: u32, length: u32) -> Option<u32> {
+    pub(super) fn hold(&mut self, region: u32, length: u32) -> Option<u32> {
         (length >= WIDER).then(|| {
             let root = self.root(region);
             self.all[root as usize].held += 1;
@@ -182,7 +182,7 @@ impl Regions {
     }
 
     /// Ends a [`Self::hold`].
-    pub fn let_go(&mut self, region: u32) {
+    pub(super) fn let_go(&mut self, region: u32) {
         let mut at = region;
         while at != NONE {
             let region = &mut self.all[at as usize];
@@ -200,7 +200,7 @@ impl Regions {
     }
 
     /// Closes a region that is no part of another, and ended before row `row`. It may be named by several runs.
-    pub fn close_before(&mut self, region: u32, row: u32) {
+    pub(super) fn close_before(&mut self, region: u32, row: u32) {
         let Some(open) = self.all.get_mut(region as usize).filter(|open| open.parent == NONE && open.row < row) else {
             return;
         };
@@ -227,7 +227,7 @@ impl Regions {
     }
 
     /// Forgets those that became part of others, but for those that are held.
-    pub fn release(&mut self) {
+    pub(super) fn release(&mut self) {
         for region in std::mem::take(&mut self.joined) {
             let joined = &mut self.all[region as usize];
             if joined.held == 0 {
@@ -241,7 +241,7 @@ impl Regions {
     }
 
     /// Row and columns of the water that was found.
-    pub fn into_water(self) -> Vec<[u32; 3]> {
+    pub(super) fn into_water(self) -> Vec<[u32; 3]> {
         self.water
     }
 }

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use gdal::{GdalOpenFlags, Metadata};
 
 use super::formats::FORMATS;
-use super::name::Place;
+use super::name::RasterPlace;
 use super::shell::{self, quoted};
 use super::zip::packing;
 use super::{hgt, lossless, mistaken, outside, vrt, vsi, xml};
@@ -57,7 +57,7 @@ pub(super) fn member(
     path: &Path,
     before: &str,
     folder: &Path,
-    place: &Place,
+    place: &RasterPlace,
     allow_remote: bool,
 ) -> Result<Option<Member>> {
     let Some(files) = vsi::files_below(folder) else { return Ok(None) };
@@ -88,12 +88,12 @@ pub(super) fn member(
 }
 
 /// Fails where a file in an archive cannot be read, before GDAL's drivers see it: what is wrong and what to do.
-pub(super) fn check(connection: &Path, place: &Place) -> std::result::Result<(), (String, String)> {
+pub(super) fn check(connection: &Path, place: &RasterPlace) -> std::result::Result<(), (String, String)> {
     let packed = match place {
-        Place::Archive(archive) => {
+        RasterPlace::Archive(archive) => {
             parts(connection, archive).and_then(|[_, inner]| packing(archive, inner.as_os_str().as_encoded_bytes()))
         }
-        Place::File(_) | Place::Remote => None,
+        RasterPlace::File(_) | RasterPlace::Remote => None,
     };
     let unpack = |command: &str| format!("unpack it first: `{command}`");
     match packed {
@@ -112,8 +112,8 @@ pub(super) fn check(connection: &Path, place: &Place) -> std::result::Result<(),
 }
 
 /// The error for a member that is not in its archive; `None` where it is, or nothing is known.
-pub(super) fn missing(path: &Path, connection: &Path, place: &Place) -> Option<Error> {
-    let Place::Archive(archive) = place else { return None };
+pub(super) fn missing(path: &Path, connection: &Path, place: &RasterPlace) -> Option<Error> {
+    let RasterPlace::Archive(archive) = place else { return None };
     let [before, after] = parts(connection, archive)?;
     let files: Vec<_> = vsi::files_below(&before)?.iter().map(|file| lossless::text(file)).collect();
     let after = lossless::text(after.as_os_str());
@@ -134,14 +134,14 @@ fn parts(connection: &Path, archive: &Path) -> Option<[PathBuf; 2]> {
 }
 
 /// Fails where `file`, opened by the driver of .hgt files as an archive, has a member that cannot be read.
-pub(super) fn check_tile(file: &Path, place: &Place) -> std::result::Result<(), (String, String)> {
-    let Place::File(_) = place else { return Ok(()) };
+pub(super) fn check_tile(file: &Path, place: &RasterPlace) -> std::result::Result<(), (String, String)> {
+    let RasterPlace::File(_) = place else { return Ok(()) };
     if !is_tile(&lossless::text(file.as_os_str())) {
         return Ok(());
     }
     let folder = before_of("/vsizip/", file);
     let files = vsi::files_below(&folder).unwrap_or_default();
-    let place = Place::Archive(file.to_owned());
+    let place = RasterPlace::Archive(file.to_owned());
     if files.is_empty() {
         return Err(("is damaged or cut short".into(), "copy or download it again".into()));
     }
@@ -155,7 +155,7 @@ pub(super) fn is_tile(name: &str) -> bool {
 }
 
 impl Found {
-    fn among(files: &[String], path: &Path, folder: &Path, place: &Place, allow_remote: bool) -> Self {
+    fn among(files: &[String], path: &Path, folder: &Path, place: &RasterPlace, allow_remote: bool) -> Self {
         let mut found = Self::default();
         for file in files.iter().take(MEMBERS).filter(|file| !PACKED.contains(&ending(file).as_str())) {
             let connection = joined(folder, file);
@@ -217,7 +217,7 @@ impl Found {
 }
 
 /// The error for an archive without a readable raster.
-fn holds_none(path: &Path, before: &str, folder: &Path, place: &Place, files: &[String]) -> Error {
+fn holds_none(path: &Path, before: &str, folder: &Path, place: &RasterPlace, files: &[String]) -> Error {
     let with = |endings: &[&str]| files.iter().find(|file| endings.contains(&ending(file).as_str()));
     let unpack = if before == "/vsizip/" { "unzip IN" } else { "tar -xkf IN" };
     let told = |what: String, remedy: String| Error::input(path, what, remedy);
@@ -240,7 +240,7 @@ fn holds_none(path: &Path, before: &str, folder: &Path, place: &Place, files: &[
         let corner = hgt::corner(first).or(hgt::corner(&path.to_string_lossy())).unwrap_or("N45E006".into());
         let called = lossless::name(&outside::called(first, place));
         let known = |archive: &Path| packing(archive, called.as_encoded_bytes()).is_some();
-        let exact = matches!(place, Place::Archive(archive) if known(archive));
+        let exact = matches!(place, RasterPlace::Archive(archive) if known(archive));
         let command = match before {
             "/vsizip/" => format!("unzip -p IN {}", shell::unzipped(&called.to_string_lossy(), exact)),
             _ => format!("tar -xOf IN -- {}", quoted(&called)),

@@ -7,9 +7,9 @@
 
 use glam::{DAffine2, DVec2};
 
-use super::crs::Way;
-use super::grid::{Grid, span};
-use super::layer::Layer;
+use super::crs::CrsPath;
+use super::grid::{GeoGrid, span};
+use super::layer::FileLayer;
 use super::layers::Layers;
 use super::lie::Lie;
 use crate::error::{Error, Result, Setting, shown};
@@ -27,7 +27,7 @@ type Bounds = ([i64; 2], [i64; 2]);
 
 /// The grid of `base` run on over all `layers`, as far as it has places between their outermost samples and inside `crop`,
 /// which is in the units of the first file. Fails where its map cannot show them.
-pub(super) fn around(layers: &Layers, base: &Layer, crop: Option<[f64; 4]>) -> Result<Grid> {
+pub(super) fn around(layers: &Layers, base: &FileLayer, crop: Option<[f64; 4]>) -> Result<GeoGrid> {
     let whole = ([0; 2], [base.grid.columns as i64, base.grid.rows as i64]);
     let own = layers.crop_on(&base.grid, crop)?;
     let kept = own.map(|crop| kept(&base.grid, crop));
@@ -47,7 +47,7 @@ pub(super) fn around(layers: &Layers, base: &Layer, crop: Option<[f64; 4]>) -> R
     let (low, end) = bounds;
     let to_crs = base.grid.to_crs * DAffine2::from_translation(DVec2::new(low[0] as f64, low[1] as f64));
     let [columns, rows] = [0, 1].map(|i| end[i].saturating_sub(low[i]) as usize);
-    Ok(Grid { to_crs, columns, rows, crs: base.grid.crs.clone() })
+    Ok(GeoGrid { to_crs, columns, rows, crs: base.grid.crs.clone() })
 }
 
 fn around_both(one: Bounds, other: Bounds) -> Bounds {
@@ -59,7 +59,7 @@ fn shared(one: Bounds, other: Bounds) -> Bounds {
 }
 
 /// The columns and rows of `grid` run on that `crop` and a margin hold.
-fn kept(grid: &Grid, [west, south, east, north]: [f64; 4]) -> Bounds {
+fn kept(grid: &GeoGrid, [west, south, east, north]: [f64; 4]) -> Bounds {
     let middle = (west + east) / 2.0;
     let round = grid.crs.near(middle, grid.centre(grid.whole()).x) - middle;
     let corners = [(west, south), (east, south), (east, north), (west, north)];
@@ -71,7 +71,7 @@ fn kept(grid: &Grid, [west, south, east, north]: [f64; 4]) -> Bounds {
 
 /// What of `layer` lies in `crop` and a few of its samples around it: two parts where they are at both its outer edges. All
 /// of it where the crop has no place on its map.
-fn parts(layers: &Layers, layer: &Layer, crop: Option<[f64; 4]>) -> Vec<Grid> {
+fn parts(layers: &Layers, layer: &FileLayer, crop: Option<[f64; 4]>) -> Vec<GeoGrid> {
     let grid = &layer.grid;
     let Ok(Some([west, south, east, north])) = layers.crop_on(grid, crop) else { return vec![grid.clone()] };
     let margin = grid.cell() * MARGIN;
@@ -91,12 +91,12 @@ fn parts(layers: &Layers, layer: &Layer, crop: Option<[f64; 4]>) -> Vec<Grid> {
 }
 
 /// Where `part` of a layer lies on `base`; `None` where the map of that cannot show it.
-fn on(part: &Grid, base: &Grid) -> Option<Bounds> {
+fn on(part: &GeoGrid, base: &GeoGrid) -> Option<Bounds> {
     let lie = Lie::of(part, base)?;
     if let Lie::Aligned { .. } = lie {
         return Some(lie.bounds(part));
     }
-    let way = Way::between(&part.crs, &base.crs)?;
+    let way = CrsPath::between(&part.crs, &base.crs)?;
     let carried = |mut places: Vec<DVec2>| {
         way.carry(&mut places);
         base.pixels(&mut places);
@@ -109,7 +109,7 @@ fn on(part: &Grid, base: &Grid) -> Option<Bounds> {
 }
 
 /// Places all over a grid.
-fn lattice(grid: &Grid) -> Vec<DVec2> {
+fn lattice(grid: &GeoGrid) -> Vec<DVec2> {
     let far = DVec2::new((grid.columns - 1) as f64, (grid.rows - 1) as f64) / PLACES as f64;
     let across =
         (0..(PLACES + 1).pow(2)).map(|i| DVec2::new((i % (PLACES + 1)) as f64, (i / (PLACES + 1)) as f64) * far);
@@ -117,7 +117,7 @@ fn lattice(grid: &Grid) -> Vec<DVec2> {
 }
 
 /// The error for a layer that is too much for the map of another.
-fn cannot_show(base: &Layer, layer: &Layer) -> Error {
+fn cannot_show(base: &FileLayer, layer: &FileLayer) -> Error {
     Error::input(
         layer.path(),
         format!("reaches too far for the map of {} ({})", shown(base.path()), base.grid.crs.label()),

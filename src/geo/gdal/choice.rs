@@ -48,7 +48,7 @@ const TOLD: usize = 12;
 impl Source {
     /// The same file with the band that `options` ask for, or else the one that should hold elevations; what was assumed
     /// goes to `history`. Fails where that band is a part of a picture, or the file none of the asked encoding.
-    pub fn with_chosen_band(self, options: &ReadOptions, history: &mut History) -> Result<Self> {
+    pub(super) fn with_chosen_band(self, options: &ReadOptions, history: &mut History) -> Result<Self> {
         if let Some(encoding) = options.encoding {
             encoding.check(&self)?;
             if encoding.is_picture() {
@@ -77,7 +77,7 @@ impl Source {
     }
 
     /// Whether the upper half of the band's unsigned numbers is below zero: by `encoding`, or as the file says of bytes.
-    pub fn is_signed(&self, encoding: Option<Encoding>) -> bool {
+    pub(super) fn is_signed(&self, encoding: Option<Encoding>) -> bool {
         let says = |band: RasterBand| {
             let said = band.metadata_item("PIXELTYPE", "IMAGE_STRUCTURE");
             band.band_type() == GdalDataType::UInt8
@@ -87,7 +87,7 @@ impl Source {
     }
 
     /// The band of transparency beside the chosen one, if there is any.
-    pub fn alpha(&self) -> Option<RasterBand<'_>> {
+    pub(super) fn alpha(&self) -> Option<RasterBand<'_>> {
         let alpha = |band: &usize| self.colour(*band) == ColorInterpretation::AlphaBand;
         let found = (1..=self.dataset.raster_count()).find(alpha).filter(|band| *band != self.band);
         found.and_then(|band| self.dataset.rasterband(band).ok())

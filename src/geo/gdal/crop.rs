@@ -4,8 +4,8 @@
 
 use glam::DVec2;
 
-use super::crs::Way;
-use super::grid::{Grid, span};
+use super::crs::CrsPath;
+use super::grid::{GeoGrid, span};
 use super::lie::ALIGNED_CELLS;
 use crate::dem::{Crs, Window};
 use crate::error::{Error, Result, Setting};
@@ -15,7 +15,7 @@ use crate::message;
 const FARTHEST: f64 = 0.75;
 
 /// `crop`, in the coordinates of the file, with its west below its east in those of `grid`. Fails where it is no rectangle there.
-pub(super) fn on(grid: &Grid, crop: Option<[f64; 4]>) -> Result<Option<[f64; 4]>> {
+pub(super) fn on(grid: &GeoGrid, crop: Option<[f64; 4]>) -> Result<Option<[f64; 4]>> {
     let Some([west, south, east, north]) = crop else { return Ok(None) };
     match grid.crs.turn() {
         _ if west < east => {
@@ -34,7 +34,7 @@ pub(super) fn on(grid: &Grid, crop: Option<[f64; 4]>) -> Result<Option<[f64; 4]>
 
 /// Columns by which a grid that runs once round the globe is to be laid beside itself, so that a crop across its outer
 /// edges finds both sides: west (negative) or east. `None` where that is not needed, or its ends do not meet.
-pub(super) fn round_the_globe(grid: &Grid, crop: Option<[f64; 4]>) -> Option<i64> {
+pub(super) fn round_the_globe(grid: &GeoGrid, crop: Option<[f64; 4]>) -> Option<i64> {
     let ([west, _, east, _], turn) = (crop?, grid.crs.turn()?);
     let columns = turn / grid.cell().x;
     let whole = grid.columns as f64;
@@ -64,12 +64,12 @@ pub(super) fn carried([west, south, east, north]: [f64; 4], from: &Crs, to: &Crs
     let mut places = Window { first: [0, 0], size: [2, 2] }.outline();
     let (low, size) = (DVec2::new(west, south), DVec2::new(east - west, north - south));
     places.iter_mut().for_each(|place| *place = low + (*place - 0.5) * size);
-    let way = Way::between(from, to)?;
+    let way = CrsPath::between(from, to)?;
     way.carry(&mut places);
     if let Some(turn) = to.turn() {
         let middle = way.place(low + size / 2.0)?.x;
         places.iter_mut().for_each(|place| place.x = to.near(place.x, middle));
-        let back = Way::between(to, from).filter(|_| from.turn().is_none());
+        let back = CrsPath::between(to, from).filter(|_| from.turn().is_none());
         let inside = |pole: &DVec2| {
             let place = back.as_ref().and_then(|back| back.place(*pole));
             place.is_some_and(|place| place.cmpge(low).all() && place.cmple(low + size).all())

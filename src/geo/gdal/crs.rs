@@ -136,11 +136,11 @@ pub(super) struct Proj;
 
 impl Transform for Proj {
     fn place(&self, from: &Crs, to: &Crs, place: DVec2) -> Option<DVec2> {
-        Way::between(from, to)?.place(place)
+        CrsPath::between(from, to)?.place(place)
     }
 
     fn places(&self, from: &Crs, to: &Crs, places: &[DVec2]) -> Vec<Option<DVec2>> {
-        let Some(way) = Way::between(from, to) else { return vec![None; places.len()] };
+        let Some(way) = CrsPath::between(from, to) else { return vec![None; places.len()] };
         let mut places = places.to_vec();
         way.carry(&mut places);
         places.into_iter().map(|place| Some(place).filter(|place| place.is_finite())).collect()
@@ -160,16 +160,16 @@ pub(super) fn check_register() -> Result<()> {
 }
 
 /// The way from the coordinates of one system to those of another.
-pub(super) struct Way {
+pub(super) struct CrsPath {
     /// From the axes of the first to its definition, and from the definition of the second to its axes.
     axes: [DMat2; 2],
     /// Nothing where both have one definition.
     transform: Option<CoordTransform>,
 }
 
-impl Way {
+impl CrsPath {
     /// `None` where PROJ knows none, or one of the two is unknown.
-    pub fn between(from: &Crs, to: &Crs) -> Option<Self> {
+    pub(super) fn between(from: &Crs, to: &Crs) -> Option<Self> {
         let axes = [from.axes().transpose(), to.axes()];
         if from.as_defined() == to.as_defined() {
             return Some(Self { axes, transform: None });
@@ -180,7 +180,7 @@ impl Way {
     }
 
     /// Carries all places over; NaN where there is no such place.
-    pub fn carry(&self, places: &mut [DVec2]) {
+    pub(super) fn carry(&self, places: &mut [DVec2]) {
         let [back, on] = self.axes;
         places.iter_mut().for_each(|place| *place = back * *place);
         if let Some(transform) = &self.transform {
@@ -195,7 +195,7 @@ impl Way {
     }
 
     /// One place, `None` where there is no such place.
-    pub fn place(&self, place: DVec2) -> Option<DVec2> {
+    pub(super) fn place(&self, place: DVec2) -> Option<DVec2> {
         let mut places = [place];
         self.carry(&mut places);
         places[0].is_finite().then_some(places[0])

@@ -5,7 +5,7 @@
 use glam::DVec2;
 use rayon::prelude::*;
 
-use super::crs::Way;
+use super::crs::CrsPath;
 use super::raster::Raster;
 use crate::dem::Crs;
 
@@ -21,11 +21,11 @@ pub(super) struct Cut {
 
 impl Cut {
     /// Makes the samples of `raster` outside void.
-    pub fn cut(&self, raster: &mut Raster) {
+    pub(super) fn cut(&self, raster: &mut Raster) {
         let grid = &raster.grid;
         let bands = raster.metres.par_chunks_mut(grid.columns * ROWS).enumerate();
         bands.for_each(|(band, metres)| {
-            let Some(way) = Way::between(&grid.crs, &self.crs) else { return };
+            let Some(way) = CrsPath::between(&grid.crs, &self.crs) else { return };
             let sample = |i: usize| grid.sample((i % grid.columns) as f64, (band * ROWS + i / grid.columns) as f64);
             let mut places: Vec<_> = (0..metres.len()).map(sample).collect();
             way.carry(&mut places);

@@ -12,7 +12,7 @@ use super::layer::block;
 use super::said::Said;
 use super::source::Source;
 use crate::dem::{History, Window};
-use crate::error::{Message, Part, Result, Setting};
+use crate::error::{Message, MessagePart, Result, Setting};
 use crate::geo::Encoding;
 use crate::message;
 
@@ -92,7 +92,7 @@ pub(super) fn is_depth(
     negate(history, &format!("its long name is \"{long}\""))
 }
 
-fn asked(encoding: Encoding) -> Part {
+fn asked(encoding: Encoding) -> MessagePart {
     Setting::Encoding.at(encoding.name())
 }
 

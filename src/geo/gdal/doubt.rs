@@ -11,7 +11,7 @@ use gdal::raster::GdalDataType;
 use super::elevation::{EARTH, Elevation, Reading};
 use super::stored::shown;
 use super::tally::{Beyond, Tally};
-use crate::error::{Message, Part, Setting};
+use crate::error::{Message, MessagePart, Setting};
 use crate::geo::{Encoding, Nodata};
 use crate::message;
 
@@ -33,7 +33,7 @@ const FOOT: f64 = 0.3048;
 const LOWEST_TOP: f64 = 30.0;
 
 /// One file's numbers on trial.
-struct Trial<'a> {
+struct FileTrial<'a> {
     tally: &'a Tally,
     elevation: &'a Elevation,
     /// Numbers not yet told to be marks, from the outermost on.
@@ -47,7 +47,7 @@ struct Trial<'a> {
 
 /// What is assumed of numbers that hardly are heights, each with what to do, to stand behind "assumed that".
 pub(super) fn doubts(tally: &Tally, elevation: &Elevation) -> Vec<Message> {
-    let mut trial = Trial::new(tally, elevation);
+    let mut trial = FileTrial::new(tally, elevation);
     let wrapped = trial.wrapped();
     trial.take_marks();
     let (marked, outside) = (trial.marked(), trial.outside());
@@ -56,7 +56,7 @@ pub(super) fn doubts(tally: &Tally, elevation: &Elevation) -> Vec<Message> {
 
 /// The numbers that are heights as far as files say, and probably marks.
 pub(super) fn marks(tally: &Tally, elevation: &Elevation) -> Vec<f64> {
-    let mut trial = Trial::new(tally, elevation);
+    let mut trial = FileTrial::new(tally, elevation);
     // Numbers that wrapped round are none.
     trial.wrapped();
     trial.take_marks();
@@ -64,13 +64,13 @@ pub(super) fn marks(tally: &Tally, elevation: &Elevation) -> Vec<f64> {
 }
 
 /// What to ask for where numbers lost their sign.
-fn signed() -> Part {
+fn signed() -> MessagePart {
     Setting::Encoding.at(Encoding::Signed.name())
 }
 
 /// Units other than the metre in which all numbers are heights on Earth, if there are any, and how high they reach then.
 pub(super) fn other_units(tally: &Tally, elevation: &Elevation) -> Option<Message> {
-    let trial = Trial::new(tally, elevation);
+    let trial = FileTrial::new(tally, elevation);
     let huge = trial.huge();
     if huge == [0; 2] { None } else { trial.units(huge) }
 }
@@ -83,7 +83,7 @@ pub(super) fn sentinels(tally: &Tally, elevation: &Elevation) -> Vec<[f64; 2]> {
     let mut found: Vec<_> = both.filter(|(number, _)| is_sentinel(*number)).copied().collect();
     found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
     found.dedup();
-    let trial = Trial::new(tally, elevation);
+    let trial = FileTrial::new(tally, elevation);
     let is_height =
         |number: f64| (0..2).any(|i| trial.huge()[i] > 0 && (number > 0.0) == (i == 1) && !trial.is_off(number));
     found.retain(|(number, _)| !is_height(*number));
@@ -97,7 +97,7 @@ pub(super) fn sentinels(tally: &Tally, elevation: &Elevation) -> Vec<[f64; 2]> {
     sides.into_iter().flatten().map(|side| [side.least, side.greatest].map(typed)).collect()
 }
 
-impl<'a> Trial<'a> {
+impl<'a> FileTrial<'a> {
     fn new(tally: &'a Tally, elevation: &'a Elevation) -> Self {
         let heights = |list: &[(f64, u64)]| {
             let sound = |(number, _): &&(f64, u64)| matches!(elevation.reading(*number), Reading::Metres(_));

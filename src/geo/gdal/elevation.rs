@@ -55,7 +55,7 @@ pub(super) enum Reading {
 impl Elevation {
     /// The rules of the band of `source`, whose places are in `crs`; `options` overrule what the file says. What was found
     /// goes to `history`.
-    pub fn of(source: &Source, crs: &Crs, options: &ReadOptions, history: &mut History) -> Result<Self> {
+    pub(super) fn of(source: &Source, crs: &Crs, options: &ReadOptions, history: &mut History) -> Result<Self> {
         let band = source.band()?;
         let plain = Self {
             scale: 1.0,
@@ -103,7 +103,7 @@ impl Elevation {
     }
 
     /// What the number `raw` stands for.
-    pub fn reading(&self, raw: f64) -> Reading {
+    pub(super) fn reading(&self, raw: f64) -> Reading {
         let number = self.number(raw);
         let value = number * self.scale + self.offset;
         let metres = value * self.factor;
@@ -121,24 +121,24 @@ impl Elevation {
     }
 
     /// The number that `raw` stands for where it was stored without its sign; `raw` itself elsewhere.
-    pub fn number(&self, raw: f64) -> f64 {
+    pub(super) fn number(&self, raw: f64) -> f64 {
         let modulus = self.modulus();
         if self.is_signed() && raw >= modulus / 2.0 && raw < modulus { raw - modulus } else { raw }
     }
 
     /// Metres between two heights whose numbers differ by so much.
-    pub fn metres_between(&self, numbers: f64) -> f64 {
+    pub(super) fn metres_between(&self, numbers: f64) -> f64 {
         (numbers * self.scale * self.factor).abs()
     }
 
     /// Whether the numbers are stored as whole ones.
-    pub fn is_whole(&self) -> bool {
+    pub(super) fn is_whole(&self) -> bool {
         !matches!(self.kind, GdalDataType::Float32 | GdalDataType::Float64)
     }
 
     /// Numbers below zero stored without a sign come out as much higher: 2 to the power of its bits. Those of 16 bits may
     /// stand in a larger type since.
-    pub fn modulus(&self) -> f64 {
+    pub(super) fn modulus(&self) -> f64 {
         match self.kind {
             GdalDataType::UInt8 => 256.0,
             GdalDataType::UInt32 => 4_294_967_296.0,
@@ -147,37 +147,37 @@ impl Elevation {
     }
 
     /// Lowest and highest metres of land on the planet.
-    pub fn limits(&self) -> [f64; 2] {
+    pub(super) fn limits(&self) -> [f64; 2] {
         if self.on_earth { EARTH } else { [f64::NEG_INFINITY, f64::INFINITY] }
     }
 
     /// The type of the numbers as they are stored.
-    pub fn kind(&self) -> GdalDataType {
+    pub(super) fn kind(&self) -> GdalDataType {
         self.kind
     }
 
     /// The numbers that the user calls void.
-    pub fn said(&self) -> &Nodata {
+    pub(super) fn said(&self) -> &Nodata {
         &self.said
     }
 
     /// Whether the upper half of the numbers is below zero.
-    pub fn is_signed(&self) -> bool {
+    pub(super) fn is_signed(&self) -> bool {
         self.signed
     }
 
     /// Whether greater numbers lie deeper.
-    pub fn is_depth(&self) -> bool {
+    pub(super) fn is_depth(&self) -> bool {
         self.depth
     }
 
     /// Whether the numbers are taken for metres as they stand.
-    pub fn is_plain_metres(&self) -> bool {
+    pub(super) fn is_plain_metres(&self) -> bool {
         self.factor == 1.0 && self.scale == 1.0 && self.offset == 0.0
     }
 
     /// The picture encoding of the file, if it has one.
-    pub fn picture(&self) -> Option<Encoding> {
+    pub(super) fn picture(&self) -> Option<Encoding> {
         self.encoding.filter(|encoding| encoding.is_picture())
     }
 
@@ -189,7 +189,7 @@ impl Elevation {
 
     /// Metres in 32 bits, nothing declared.
     #[cfg(test)]
-    pub fn plain() -> Self {
+    pub(crate) fn plain() -> Self {
         Self {
             scale: 1.0,
             offset: 0.0,

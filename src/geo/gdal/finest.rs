@@ -8,7 +8,7 @@ use glam::DVec2;
 
 use super::around::around;
 use super::crop::{self, carried};
-use super::layer::Layer;
+use super::layer::FileLayer;
 use super::layers::{AS_FINE, Layers};
 use super::limits::are_held;
 use super::target::{CROP_DIGITS, Target, rounded};
@@ -49,7 +49,7 @@ pub(super) fn target(layers: &Layers, options: &ReadOptions, history: &mut Histo
 }
 
 /// The error with a crop that can be drawn in the cells of `finest`, where there is one.
-fn with_crop(error: Error, layers: &Layers, finest: &Layer, options: &ReadOptions) -> Error {
+fn with_crop(error: Error, layers: &Layers, finest: &FileLayer, options: &ReadOptions) -> Error {
     let Some(crop) = crop_to_fit(layers, finest, options) else { return error };
     let part = |remedy| {
         let cells = format!(" for a part in the cells of {}, or ", finest.name());
@@ -63,12 +63,12 @@ fn with_crop(error: Error, layers: &Layers, finest: &Layer, options: &ReadOption
 }
 
 /// The layers whose grids may be drawn, from the finest on; of like ones the first.
-fn candidates<'a>(layers: &'a Layers, options: &ReadOptions) -> Result<Vec<&'a Layer>> {
+fn candidates<'a>(layers: &'a Layers, options: &ReadOptions) -> Result<Vec<&'a FileLayer>> {
     if let Some(chosen) = layers.chosen() {
         return Ok(vec![chosen]);
     }
     crop::on(&layers.first().grid, options.crop)?;
-    let mut found: Vec<&Layer> = Vec::new();
+    let mut found: Vec<&FileLayer> = Vec::new();
     for layer in layers.all() {
         let crop = layers.crop_on(&layer.grid, options.crop);
         let met = crop.is_ok_and(|crop| crop.is_none_or(|crop| layer.grid.window(crop).is_some()));
@@ -85,7 +85,7 @@ fn candidates<'a>(layers: &'a Layers, options: &ReadOptions) -> Result<Vec<&'a L
 }
 
 /// What is drawn in the grid of `base`.
-fn on(layers: &Layers, base: &Layer, options: &ReadOptions, history: &mut History) -> Result<Target> {
+fn on(layers: &Layers, base: &FileLayer, options: &ReadOptions, history: &mut History) -> Result<Target> {
     let around = around(layers, base, options.crop)?;
     let crop = layers.crop_on(&around, options.crop)?;
     Target::of(&around, base.path(), crop, &layers.first().grid.crs, options, history)
@@ -98,7 +98,7 @@ fn fits(target: &Target, options: &ReadOptions) -> bool {
 }
 
 /// Warns where `drawn` is coarser than the `finest`, and says how the finest would be drawn.
-fn warn(layers: &Layers, finest: &Layer, drawn: &Layer, options: &ReadOptions, history: &mut History) {
+fn warn(layers: &Layers, finest: &FileLayer, drawn: &FileLayer, options: &ReadOptions, history: &mut History) {
     if finest.cell >= drawn.cell {
         return;
     }
@@ -123,7 +123,7 @@ fn warn(layers: &Layers, finest: &Layer, drawn: &Layer, options: &ReadOptions, h
 
 /// A crop around the finest layer, with as much land around it as fits or as much of it, in units of the first file; one
 /// that was tried.
-fn crop_to_fit(layers: &Layers, finest: &Layer, options: &ReadOptions) -> Option<String> {
+fn crop_to_fit(layers: &Layers, finest: &FileLayer, options: &ReadOptions) -> Option<String> {
     let asked = layers.crop_on(&finest.grid, options.crop).ok()?;
     // Where its map cannot show all, nothing bounds it but what fits.
     let all = asked.or_else(|| Some(around(layers, finest, None).ok()?.extent()));

@@ -8,9 +8,9 @@
 
 use rayon::prelude::*;
 
-use super::crs::Way;
+use super::crs::CrsPath;
 use super::distance::distances;
-use super::grid::Grid;
+use super::grid::GeoGrid;
 use super::membrane;
 
 /// Places carried at once.
@@ -18,7 +18,7 @@ const PLACES: usize = 1 << 14;
 
 /// Which samples of a layer, `metres` on `grid`, NaN at voids, lie beyond the outermost ones of `own`, whose cells are of
 /// `cell` metres.
-pub(super) fn rim(own: &Grid, grid: &Grid, metres: &[f32], cell: f64) -> Vec<bool> {
+pub(super) fn rim(own: &GeoGrid, grid: &GeoGrid, metres: &[f32], cell: f64) -> Vec<bool> {
     let (size, step) = ([grid.columns, grid.rows], grid.step());
     let mut rim = vec![false; metres.len()];
     let reach = cell + step[0].max(step[1]);
@@ -28,7 +28,7 @@ pub(super) fn rim(own: &Grid, grid: &Grid, metres: &[f32], cell: f64) -> Vec<boo
     let beyond = |samples: &[usize]| {
         let mut places: Vec<_> =
             samples.iter().map(|i| grid.sample((i % size[0]) as f64, (i / size[0]) as f64)).collect();
-        let Some(way) = Way::between(&grid.crs, &own.crs) else { return Vec::new() };
+        let Some(way) = CrsPath::between(&grid.crs, &own.crs) else { return Vec::new() };
         way.carry(&mut places);
         own.pixels(&mut places);
         let end = [own.columns as f64 - 0.5, own.rows as f64 - 0.5];

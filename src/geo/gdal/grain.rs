@@ -53,7 +53,7 @@ pub(super) enum Found {
 
 impl Grain {
     /// Of no samples.
-    pub fn new() -> Self {
+    pub(super) fn new() -> Self {
         Self {
             divisors: [Some(0); 3],
             distinct: Some(Vec::new()),
@@ -65,7 +65,7 @@ impl Grain {
 
     /// Counts a number.
     #[inline]
-    pub fn add(&mut self, number: f64) {
+    pub(super) fn add(&mut self, number: f64) {
         self.samples += 1;
         if number != self.last && self.may_have() {
             self.last = number;
@@ -99,7 +99,7 @@ impl Grain {
     }
 
     /// Takes over other samples of the same file.
-    pub fn merge(&mut self, other: &Self) {
+    pub(super) fn merge(&mut self, other: &Self) {
         self.samples += other.samples;
         for (mine, theirs) in self.divisors.iter_mut().zip(other.divisors) {
             *mine = mine.zip(theirs).map(|(a, b)| greatest_common(a, b));
@@ -113,13 +113,13 @@ impl Grain {
 
     /// Whether there may still be a step.
     #[inline]
-    pub fn may_have(&self) -> bool {
+    pub(super) fn may_have(&self) -> bool {
         self.distinct.is_some() || self.divisors.iter().any(Option::is_some)
     }
 
     /// What the samples say, `marks` left out; `is_whole`: their type holds whole numbers alone, so that 1 is a step where there are too few
     /// levels for a larger one, as on polders and in crops.
-    pub fn found(&self, marks: &[f64], is_whole: bool) -> Found {
+    pub(super) fn found(&self, marks: &[f64], is_whole: bool) -> Found {
         let mut all = self.clone();
         let is_height = |number: &&f64| !marks.contains(*number);
         self.ends.iter().flatten().filter(is_height).for_each(|number| all.count(*number));

@@ -27,7 +27,7 @@ const SIDE_POINTS: usize = 64;
 /// Samples in rows and columns, with the place of each in a coordinate system. The middle of pixel (c, r) is sample
 /// (c, r): pixel coordinates (c + 0.5, r + 0.5).
 #[derive(Debug, Clone)]
-pub(super) struct Grid {
+pub(super) struct GeoGrid {
     /// The system of its places.
     pub crs: Crs,
     /// From pixel coordinates to places.
@@ -38,10 +38,10 @@ pub(super) struct Grid {
     pub rows: usize,
 }
 
-impl Grid {
+impl GeoGrid {
     /// Of `source`, placed by `cell` (metres) where the file does not say where it lies and is read `alone`. Clauses on
     /// what had to be assumed go to `history`.
-    pub fn of(source: &Source, cell: Option<f64>, alone: bool, history: &mut History) -> Result<Self> {
+    pub(super) fn of(source: &Source, cell: Option<f64>, alone: bool, history: &mut History) -> Result<Self> {
         let Source { columns, rows, .. } = *source;
         let (reference, _) = heard(|| source.dataset.spatial_ref());
         let (to_crs, placed) = match (geotransform(source), cell) {
@@ -78,7 +78,7 @@ impl Grid {
 
     /// The same samples with rows from west to east and columns from north to south, where that takes no more than
     /// reading them backwards; else the grid as it is.
-    pub fn north_up(&self) -> Self {
+    pub(super) fn north_up(&self) -> Self {
         let DMat2 { x_axis: along, y_axis: down } = self.to_crs.matrix2;
         let drift = [along.y * self.columns as f64 / down.y, down.x * self.rows as f64 / along.x];
         if !drift.iter().all(|cells| cells.abs() <= STRAIGHT_CELLS) {
@@ -92,7 +92,7 @@ impl Grid {
     }
 
     /// The same samples with rows for columns, where rows run along columns and columns along rows; `None` elsewhere.
-    pub fn transposed(&self) -> Option<Self> {
+    pub(super) fn transposed(&self) -> Option<Self> {
         let DMat2 { x_axis: along, y_axis: down } = self.to_crs.matrix2;
         let drift = [along.x * self.columns as f64 / down.x, down.y * self.rows as f64 / along.y];
         let to_crs = self.to_crs * DAffine2::from_mat2(DMat2::from_cols(DVec2::Y, DVec2::X));
@@ -101,34 +101,34 @@ impl Grid {
     }
 
     /// Whether rows run from west to east and columns from north to south.
-    pub fn is_north_up(&self) -> bool {
+    pub(super) fn is_north_up(&self) -> bool {
         let m = self.to_crs.matrix2;
         m.x_axis.y == 0.0 && m.y_axis.x == 0.0 && m.x_axis.x > 0.0 && m.y_axis.y < 0.0
     }
 
     /// Lengths of the steps along a row and down a column, in units of the CRS.
-    pub fn cell(&self) -> DVec2 {
+    pub(super) fn cell(&self) -> DVec2 {
         DVec2::new(self.to_crs.matrix2.x_axis.length(), self.to_crs.matrix2.y_axis.length())
     }
 
     /// The same in metres, of 1 where the unit is unknown.
-    pub fn step(&self) -> [f64; 2] {
+    pub(super) fn step(&self) -> [f64; 2] {
         (self.cell() * self.crs.metres_per_unit().unwrap_or(1.0)).to_array()
     }
 
     /// Place of sample (c, r).
-    pub fn sample(&self, c: f64, r: f64) -> DVec2 {
+    pub(super) fn sample(&self, c: f64, r: f64) -> DVec2 {
         self.to_crs.transform_point2(DVec2::new(c + 0.5, r + 0.5))
     }
 
     /// Place of the middle of a window.
-    pub fn centre(&self, window: Window) -> DVec2 {
+    pub(super) fn centre(&self, window: Window) -> DVec2 {
         let [c, r] = [0, 1].map(|i| window.first[i] as f64 + window.size[i] as f64 / 2.0);
         self.to_crs.transform_point2(DVec2::new(c, r))
     }
 
     /// Pixel coordinates of places. Longitudes are taken round the globe to where the grid is.
-    pub fn pixels(&self, places: &mut [DVec2]) {
+    pub(super) fn pixels(&self, places: &mut [DVec2]) {
         let back = self.to_crs.inverse();
         let middle = self.centre(self.whole()).x;
         for place in places {
@@ -138,24 +138,24 @@ impl Grid {
     }
 
     /// All samples.
-    pub fn whole(&self) -> Window {
+    pub(super) fn whole(&self) -> Window {
         Window { first: [0, 0], size: [self.columns, self.rows] }
     }
 
     /// The grid of a window's samples alone.
-    pub fn part(&self, window: Window) -> Self {
+    pub(super) fn part(&self, window: Window) -> Self {
         let corner = DVec2::new(window.first[0] as f64, window.first[1] as f64);
         let to_crs = self.to_crs * DAffine2::from_translation(corner);
         Self { to_crs, columns: window.size[0], rows: window.size[1], crs: self.crs.clone() }
     }
 
     /// Places of a window's outline.
-    pub fn outline(&self, window: Window) -> Vec<DVec2> {
+    pub(super) fn outline(&self, window: Window) -> Vec<DVec2> {
         window.outline().into_iter().map(|pixel| self.to_crs.transform_point2(pixel)).collect()
     }
 
     /// Least and largest places of the outermost samples: west, south, east, north in units of the CRS.
-    pub fn extent(&self) -> [f64; 4] {
+    pub(super) fn extent(&self) -> [f64; 4] {
         let (c, r) = ((self.columns - 1) as f64, (self.rows - 1) as f64);
         let corners = [[0.0, 0.0], [c, 0.0], [0.0, r], [c, r]].map(|[c, r]| self.sample(c, r));
         let [low, high] = span(&corners);
@@ -163,7 +163,7 @@ impl Grid {
     }
 
     /// The same in the coordinates of the file, whatever way they run there.
-    pub fn extent_in_file(&self) -> [f64; 4] {
+    pub(super) fn extent_in_file(&self) -> [f64; 4] {
         let [west, south, east, north] = self.extent();
         let corners =
             [DVec2::new(west, south), DVec2::new(east, north)].map(|corner| self.crs.axes().transpose() * corner);
@@ -173,7 +173,7 @@ impl Grid {
 
     /// The samples that `crop` (west, south, east, north) holds, `None` when it holds none. In a turned grid, all
     /// samples of the smallest window around it.
-    pub fn window(&self, [west, south, east, north]: [f64; 4]) -> Option<Window> {
+    pub(super) fn window(&self, [west, south, east, north]: [f64; 4]) -> Option<Window> {
         let middle = (west + east) / 2.0;
         let round = self.crs.near(middle, self.centre(self.whole()).x) - middle;
         let (west, east) = (west + round, east + round);
@@ -254,7 +254,7 @@ fn from_cell(rows: usize, cell: f64) -> DAffine2 {
 }
 
 /// Whether coordinates look like longitude and latitude, with cells below `largest`.
-pub(super) fn looks_like_degrees(grid: &Grid, largest: f64) -> bool {
+pub(super) fn looks_like_degrees(grid: &GeoGrid, largest: f64) -> bool {
     let far = grid.to_crs.transform_point2(DVec2::new(grid.columns as f64, grid.rows as f64));
     let on_globe = [grid.to_crs.translation, far].iter().all(|p| p.x.abs() <= 360.0 && p.y.abs() <= 90.0);
     on_globe && grid.cell().max_element() < largest

@@ -8,7 +8,7 @@ use std::path::Path;
 
 use gdal::{Dataset, GdalOpenFlags};
 
-use super::name::{Local, Name, Place};
+use super::name::{Local, Name, RasterPlace};
 use super::{choice, lossless, shell, vsi};
 use crate::error::{Error, Result};
 
@@ -57,8 +57,8 @@ pub(super) fn unchosen(path: &Path, name: &Path, dataset: &Dataset) -> Error {
 
 /// Fails where `path`, which GDAL calls `name`, names a grid that its container does not hold; not for other names, nor
 /// where the container cannot be opened.
-pub(super) fn missing(path: &Path, name: &Path, place: &Place) -> Result<()> {
-    let Place::File(file) = place else { return Ok(()) };
+pub(super) fn missing(path: &Path, name: &Path, place: &RasterPlace) -> Result<()> {
+    let RasterPlace::File(file) = place else { return Ok(()) };
     let Name::Local(Local { file: typed_file, .. }) = Name::of(&lossless::text(path.as_os_str())) else {
         return Ok(());
     };

@@ -11,8 +11,8 @@ use std::f64::consts::TAU;
 
 use glam::{DAffine2, DMat2, DVec2};
 
-use super::crs::Way;
-use super::grid::Grid;
+use super::crs::CrsPath;
+use super::grid::GeoGrid;
 use crate::dem::{Crs, History, Window};
 
 /// A map whose metres differ from those on the ground by more than this share is off it.
@@ -25,15 +25,15 @@ pub(super) struct Ground(Vec<DMat2>);
 
 impl Ground {
     /// Of the middle, first, and the corners of a window; `None` for degrees, and where no place is on the globe.
-    pub fn of(grid: &Grid, window: Window) -> Option<Self> {
+    pub(super) fn of(grid: &GeoGrid, window: Window) -> Option<Self> {
         Self::at(&grid.crs, &places(grid, window))
     }
 
     /// Of places in `crs`.
-    pub fn at(crs: &Crs, places: &[DVec2]) -> Option<Self> {
+    pub(super) fn at(crs: &Crs, places: &[DVec2]) -> Option<Self> {
         let unit = crs.metres_per_unit()?;
         let globe = crs.geographic()?;
-        let (way, radii) = (Way::between(crs, &globe)?, globe.radii()?);
+        let (way, radii) = (CrsPath::between(crs, &globe)?, globe.radii()?);
         let step = STEP * radii[0] / unit;
         let steps = [DVec2::X, -DVec2::X, DVec2::Y, -DVec2::Y].map(|side| side * step);
         let around = places.iter().flat_map(|place| steps.map(|step| *place + step));
@@ -46,30 +46,30 @@ impl Ground {
     }
 
     /// Least and greatest scale: metres on the map a metre on the ground.
-    pub fn scale(&self) -> [f64; 2] {
+    pub(super) fn scale(&self) -> [f64; 2] {
         let scales = self.0.iter().map(scales);
         scales.fold([f64::INFINITY, 0.0], |[least, greatest], [low, high]| [least.min(low), greatest.max(high)])
     }
 
     /// How far east and north are from square on the map, at most: the cosine of the angle between them.
-    pub fn shear(&self) -> f64 {
+    pub(super) fn shear(&self) -> f64 {
         let cosine = |m: &DMat2| m.x_axis.dot(m.y_axis).abs() / (m.x_axis.length() * m.y_axis.length());
         self.0.iter().map(cosine).fold(0.0, f64::max)
     }
 
     /// By which share metres are off at most, along any direction.
-    pub fn off(&self) -> f64 {
+    pub(super) fn off(&self) -> f64 {
         let [least, greatest] = self.scale();
         (1.0 - least).max(greatest - 1.0).max(self.shear())
     }
 
     /// Whether that is more than a drawing should have.
-    pub fn is_off(&self) -> bool {
+    pub(super) fn is_off(&self) -> bool {
         self.off() > TRUE_SCALE
     }
 
     /// What becomes of slopes that are drawn in metres of the map, in words.
-    pub fn slopes(&self) -> &'static str {
+    pub(super) fn slopes(&self) -> &'static str {
         let [least, greatest] = self.scale();
         match (least > 1.0 - TRUE_SCALE, greatest < 1.0 + TRUE_SCALE) {
             (true, false) => "too flat",
@@ -79,7 +79,7 @@ impl Ground {
     }
 
     /// Scale and shear, in words.
-    pub fn words(&self) -> String {
+    pub(super) fn words(&self) -> String {
         let [least, greatest] = self.scale().map(|scale| format!("{scale:.3}"));
         let scale = if least == greatest { least } else { format!("{least} to {greatest}") };
         format!("scale {scale}, shear {:.1} degrees", self.shear().min(1.0).asin().to_degrees())
@@ -87,7 +87,7 @@ impl Ground {
 }
 
 /// The middle and the corners of the outermost samples.
-pub(super) fn places(grid: &Grid, window: Window) -> [DVec2; 5] {
+pub(super) fn places(grid: &GeoGrid, window: Window) -> [DVec2; 5] {
     let grid = grid.part(window);
     let (c, r) = ((grid.columns - 1) as f64, (grid.rows - 1) as f64);
     [[c / 2.0, r / 2.0], [0.0, 0.0], [c, 0.0], [0.0, r], [c, r]].map(|[c, r]| grid.sample(c, r))
@@ -120,7 +120,7 @@ fn scales(m: &DMat2) -> [f64; 2] {
 
 /// `grid` in coordinates that run east and north where those of its map do not: left-handed ones, and such as its
 /// definition says run west or south. `like` is a system that has been through this.
-pub(super) fn upright(grid: Grid, like: Option<&Crs>, history: &mut History) -> Grid {
+pub(super) fn upright(grid: GeoGrid, like: Option<&Crs>, history: &mut History) -> GeoGrid {
     let axes = match like {
         Some(like) if like.as_defined() == grid.crs => like.axes(),
         _ => axes(&grid),
@@ -129,11 +129,11 @@ pub(super) fn upright(grid: Grid, like: Option<&Crs>, history: &mut History) -> 
         return grid;
     }
     history.convert(words(axes, &grid.crs));
-    Grid { to_crs: DAffine2::from_mat2(axes) * grid.to_crs, crs: grid.crs.with_axes(axes), ..grid }
+    GeoGrid { to_crs: DAffine2::from_mat2(axes) * grid.to_crs, crs: grid.crs.with_axes(axes), ..grid }
 }
 
 /// What turns and flips the map of `grid` to east and north, as nearly as can be; one where nothing is to be done.
-fn axes(grid: &Grid) -> DMat2 {
+fn axes(grid: &GeoGrid) -> DMat2 {
     let none = DMat2::IDENTITY;
     let ground = Ground::of(grid, grid.whole()).map(|ground| ground.0);
     // Where a map folds over beyond its area, it is left-handed in a part.
@@ -163,12 +163,12 @@ fn words(axes: DMat2, crs: &Crs) -> String {
 mod tests {
     use super::*;
 
-    fn about(epsg: u32, longitude: f64, latitude: f64) -> Grid {
+    fn about(epsg: u32, longitude: f64, latitude: f64) -> GeoGrid {
         let crs = Crs::from_epsg(epsg).expect("a system");
-        let way = Way::between(&Crs::lonlat().expect("degrees"), &crs).expect("a way");
+        let way = CrsPath::between(&Crs::lonlat().expect("degrees"), &crs).expect("a way");
         let place = way.place(DVec2::new(longitude, latitude)).expect("a place");
         let matrix = DMat2::from_diagonal(DVec2::new(30.0, -30.0));
-        Grid {
+        GeoGrid {
             crs,
             to_crs: DAffine2::from_mat2_translation(matrix, place - matrix * DVec2::splat(100.0)),
             columns: 200,
@@ -176,7 +176,7 @@ mod tests {
         }
     }
 
-    fn ground(grid: &Grid) -> Ground {
+    fn ground(grid: &GeoGrid) -> Ground {
         Ground::of(grid, grid.whole()).expect("a place")
     }
 
@@ -220,7 +220,7 @@ mod tests {
         assert_eq!(axes(&about(2048, 19.5, -30.0)), columns([-1.0, 0.0], [0.0, -1.0]), "west, south");
         // PROJ knows no way from there to the globe.
         let to_crs = DAffine2::from_translation(DVec2::splat(5e5));
-        let west_north = Grid { crs: Crs::from_epsg(3052).expect("a system"), to_crs, ..about(2048, 19.5, -30.0) };
+        let west_north = GeoGrid { crs: Crs::from_epsg(3052).expect("a system"), to_crs, ..about(2048, 19.5, -30.0) };
         assert_eq!(axes(&west_north), columns([-1.0, 0.0], [0.0, 1.0]), "west, north");
         // North, east; east, north; and maps of a pole, whose axes both run north or south.
         for (epsg, longitude, latitude) in

@@ -13,7 +13,7 @@ use xxhash_rust::xxh3::Xxh3;
 use super::formats;
 use super::listed::{Folders, Listed};
 use super::lossless;
-use super::name::Place;
+use super::name::RasterPlace;
 use super::source::Source;
 use crate::error::{Error, Result, shown};
 
@@ -27,7 +27,7 @@ const FILES: usize = 4;
 /// Handles of all files of a DEM that no thread uses at the moment, each with the number of its file; the one used last
 /// is the last.
 #[derive(Default)]
-struct Pool(Mutex<Spare>);
+struct HandleCache(Mutex<Spare>);
 
 #[derive(Default)]
 struct Spare {
@@ -38,7 +38,7 @@ struct Spare {
 /// What the files of one DEM share as they are opened.
 #[derive(Default)]
 pub(super) struct Opening {
-    pool: Arc<Pool>,
+    pool: Arc<HandleCache>,
     folders: Folders,
 }
 
@@ -55,10 +55,10 @@ pub(super) struct Handles {
     /// What of its name is no file on the disk: the grid of a container, the member of an archive.
     inner: String,
     file: usize,
-    pool: Arc<Pool>,
+    pool: Arc<HandleCache>,
 }
 
-impl Pool {
+impl HandleCache {
     /// A number for one more file.
     fn add(&self) -> usize {
         let mut spare = self.spare();
@@ -88,7 +88,7 @@ impl Pool {
 
 impl Handles {
     /// Of a file opened with this `allow_remote`.
-    pub fn new(first: Source, allow_remote: bool, opening: &mut Opening) -> Self {
+    pub(super) fn new(first: Source, allow_remote: bool, opening: &mut Opening) -> Self {
         let (size, pool) = ([first.columns, first.rows], opening.pool.clone());
         let (file, listed) = (pool.add(), Listed::new(&first.dataset, &first.rasters, &mut opening.folders));
         let (path, exact, band, transposed) = (first.path.clone(), first.exact.clone(), first.band, first.transposed);
@@ -98,24 +98,24 @@ impl Handles {
     }
 
     /// The file as the user named it.
-    pub fn path(&self) -> &Path {
+    pub(super) fn path(&self) -> &Path {
         &self.path
     }
 
     /// Takes what tells this raster in its present state from any other into a hash: the band, what of its name is no file
     /// on the disk, the files. `None` where a part is not on the disk.
-    pub fn hash(&self, hash: &mut Xxh3) -> Option<()> {
+    pub(super) fn hash(&self, hash: &mut Xxh3) -> Option<()> {
         hash.update(format!("band {} {:?}\n", self.band, self.inner).as_bytes());
         self.listed.hash(hash)
     }
 
     /// Every file on the disk that it is made of.
-    pub fn listed(&self) -> &Listed {
+    pub(super) fn listed(&self) -> &Listed {
         &self.listed
     }
 
     /// The error where one of its files is another than when it was opened, or gone: a look at each, none inside.
-    pub fn check(&self) -> Result<()> {
+    pub(super) fn check(&self) -> Result<()> {
         let Some(changed) = self.listed.changed() else { return Ok(()) };
         let which = match changed.file_name() == self.path.file_name() {
             true => String::new(),
@@ -127,7 +127,7 @@ impl Handles {
 
     /// Lets `work` read from a handle that is its own meanwhile. One that failed is not used again: GDAL says once, not
     /// twice, what is wrong. Fails as `work`, or where the file cannot be opened once more as it was.
-    pub fn read<T>(&self, work: impl FnOnce(&Source) -> Result<T>) -> Result<T> {
+    pub(super) fn read<T>(&self, work: impl FnOnce(&Source) -> Result<T>) -> Result<T> {
         // What a file names may be opened by its first reading: on this thread, whichever opened the file.
         formats::restrict(self.allow_remote);
         let source = self.pool.take(self.file).map_or_else(|| self.open(), Ok)?;
@@ -147,11 +147,11 @@ impl Handles {
 }
 
 /// What of a raster's name is no file on the disk, so that all ways to the file are one.
-fn inner((name, place): &(PathBuf, Place)) -> String {
+fn inner((name, place): &(PathBuf, RasterPlace)) -> String {
     let name = lossless::text(name.as_os_str());
     match place {
-        Place::File(file) | Place::Archive(file) => name.replacen(&lossless::text(file.as_os_str()), "", 1),
-        Place::Remote => name,
+        RasterPlace::File(file) | RasterPlace::Archive(file) => name.replacen(&lossless::text(file.as_os_str()), "", 1),
+        RasterPlace::Remote => name,
     }
 }
 

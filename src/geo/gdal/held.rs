@@ -1,6 +1,6 @@
 //! The samples of a DEM that is held: read, smoothed within their steps, laid on the grid that is drawn, voids filled.
 
-use super::grid::Grid;
+use super::grid::GeoGrid;
 use super::layers::Layers;
 use super::part::Part;
 use super::raster::{FILL_REACH, Raster};
@@ -11,7 +11,7 @@ use crate::dem::History;
 use crate::dem::filed::exaggerate;
 use crate::dem::scale::Scale;
 use crate::error::{Message, Result, Setting};
-use crate::geo::{Order, ReadOptions, Stage};
+use crate::geo::{Order, ReadOptions, ReadStage};
 use crate::message;
 
 /// Layers that are named.
@@ -24,7 +24,7 @@ pub(super) fn hold(
     scale: Option<Scale>,
     options: &ReadOptions,
     history: &mut History,
-    progress: &dyn Fn(Stage, f64),
+    progress: &dyn Fn(ReadStage, f64),
 ) -> Result<Vec<f32>> {
     let alone = layers.all().len() == 1;
     let parts = layers.into_parts(&target, options.keep_steps);
@@ -38,7 +38,7 @@ pub(super) fn hold(
     lie.into_iter().for_each(|lie| history.convert(lie));
     let before = if options.fill_voids { raster.voids() } else { 0 };
     if before > 0 {
-        raster.fill(&|done| progress(Stage::Fill, done))?;
+        raster.fill(&|done| progress(ReadStage::Fill, done))?;
         history.convert(filled(before, raster.voids()));
     }
     cut.iter().for_each(|cut| cut.cut(&mut raster));
@@ -52,17 +52,17 @@ pub(super) fn hold(
 }
 
 /// All samples of `part`, the only one. `warped` is the grid they are warped to.
-fn taken(part: &Part, warped: Option<&Grid>, progress: &dyn Fn(Stage, f64)) -> Result<Raster> {
-    let raster = part.raster(&|done| progress(Stage::Read, done))?;
+fn taken(part: &Part, warped: Option<&GeoGrid>, progress: &dyn Fn(ReadStage, f64)) -> Result<Raster> {
+    let raster = part.raster(&|done| progress(ReadStage::Read, done))?;
     let Some(grid) = warped else { return Ok(raster) };
     let mut onto = Raster::void(grid.clone())?;
-    onto.lay(&raster, &|done| progress(Stage::Warp, done))?;
+    onto.lay(&raster, &|done| progress(ReadStage::Warp, done))?;
     Ok(onto)
 }
 
 /// All samples of `parts` of several layers, from the bottom to the top, on `grid`, and how
 /// they lie, in words.
-fn laid(parts: &[Part], grid: &Grid, order: Order, progress: &dyn Fn(Stage, f64)) -> Result<(Raster, String)> {
+fn laid(parts: &[Part], grid: &GeoGrid, order: Order, progress: &dyn Fn(ReadStage, f64)) -> Result<(Raster, String)> {
     let [bottom, ..] = parts else { return Err(between(grid)) };
     let (raster, seams) = seams::lay(parts, grid, order, progress)?;
     let names: Vec<_> = parts.iter().rev().take(NAMED).map(|part| part.layer().name()).collect();

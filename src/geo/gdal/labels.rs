@@ -5,8 +5,8 @@
 
 use glam::DVec2;
 
-use super::crs::Way;
-use super::grid::{Grid, looks_like_degrees};
+use super::crs::CrsPath;
+use super::grid::{GeoGrid, looks_like_degrees};
 use super::source::Source;
 use crate::dem::{Crs, History};
 use crate::error::Result;
@@ -19,14 +19,14 @@ const SMALLEST: f64 = 1e-3;
 const OUTSIDE: f64 = 1.0;
 
 /// Fails where `grid`, in the system that `source` names, cannot lie so.
-pub(super) fn check(grid: &Grid, source: &Source, history: &mut History) -> Result<()> {
+pub(super) fn check(grid: &GeoGrid, source: &Source, history: &mut History) -> Result<()> {
     match grid.crs.turn() {
         Some(turn) => check_angles(grid, turn, source),
         None => check_lengths(grid, source, history),
     }
 }
 
-fn check_angles(grid: &Grid, turn: f64, source: &Source) -> Result<()> {
+fn check_angles(grid: &GeoGrid, turn: f64, source: &Source) -> Result<()> {
     let [west, south, east, north] = grid.extent();
     let (pole, cell) = (turn / 4.0, grid.cell());
     let farthest = north.max(-south);
@@ -50,7 +50,7 @@ fn check_angles(grid: &Grid, turn: f64, source: &Source) -> Result<()> {
     Err(source.error(what, remedy))
 }
 
-fn check_lengths(grid: &Grid, source: &Source, history: &mut History) -> Result<()> {
+fn check_lengths(grid: &GeoGrid, source: &Source, history: &mut History) -> Result<()> {
     let metres = grid.cell() * grid.crs.metres_per_unit().unwrap_or(1.0);
     let cell = metres.min_element();
     let like_degrees = looks_like_degrees(grid, 1.0);
@@ -79,9 +79,9 @@ fn check_lengths(grid: &Grid, source: &Source, history: &mut History) -> Result<
 }
 
 /// Whether a grid lies outside the area that the register gives for its system.
-fn is_elsewhere(grid: &Grid) -> bool {
+fn is_elsewhere(grid: &GeoGrid) -> bool {
     let area = grid.crs.area();
-    let place = Crs::lonlat().ok().and_then(|lonlat| Way::between(&grid.crs, &lonlat)?.place(middle(grid)));
+    let place = Crs::lonlat().ok().and_then(|lonlat| CrsPath::between(&grid.crs, &lonlat)?.place(middle(grid)));
     match (area, place) {
         (Some([west, south, east, north]), Some(place)) => {
             let east = if east < west { east + 360.0 } else { east };
@@ -94,11 +94,11 @@ fn is_elsewhere(grid: &Grid) -> bool {
     }
 }
 
-fn middle(grid: &Grid) -> DVec2 {
+fn middle(grid: &GeoGrid) -> DVec2 {
     grid.centre(grid.whole())
 }
 
-fn place(grid: &Grid) -> String {
+fn place(grid: &GeoGrid) -> String {
     let DVec2 { x, y } = middle(grid);
     format!("{},{}", short(x), short(y))
 }

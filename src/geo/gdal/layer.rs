@@ -12,9 +12,9 @@ use glam::DVec2;
 use xxhash_rust::xxh3::Xxh3;
 
 use super::assumed::Tallied;
-use super::crs::Way;
+use super::crs::CrsPath;
 use super::elevation::{Elevation, Reading};
-use super::grid::{Grid, span};
+use super::grid::{GeoGrid, span};
 use super::ground::upright;
 use super::handles::{Handles, Opening};
 use super::lie::Lie;
@@ -36,9 +36,9 @@ const FIRST_SAMPLES: [usize; 2] = [512, 16];
 const MARGIN: usize = 3;
 
 /// Files on one grid.
-pub(super) struct Layer {
+pub(super) struct FileLayer {
     /// North-up wherever that takes no resampling.
-    pub grid: Grid,
+    pub grid: GeoGrid,
     /// Side of a square as large as a cell, metres on the ground.
     pub cell: f64,
     /// The format of the first file, in GDAL's words.
@@ -54,7 +54,7 @@ pub(super) struct Placed {
     handles: Handles,
     elevation: Elevation,
     /// Its own grid.
-    pub grid: Grid,
+    pub grid: GeoGrid,
     /// First column and row in the layer.
     first: [i64; 2],
     /// Whether rows and columns are read backwards.
@@ -67,10 +67,10 @@ pub(super) struct Placed {
     format: String,
 }
 
-impl Layer {
+impl FileLayer {
     /// Of `files`, at least one, each with its lie to the first's grid, north up, and their numbers among all that are named.
     /// `several`: whether messages name them.
-    pub fn of(files: Vec<(Placed, Lie)>, numbers: Vec<usize>, cell: f64, several: bool) -> Option<Self> {
+    pub(super) fn of(files: Vec<(Placed, Lie)>, numbers: Vec<usize>, cell: f64, several: bool) -> Option<Self> {
         let (first, _) = files.first()?;
         let (base, format) = (first.grid.north_up(), first.format.clone());
         let lies = files.iter().map(|(placed, lie)| lie.bounds(&placed.grid));
@@ -80,49 +80,49 @@ impl Layer {
         let sources = files.into_iter().map(|(placed, lie)| placed.at(lie, low)).collect();
         let to_crs = base.to_crs * glam::DAffine2::from_translation(DVec2::new(low[0] as f64, low[1] as f64));
         let [columns, rows] = [0, 1].map(|i| (end[i] - low[i]) as usize);
-        Some(Self { grid: Grid { to_crs, columns, rows, ..base }, cell, format, several, numbers, sources })
+        Some(Self { grid: GeoGrid { to_crs, columns, rows, ..base }, cell, format, several, numbers, sources })
     }
 
     /// The first file, for messages.
-    pub fn path(&self) -> &Path {
+    pub(super) fn path(&self) -> &Path {
         self.sources[0].handles.path()
     }
 
     /// Whether several threads gain by reading at once.
-    pub fn is_parallel(&self) -> bool {
+    pub(super) fn is_parallel(&self) -> bool {
         self.sources.iter().all(|placed| placed.parallel)
     }
 
     /// The tiles in which a window is best read: about those of the first file.
-    pub fn tiling(&self, window: Window) -> Tiling {
+    pub(super) fn tiling(&self, window: Window) -> Tiling {
         let Placed { first, stored, .. } = &self.sources[0];
         Tiling::of(*stored, [0, 1].map(|i| window.first[i] as i64 - first[i]), window.size)
     }
 
     /// Its files by their names alone, in a few words.
-    pub fn name(&self) -> String {
+    pub(super) fn name(&self) -> String {
         let path = self.path();
         and_more(&shown(path.file_name().map_or(path, Path::new)), self.numbers.len())
     }
 
     /// Numbers of its files among all that are named.
-    pub fn numbers(&self) -> &[usize] {
+    pub(super) fn numbers(&self) -> &[usize] {
         &self.numbers
     }
 
     /// Every file on the disk that it is made of.
-    pub fn files(&self) -> impl Iterator<Item = &Path> {
+    pub(super) fn files(&self) -> impl Iterator<Item = &Path> {
         self.sources.iter().flat_map(|placed| placed.handles.listed().paths())
     }
 
     /// The error where one of its files is another than when it was opened: a look at each, none inside.
-    pub fn check(&self) -> Result<()> {
+    pub(super) fn check(&self) -> Result<()> {
         self.sources.iter().try_for_each(|placed| placed.handles.check())
     }
 
     /// Takes what tells one state of the files from any other, and how they are read and laid, into a hash; `None` where a
     /// part is not on the disk.
-    pub fn hash(&self, hash: &mut Xxh3) -> Option<()> {
+    pub(super) fn hash(&self, hash: &mut Xxh3) -> Option<()> {
         hash.update(format!("{:?}", self.grid).as_bytes());
         for Placed { handles, elevation, first, flip, grid, .. } in &self.sources {
             hash.update(format!("{elevation:?} {first:?} {flip:?} {grid:?}\n").as_bytes());
@@ -132,7 +132,7 @@ impl Layer {
     }
 
     /// Reads the samples of `window`, with a tally of the files' numbers. `progress` hears the share done.
-    pub fn read(&self, window: Window, progress: &dyn Fn(f64)) -> Result<(Raster, Tallies)> {
+    pub(super) fn read(&self, window: Window, progress: &dyn Fn(f64)) -> Result<(Raster, Tallies)> {
         let mut raster = Raster::void(self.grid.part(window))?;
         let mut tallies = Tallies::new();
         for (i, placed) in self.sources.iter().enumerate() {
@@ -148,7 +148,7 @@ impl Layer {
     }
 
     /// Reads the samples of `window` that the file at this place has, as if it were alone.
-    pub fn read_of(&self, place: usize, window: Window) -> Result<(Raster, Tally)> {
+    pub(super) fn read_of(&self, place: usize, window: Window) -> Result<(Raster, Tally)> {
         let (mut raster, placed) = (Raster::void(self.grid.part(window))?, &self.sources[place]);
         let mut tally = Tally::new(&placed.elevation);
         placed.read(window, &mut raster, &mut tally, &|_| ())?;
@@ -157,7 +157,7 @@ impl Layer {
 
     /// Whether the files' numbers may be multiples of a step, by their type and, where that leaves it open, by the first
     /// samples of each in `window`.
-    pub fn may_have_steps(&self, window: Window) -> Result<bool> {
+    pub(super) fn may_have_steps(&self, window: Window) -> Result<bool> {
         if self.sources.iter().any(|placed| placed.elevation.is_whole()) {
             return Ok(true);
         }
@@ -172,7 +172,7 @@ impl Layer {
     }
 
     /// The places of the files that have samples in `window`, or voids.
-    pub fn meeting(&self, window: Window) -> impl Iterator<Item = usize> {
+    pub(super) fn meeting(&self, window: Window) -> impl Iterator<Item = usize> {
         (0..self.sources.len()).filter(move |place| self.shared(*place, window).samples() > 0)
     }
 
@@ -187,7 +187,7 @@ impl Layer {
     }
 
     /// The files of which numbers are tallied, each with its rules and its tally.
-    pub fn tallied<'a>(&'a self, tallies: &'a Tallies) -> Vec<Tallied<'a>> {
+    pub(super) fn tallied<'a>(&'a self, tallies: &'a Tallies) -> Vec<Tallied<'a>> {
         let of = |(i, tally): (&usize, &'a Tally)| {
             let placed = self.sources.get(*i)?;
             Some(Tallied { path: placed.handles.path(), elevation: &placed.elevation, tally })
@@ -196,17 +196,17 @@ impl Layer {
     }
 
     /// How many files it is made of.
-    pub fn count(&self) -> usize {
+    pub(super) fn count(&self) -> usize {
         self.sources.len()
     }
 
     /// Whether messages name files, for there are several.
-    pub fn is_of_several(&self) -> bool {
+    pub(super) fn is_of_several(&self) -> bool {
         self.several
     }
 
     /// The grid of the first file.
-    pub fn first_grid(&self) -> &Grid {
+    pub(super) fn first_grid(&self) -> &GeoGrid {
         &self.sources[0].grid
     }
 }
@@ -214,7 +214,7 @@ impl Layer {
 impl Placed {
     /// Opens a file and checks all that can be checked without reading samples. `alone`: whether it is the only one. `like`: a system
     /// whose axes are turned to east and north; others of its definition are turned as they are.
-    pub fn open(
+    pub(super) fn open(
         path: &Path,
         options: &ReadOptions,
         alone: bool,
@@ -227,7 +227,7 @@ impl Placed {
         if let Some(member) = &source.member {
             history.convert(format!("{member} is taken of the archive, its only raster"));
         }
-        let grid = upright(Grid::of(&source, options.cell, alone, history)?, like, history);
+        let grid = upright(GeoGrid::of(&source, options.cell, alone, history)?, like, history);
         let (grid, transposed) = grid.transposed().map_or((grid, false), |grid| (grid, true));
         if transposed {
             history.convert("rows are read for columns, north up");
@@ -243,7 +243,7 @@ impl Placed {
     }
 
     /// The file as it was named.
-    pub fn path(&self) -> &Path {
+    pub(super) fn path(&self) -> &Path {
         self.handles.path()
     }
 
@@ -362,9 +362,9 @@ fn transposed<T: Copy>(block: &[T], width: usize) -> Vec<T> {
 }
 
 /// The samples of `source` that cubic convolution needs for all of `target`; `None` where they do not meet.
-pub(super) fn reach(target: &Grid, source: &Grid) -> Option<Window> {
+pub(super) fn reach(target: &GeoGrid, source: &GeoGrid) -> Option<Window> {
     let mut places = target.outline(target.whole());
-    Way::between(&target.crs, &source.crs)?.carry(&mut places);
+    CrsPath::between(&target.crs, &source.crs)?.carry(&mut places);
     source.pixels(&mut places);
     places.retain(|place| place.is_finite());
     let [low, high] = span(&places);

@@ -9,10 +9,10 @@ use std::path::{Path, PathBuf};
 use glam::{DAffine2, DVec2};
 
 use super::crop;
-use super::crs::Way;
-use super::grid::Grid;
+use super::crs::CrsPath;
+use super::grid::GeoGrid;
 use super::handles::Opening;
-use super::layer::{Layer, Placed, and_more, reach};
+use super::layer::{FileLayer, Placed, and_more, reach};
 use super::lie::Lie;
 use super::metric::metric;
 use super::part::Part;
@@ -27,7 +27,7 @@ pub(super) const AS_FINE: f64 = 0.02;
 /// Files on one grid or several.
 pub(super) struct Layers {
     /// From the bottom to the top, at least one.
-    all: Vec<Layer>,
+    all: Vec<FileLayer>,
     /// The one with the first file.
     first: usize,
     /// The one whose grid was asked for.
@@ -36,14 +36,14 @@ pub(super) struct Layers {
 
 /// Files of one layer while it grows, with their numbers among all.
 struct Group {
-    base: Grid,
+    base: GeoGrid,
     files: Vec<(Placed, Lie)>,
     numbers: Vec<usize>,
 }
 
 impl Layers {
     /// Opens `paths`, at least one, and checks all that can be checked without reading samples.
-    pub fn open(paths: &[PathBuf], options: &ReadOptions, history: &mut History) -> Result<Self> {
+    pub(super) fn open(paths: &[PathBuf], options: &ReadOptions, history: &mut History) -> Result<Self> {
         let chosen = options.cell_of.as_deref().map(|path| number_of(path, paths)).transpose()?;
         let mut opening = Opening::default();
         let mut groups: Vec<Group> = Vec::new();
@@ -52,7 +52,7 @@ impl Layers {
             let like = groups.first().map(|first| &first.base.crs);
             let placed = Placed::open(path, options, paths.len() == 1, like, &mut opening, &mut own)?;
             if let Some(first) =
-                groups.first().filter(|first| Way::between(&placed.grid.crs, &first.base.crs).is_none())
+                groups.first().filter(|first| CrsPath::between(&placed.grid.crs, &first.base.crs).is_none())
             {
                 let first = (first.files[0].0.path(), &first.files[0].0.grid);
                 return Err(no_way([(path, &placed.grid), first]));
@@ -69,7 +69,7 @@ impl Layers {
         }
         let layers = Self::stacked(groups, chosen, options.order)?;
         if let ([layer], true) = (layers.all.as_slice(), paths.len() > 1) {
-            let Grid { columns, rows, .. } = layer.grid;
+            let GeoGrid { columns, rows, .. } = layer.grid;
             history.convert(format!("{} files laid together: {columns} x {rows} samples", paths.len()));
         }
         Ok(layers)
@@ -89,7 +89,7 @@ impl Layers {
         let mut groups: Vec<_> = groups.into_iter().map(Some).collect();
         let layer = |place: &usize| {
             let Group { files, numbers, .. } = groups[*place].take()?;
-            Layer::of(files, numbers, cells[*place], several)
+            FileLayer::of(files, numbers, cells[*place], several)
         };
         let all: Vec<_> = places.iter().filter_map(layer).collect();
         match first {
@@ -99,27 +99,27 @@ impl Layers {
     }
 
     /// From the bottom to the top.
-    pub fn all(&self) -> &[Layer] {
+    pub(super) fn all(&self) -> &[FileLayer] {
         &self.all
     }
 
     /// The one with the first file.
-    pub fn first(&self) -> &Layer {
+    pub(super) fn first(&self) -> &FileLayer {
         &self.all[self.first]
     }
 
     /// The one whose grid was asked for.
-    pub fn chosen(&self) -> Option<&Layer> {
+    pub(super) fn chosen(&self) -> Option<&FileLayer> {
         Some(&self.all[self.chosen?])
     }
 
     /// What it was opened from, in a few words.
-    pub fn label(&self) -> String {
+    pub(super) fn label(&self) -> String {
         and_more(&shown(self.first().path()), self.all.iter().map(|layer| layer.numbers().len()).sum())
     }
 
     /// The crop in the units of `grid`: the smallest rectangle around it where these are not those of the first file.
-    pub fn crop_on(&self, grid: &Grid, crop: Option<[f64; 4]>) -> Result<Option<[f64; 4]>> {
+    pub(super) fn crop_on(&self, grid: &GeoGrid, crop: Option<[f64; 4]>) -> Result<Option<[f64; 4]>> {
         let own = &self.first().grid;
         let Some(crop) = crop::on(own, crop)? else { return Ok(None) };
         if own.crs == grid.crs {
@@ -132,17 +132,17 @@ impl Layers {
     }
 
     /// The samples of each layer that `grid` needs, `None` where they do not meet, with whether they fall on its own.
-    pub fn needed(&self, grid: &Grid) -> Vec<Option<(Window, bool)>> {
+    pub(super) fn needed(&self, grid: &GeoGrid) -> Vec<Option<(Window, bool)>> {
         self.all.iter().map(|layer| needed(&layer.grid, grid)).collect()
     }
 
     /// What is to be read of each layer for `target`, from the bottom to the top; of those that do not meet it
     /// nothing. `keep_steps`: heights stay as the files have them.
-    pub fn into_parts(mut self, target: &Target, keep_steps: bool) -> Vec<Part> {
+    pub(super) fn into_parts(mut self, target: &Target, keep_steps: bool) -> Vec<Part> {
         if self.all.len() == 1 {
             return self.all.pop().map(|layer| Part::new(layer, target.window, keep_steps)).into_iter().collect();
         }
-        let part = |layer: Layer| Some((needed(&layer.grid, &target.grid)?.0, layer));
+        let part = |layer: FileLayer| Some((needed(&layer.grid, &target.grid)?.0, layer));
         self.all.into_iter().filter_map(part).map(|(window, layer)| Part::new(layer, window, keep_steps)).collect()
     }
 }
@@ -170,7 +170,7 @@ impl Group {
     }
 
     /// The grid of all its files.
-    fn whole(&self) -> Grid {
+    fn whole(&self) -> GeoGrid {
         let bounds = self.files.iter().map(|(placed, lie)| lie.bounds(&placed.grid));
         let wider = |(low, end): ([i64; 2], [i64; 2]), (first, last): ([i64; 2], [i64; 2])| {
             ([0, 1].map(|i| low[i].min(first[i])), [0, 1].map(|i| end[i].max(last[i])))
@@ -178,7 +178,7 @@ impl Group {
         let (low, end) = bounds.reduce(wider).unwrap_or_default();
         let to_crs = self.base.to_crs * DAffine2::from_translation(DVec2::new(low[0] as f64, low[1] as f64));
         let [columns, rows] = [0, 1].map(|i| (end[i] - low[i]) as usize);
-        Grid { to_crs, columns, rows, crs: self.base.crs.clone() }
+        GeoGrid { to_crs, columns, rows, crs: self.base.crs.clone() }
     }
 }
 
@@ -226,12 +226,12 @@ fn finest_last(cells: &[f64], lasts: &[usize]) -> Vec<usize> {
 
 /// Side of a square as large as a cell in the middle of a grid, metres on the ground; on the map where the place on the
 /// globe is unknown.
-fn ground_cell(grid: &Grid) -> f64 {
+fn ground_cell(grid: &GeoGrid) -> f64 {
     let middle = grid.to_crs.inverse().transform_point2(grid.centre(grid.whole()));
     let steps = [DVec2::ZERO, DVec2::X, DVec2::Y].map(|step| grid.to_crs.transform_point2(middle + step));
     let side = |[at, along, down]: [DVec2; 3]| (along - at).perp_dot(down - at).abs().sqrt();
     let on_ground = || {
-        let way = Way::between(&grid.crs, &metric(&grid.crs, steps[0])?)?;
+        let way = CrsPath::between(&grid.crs, &metric(&grid.crs, steps[0])?)?;
         let mut steps = steps;
         way.carry(&mut steps);
         Some(side(steps)).filter(|side| side.is_finite() && *side > 0.0)
@@ -240,7 +240,7 @@ fn ground_cell(grid: &Grid) -> f64 {
 }
 
 /// The samples of `own` that `grid` needs, and whether they fall on its samples.
-fn needed(own: &Grid, grid: &Grid) -> Option<(Window, bool)> {
+fn needed(own: &GeoGrid, grid: &GeoGrid) -> Option<(Window, bool)> {
     let Some(Lie::Aligned { first, flip: [false, false] }) = Lie::of(own, grid) else {
         return Some((reach(grid, own)?, false));
     };
@@ -254,8 +254,8 @@ fn needed(own: &Grid, grid: &Grid) -> Option<(Window, bool)> {
 
 /// The error for two files, each with its grid, between whose systems no way is known: it is about the one that names
 /// none, else about the first.
-fn no_way([one, other]: [(&Path, &Grid); 2]) -> Error {
-    let nameless = |(_, grid): (&Path, &Grid)| grid.crs.wkt().is_empty();
+fn no_way([one, other]: [(&Path, &GeoGrid); 2]) -> Error {
+    let nameless = |(_, grid): (&Path, &GeoGrid)| grid.crs.wkt().is_empty();
     let [(path, grid), (beside, base)] = if nameless(other) && !nameless(one) { [other, one] } else { [one, other] };
     let name = |crs: &Crs| match crs.label() {
         label if label.is_empty() => "no named coordinate system".to_owned(),

@@ -12,7 +12,7 @@ use gdal::errors::GdalError;
 use gdal::{Dataset, DriverManager};
 use glam::DAffine2;
 
-use super::grid::Grid;
+use super::grid::GeoGrid;
 use super::source::heard;
 
 /// A dataset over borrowed samples: `S` is `&[f32]` where GDAL reads them, `&mut [f32]` where it writes them, too.
@@ -23,7 +23,7 @@ pub(super) struct Lent<S> {
 
 impl<'a> Lent<&'a [f32]> {
     /// Of all samples of `grid`, NaN at voids. Fails with GDAL's words.
-    pub fn reading(samples: &'a [f32], grid: &Grid) -> Result<Self, String> {
+    pub(super) fn reading(samples: &'a [f32], grid: &GeoGrid) -> Result<Self, String> {
         // SAFETY: they stay borrowed as long as the guard lives, and no method of this type lets GDAL write.
         let dataset = unsafe { dataset(samples.as_ptr().cast_mut(), samples.len(), grid) }?;
         Ok(Self { dataset, samples: PhantomData })
@@ -32,14 +32,14 @@ impl<'a> Lent<&'a [f32]> {
 
 impl<'a> Lent<&'a mut [f32]> {
     /// Of all samples of `grid`, NaN at voids. Fails with GDAL's words.
-    pub fn writing(samples: &'a mut [f32], grid: &Grid) -> Result<Self, String> {
+    pub(super) fn writing(samples: &'a mut [f32], grid: &GeoGrid) -> Result<Self, String> {
         // SAFETY: they stay borrowed, by nobody else, as long as the guard lives.
         let dataset = unsafe { dataset(samples.as_mut_ptr(), samples.len(), grid) }?;
         Ok(Self { dataset, samples: PhantomData })
     }
 
     /// Lays `from` over it, with these words of `gdalwarp`. `progress` hears the share done. Fails with GDAL's words.
-    pub fn warp(&mut self, from: &Lent<&[f32]>, words: &[&str], progress: &dyn Fn(f64)) -> Result<(), String> {
+    pub(super) fn warp(&mut self, from: &Lent<&[f32]>, words: &[&str], progress: &dyn Fn(f64)) -> Result<(), String> {
         let words: Vec<_> = words.iter().map(|word| CString::new(*word).unwrap_or_default()).collect();
         let mut list = pointers(&words);
         let mut sources = [from.dataset.c_dataset()];
@@ -62,7 +62,7 @@ impl<'a> Lent<&'a mut [f32]> {
     }
 
     /// Fills voids up to `reach` samples from data. `progress` hears the share done. Fails with GDAL's words.
-    pub fn fill(&mut self, reach: u32, progress: &dyn Fn(f64)) -> Result<(), String> {
+    pub(super) fn fill(&mut self, reach: u32, progress: &dyn Fn(f64)) -> Result<(), String> {
         // Its working rasters would otherwise be files in the folder where hachure is started.
         let words = [c"TEMP_FILE_DRIVER=MEM".to_owned()];
         let mut list = pointers(&words);
@@ -98,7 +98,7 @@ impl<'a> Lent<&'a mut [f32]> {
 /// # Safety
 /// The samples must outlive the dataset, and be left alone while it is used; it must not be written to where they are
 /// borrowed for reading.
-unsafe fn dataset(samples: *mut f32, count: usize, grid: &Grid) -> Result<Dataset, String> {
+unsafe fn dataset(samples: *mut f32, count: usize, grid: &GeoGrid) -> Result<Dataset, String> {
     assert_eq!(count, grid.columns * grid.rows);
     let words = [CString::new(format!("DATAPOINTER=0x{:x}", samples as usize)).unwrap_or_default()];
     let make = || {

@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use super::crs::Way;
-use super::grid::{Grid, span};
+use super::crs::CrsPath;
+use super::grid::{GeoGrid, span};
 
 /// How far, in cells, samples may lie from those of the first file and still count as the same places.
 pub(super) const ALIGNED_CELLS: f64 = 0.01;
@@ -19,10 +19,10 @@ pub(super) enum Lie {
 
 impl Lie {
     /// Of `grid` to `base`; `None` where no way leads from one system to the other.
-    pub fn of(grid: &Grid, base: &Grid) -> Option<Self> {
+    pub(super) fn of(grid: &GeoGrid, base: &GeoGrid) -> Option<Self> {
         let own = grid.whole().outline();
         let mut places = grid.outline(grid.whole());
-        Way::between(&grid.crs, &base.crs)?.carry(&mut places);
+        CrsPath::between(&grid.crs, &base.crs)?.carry(&mut places);
         base.pixels(&mut places);
         if places.iter().any(|place| !place.is_finite()) {
             return None;
@@ -47,7 +47,7 @@ impl Lie {
     }
 
     /// First column and row, and those beyond the last, of `grid` that lies so.
-    pub fn bounds(self, grid: &Grid) -> ([i64; 2], [i64; 2]) {
+    pub(super) fn bounds(self, grid: &GeoGrid) -> ([i64; 2], [i64; 2]) {
         match self {
             Self::Aligned { first, .. } => (first, [first[0] + grid.columns as i64, first[1] + grid.rows as i64]),
             Self::Apart { first, end } => (first, end),
@@ -55,7 +55,7 @@ impl Lie {
     }
 
     /// The same, counted from `low`.
-    pub fn moved(self, low: [i64; 2]) -> Self {
+    pub(super) fn moved(self, low: [i64; 2]) -> Self {
         let moved = |at: [i64; 2]| [at[0] - low[0], at[1] - low[1]];
         match self {
             Self::Aligned { first, flip } => Self::Aligned { first: moved(first), flip },

@@ -6,7 +6,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::grid::Grid;
+use super::grid::GeoGrid;
 use super::layers::Layers;
 use super::target::Target;
 use crate::dem::{LARGEST_SIDE, MAX_SAMPLES, held_bytes, mebibytes};
@@ -90,7 +90,7 @@ pub(super) fn are_held(layers: &Layers, target: &Target, options: &ReadOptions) 
 }
 
 /// Samples to be read of each layer, where there are several, that lies between the samples of `grid`.
-fn laid<'a>(layers: &'a Layers, grid: &Grid) -> Vec<(&'a Path, u64)> {
+fn laid<'a>(layers: &'a Layers, grid: &GeoGrid) -> Vec<(&'a Path, u64)> {
     if layers.all().len() == 1 {
         return Vec::new();
     }
@@ -113,7 +113,7 @@ impl Whole {
     }
 
     /// What to do first, so that the samples can stay in their files.
-    fn remedy(&self, grid: &Grid) -> String {
+    fn remedy(&self, grid: &GeoGrid) -> String {
         match self {
             Self::Warped => format!("warp it first: `gdalwarp -t_srs {} -r cubic IN OUT.tif`", grid.crs.typed()),
             Self::Layers(_) => {
@@ -125,8 +125,8 @@ impl Whole {
 }
 
 /// The error for a grid of more than [`MAX_SAMPLES`] that must be held; cells of `metres` make few enough.
-pub(super) fn too_many(path: &Path, grid: &Grid, why: &Whole, metres: f64) -> Error {
-    let Grid { columns, rows, .. } = grid;
+pub(super) fn too_many(path: &Path, grid: &GeoGrid, why: &Whole, metres: f64) -> Error {
+    let GeoGrid { columns, rows, .. } = grid;
     let samples = *columns as u64 * *rows as u64;
     let reason = why.reason();
     Error::limit(
@@ -135,7 +135,7 @@ pub(super) fn too_many(path: &Path, grid: &Grid, why: &Whole, metres: f64) -> Er
     )
 }
 
-fn over_budget(path: &Path, grid: &Grid, why: &Whole, memory: u64) -> Error {
+fn over_budget(path: &Path, grid: &GeoGrid, why: &Whole, memory: u64) -> Error {
     let samples = grid.columns as u64 * grid.rows as u64;
     let (needed, reason) = (held_bytes(samples).div_ceil(1 << 20), why.reason());
     Error::limit(
@@ -153,8 +153,8 @@ fn in_words(bytes: u64) -> String {
     if bytes < 4 << 20 { format!("{} KiB", bytes >> 10) } else { format!("{} MiB", bytes >> 20) }
 }
 
-fn check_longest(path: &Path, grid: &Grid, metres: f64) -> Result<()> {
-    let Grid { columns, rows, .. } = grid;
+fn check_longest(path: &Path, grid: &GeoGrid, metres: f64) -> Result<()> {
+    let GeoGrid { columns, rows, .. } = grid;
     if *columns.max(rows) <= LARGEST_SIDE {
         return Ok(());
     }
@@ -224,7 +224,7 @@ mod tests {
     fn room(side: usize, memory: u64) -> std::result::Result<(), Option<String>> {
         let matrix = glam::DMat2::from_diagonal(glam::DVec2::new(10.0, -10.0));
         let to_crs = glam::DAffine2::from_mat2_translation(matrix, glam::DVec2::ZERO);
-        let grid = Grid { crs: crate::dem::Crs::unknown(), to_crs, columns: side, rows: side };
+        let grid = GeoGrid { crs: crate::dem::Crs::unknown(), to_crs, columns: side, rows: side };
         let window = crate::dem::Window { first: [0; 2], size: [side; 2] };
         let target = Target { grid, window, warps: true, cut: None };
         let options = ReadOptions { memory, ..Default::default() };

@@ -18,7 +18,7 @@ use rayon::prelude::*;
 use xxhash_rust::xxh3::{Xxh3, xxh3_128};
 
 use super::formats::FORMATS;
-use super::name::{Name, Place};
+use super::name::{Name, RasterPlace};
 use super::{lossless, vsi};
 
 /// Endings of files beside a raster, behind its name or in the place of its own ending.
@@ -107,34 +107,34 @@ impl State {
 
 impl Listed {
     /// Of an open dataset, and of the `rasters` that an inspection found: it and those that VRTs name, as GDAL calls them.
-    pub fn new(dataset: &Dataset, rasters: &[(PathBuf, Place)], folders: &mut Folders) -> Self {
+    pub(super) fn new(dataset: &Dataset, rasters: &[(PathBuf, RasterPlace)], folders: &mut Folders) -> Self {
         let mut files: BTreeSet<PathBuf> = vsi::files_of(dataset).iter().filter_map(on_disk).collect();
         // The first raster is the dataset; its parts are opened for their lists alone.
-        for (name, _) in rasters.iter().skip(1).filter(|(_, place)| !matches!(place, Place::Remote)) {
+        for (name, _) in rasters.iter().skip(1).filter(|(_, place)| !matches!(place, RasterPlace::Remote)) {
             let flags = GdalOpenFlags::GDAL_OF_RASTER | GdalOpenFlags::GDAL_OF_READONLY;
             if let (Some(part), _) = vsi::open(name, flags, &FORMATS) {
                 files.extend(vsi::files_of(&part).iter().filter_map(on_disk));
             }
         }
         let of_rasters = rasters.iter().filter_map(|(_, place)| match place {
-            Place::File(file) | Place::Archive(file) => Some(file.clone()),
-            Place::Remote => None,
+            RasterPlace::File(file) | RasterPlace::Archive(file) => Some(file.clone()),
+            RasterPlace::Remote => None,
         });
         files.extend(of_rasters);
         files.extend(folders.beside(&files));
         // The time of a folder changes with whatever is written there.
         files.retain(|file| !file.is_dir());
-        let remote = rasters.iter().any(|(_, place)| matches!(place, Place::Remote));
+        let remote = rasters.iter().any(|(_, place)| matches!(place, RasterPlace::Remote));
         Self { files: files.into_iter().map(|file| (file.clone(), State::now(&file))).collect(), remote }
     }
 
     /// Their paths.
-    pub fn paths(&self) -> impl Iterator<Item = &Path> {
+    pub(super) fn paths(&self) -> impl Iterator<Item = &Path> {
         self.files.keys().map(PathBuf::as_path)
     }
 
     /// The first of them that is another than when it was opened, or gone: a look at each, none inside.
-    pub fn changed(&self) -> Option<&Path> {
+    pub(super) fn changed(&self) -> Option<&Path> {
         let changed = |(file, then): &(&PathBuf, &Option<State>)| match (then, State::now(file)) {
             (Some(then), Some(now)) => then.is_of_others(&now),
             (then, now) => then.is_some() != now.is_some(),
@@ -144,7 +144,7 @@ impl Listed {
 
     /// Takes what tells their state from any other into a hash: real path, size, times and both ends of each. `None` where a
     /// part is not on the disk or cannot be read.
-    pub fn hash(&self, hash: &mut Xxh3) -> Option<()> {
+    pub(super) fn hash(&self, hash: &mut Xxh3) -> Option<()> {
         if self.remote {
             return None;
         }

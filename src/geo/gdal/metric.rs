@@ -6,7 +6,7 @@
 use gdal::spatial_ref::SpatialRef;
 use glam::DVec2;
 
-use super::crs::Way;
+use super::crs::CrsPath;
 use super::source::heard;
 use crate::dem::Crs;
 
@@ -21,7 +21,7 @@ pub(super) fn degrees(crs: &Crs, place: DVec2) -> Option<DVec2> {
     let own = crs.geographic()?;
     let globe = if own.is_of_earth() { Crs::lonlat().ok()? } else { own };
     let degrees = 360.0 / globe.turn()?;
-    Some(Way::between(crs, &globe)?.place(place)? * degrees)
+    Some(CrsPath::between(crs, &globe)?.place(place)? * degrees)
 }
 
 /// Whether a latitude in degrees is beyond UTM.

@@ -67,5 +67,5 @@ mod zip;
 pub use mapped::write_lines;
 pub use own::own_lines;
 pub use reading::Reading;
-pub use tracks::track;
+pub(crate) use tracks::track;
 pub use write::{available, write};

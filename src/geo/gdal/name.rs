@@ -51,7 +51,7 @@ pub(super) enum Name {
 
 /// Where a raster lies.
 #[derive(Debug, Clone)]
-pub(super) enum Place {
+pub(super) enum RasterPlace {
     /// In this file on the disk.
     File(PathBuf),
     /// In a file in this archive on the disk.
@@ -73,7 +73,7 @@ pub(super) struct Local {
 
 impl Local {
     /// A file by the ending of its name: `.gz`, `.zip` and `.tar`, packed or not, are read through.
-    pub fn by_ending(file: &Path) -> Self {
+    pub(super) fn by_ending(file: &Path) -> Self {
         let ending = file.file_name().map(lossless::text).unwrap_or_default().to_ascii_lowercase();
         let before = match ending.rsplit('.').next() {
             _ if ending.ends_with(".tar.gz") => "/vsitar/",
@@ -86,7 +86,7 @@ impl Local {
     }
 
     /// What GDAL is asked to open.
-    pub fn connection(&self) -> PathBuf {
+    pub(super) fn connection(&self) -> PathBuf {
         let mut name = lossless::name(&self.before);
         name.push(&self.file);
         name.push(lossless::name(&self.after));
@@ -94,17 +94,17 @@ impl Local {
     }
 
     /// The way into the archive that holds it, as GDAL calls it; empty where it is read as it stands.
-    pub fn way(&self) -> &str {
+    pub(super) fn way(&self) -> &str {
         if self.archive { &self.before } else { "" }
     }
 
     /// Where it lies.
-    pub fn place(&self) -> Place {
-        if self.archive { Place::Archive(self.file.clone()) } else { Place::File(self.file.clone()) }
+    pub(super) fn place(&self) -> RasterPlace {
+        if self.archive { RasterPlace::Archive(self.file.clone()) } else { RasterPlace::File(self.file.clone()) }
     }
 
     /// What a plain name in a file of that name on a network stands for.
-    pub fn beside(&self, remote: &Path) -> Option<PathBuf> {
+    pub(super) fn beside(&self, remote: &Path) -> Option<PathBuf> {
         let plain = self.before.is_empty() && self.after.is_empty() && !self.file.is_absolute();
         let (folder, _) = remote.to_str()?.rsplit_once('/')?;
         plain.then(|| format!("{folder}/{}", self.file.to_string_lossy()).into())
@@ -134,7 +134,7 @@ impl Local {
 
 impl Name {
     /// Takes `text` apart.
-    pub fn of(text: &str) -> Self {
+    pub(super) fn of(text: &str) -> Self {
         if let Some((scheme, prefix)) = SCHEMES.iter().find(|(scheme, _)| starts_with(text, scheme)) {
             return Self::Remote(format!("{prefix}{}", &text[scheme.len()..]).into());
         }

@@ -5,7 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::name::Place;
+use super::name::RasterPlace;
 use super::{lossless, mistaken, vsi};
 use crate::error::{Error, shown};
 
@@ -13,7 +13,7 @@ use crate::error::{Error, shown};
 const TAR: (usize, std::ops::Range<usize>) = (100, 345..500);
 
 /// The error for an archive whose first member lies outside its folder; `None` for others.
-pub(super) fn error(path: &Path, place: &Place) -> Option<Error> {
+pub(super) fn error(path: &Path, place: &RasterPlace) -> Option<Error> {
     let (name, is_zip) = first(place)?;
     let outside = name.starts_with('/') || name.split(['/', '\\']).any(|part| part == "..");
     // Both tools leave out what leads outside, and write nothing there.
@@ -26,14 +26,14 @@ pub(super) fn error(path: &Path, place: &Place) -> Option<Error> {
 }
 
 /// A member as the archive's own tools call it.
-pub(super) fn called(member: &str, place: &Place) -> String {
+pub(super) fn called(member: &str, place: &RasterPlace) -> String {
     let dot = first(place).is_some_and(|(name, _)| name.starts_with("./"));
     if dot { format!("./{member}") } else { member.to_owned() }
 }
 
 /// The name of the first member of an archive on the disk, and whether that is a zip archive.
-fn first(place: &Place) -> Option<(String, bool)> {
-    let Place::Archive(archive) = place else { return None };
+fn first(place: &RasterPlace) -> Option<(String, bool)> {
+    let RasterPlace::Archive(archive) = place else { return None };
     let mut head = vsi::head(archive)?;
     if head.starts_with(b"PK\x03\x04") {
         let length = usize::from(u16::from_le_bytes([*head.get(26)?, *head.get(27)?]));

@@ -8,12 +8,12 @@ use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 use xxhash_rust::xxh3::Xxh3;
 
 use super::assumed::{assumed, units};
-use super::layer::Layer;
+use super::layer::FileLayer;
 use super::raster::Raster;
 use super::smoothing::{self, Smoothing};
 use super::steps::Steps;
 use super::tally::{Tallies, merge};
-use crate::cache::{Cache, Hearing};
+use crate::cache::{Cache, CacheObserver};
 use crate::dem::in_bands::in_bands;
 use crate::dem::smoothest::HALO;
 use crate::dem::tiling::gather;
@@ -27,7 +27,7 @@ const BAND: usize = 1 << 24;
 
 /// Some samples of a layer.
 pub(super) struct Part {
-    layer: Layer,
+    layer: FileLayer,
     window: Window,
     keep_steps: bool,
     counted: Mutex<Counted>,
@@ -43,12 +43,12 @@ struct Counted {
 
 impl Part {
     /// `window` of `layer`, nothing read yet. `keep_steps`: heights stay as the files have them.
-    pub fn new(layer: Layer, window: Window, keep_steps: bool) -> Self {
+    pub(super) fn new(layer: FileLayer, window: Window, keep_steps: bool) -> Self {
         Self { layer, window, keep_steps, counted: Mutex::default(), smoothing: OnceLock::new() }
     }
 
     /// All samples, the smoothest within their steps. `progress` hears the share done.
-    pub fn raster(&self, progress: &dyn Fn(f64)) -> Result<Raster> {
+    pub(super) fn raster(&self, progress: &dyn Fn(f64)) -> Result<Raster> {
         let whole = self.whole();
         let tiles = self.tiling().tiles(whole);
         let mut metres = gather(whole, &tiles, self.is_parallel(), |tile| self.read(tile), progress)?;
@@ -65,12 +65,12 @@ impl Part {
     }
 
     /// The layer that it is of.
-    pub fn layer(&self) -> &Layer {
+    pub(super) fn layer(&self) -> &FileLayer {
         &self.layer
     }
 
     /// What has to be assumed of the numbers of all `parts` that were read.
-    pub fn assumed_of(parts: &[Self]) -> Vec<Message> {
+    pub(super) fn assumed_of(parts: &[Self]) -> Vec<Message> {
         let counted: Vec<_> = parts.iter().map(Self::counted).collect();
         let files = parts.iter().zip(&counted).flat_map(|(part, counted)| part.layer.tallied(&counted.tallies));
         assumed(&files.collect::<Vec<_>>(), parts.iter().any(|part| part.layer.is_of_several()))
@@ -78,7 +78,7 @@ impl Part {
 
     /// Finds the steps of samples that stay in their files, in the cache or in a look at all of them; the cache
     /// names them by `label`.
-    pub fn look(&self, cache: &Cache, label: String, progress: &dyn Fn(f64)) -> Result<()> {
+    pub(super) fn look(&self, cache: &Cache, label: String, progress: &dyn Fn(f64)) -> Result<()> {
         if self.keep_steps || !self.layer.may_have_steps(self.window)? {
             return Ok(());
         }
@@ -87,7 +87,7 @@ impl Part {
             Some(stamp) => {
                 let key = smoothing::key(stamp, label);
                 // What was kept and is damaged is made anew, without a word: it takes no longer than the first time.
-                cache.get(&key, Hearing { warn: &|_| (), progress }, smoothing::recall, |sheet, progress| {
+                cache.get(&key, CacheObserver { warn: &|_| (), progress }, smoothing::recall, |sheet, progress| {
                     let found = self.looked(progress)?;
                     sheet.into_iter().for_each(|sheet| smoothing::keep(found.as_ref(), sheet));
                     Ok(found)
@@ -99,12 +99,12 @@ impl Part {
     }
 
     /// What is known of steps after [`Self::raster`] or [`Self::look`], where there are any.
-    pub fn smoothing(&self) -> Option<&Smoothing> {
+    pub(super) fn smoothing(&self) -> Option<&Smoothing> {
         self.smoothing.get()?.as_ref()
     }
 
     /// Half the step of each sample of `window`, by the file that gives it, metres.
-    pub fn halves(&self, steps: &Steps, window: Window) -> Result<Vec<f32>> {
+    pub(super) fn halves(&self, steps: &Steps, window: Window) -> Result<Vec<f32>> {
         let mut halves = vec![0.0; window.samples() as usize];
         let window = self.in_layer(window);
         for place in self.layer.meeting(window) {
@@ -163,7 +163,7 @@ impl Part {
 
     /// The error for files without any elevation among `samples`; a unit that would make elevations of their numbers is
     /// named.
-    pub fn void(&self, samples: u64) -> Error {
+    pub(super) fn void(&self, samples: u64) -> Error {
         let inside = if self.window == self.layer.grid.whole() { "" } else { " inside the crop" };
         let what = format!("holds no elevation{inside}, all {samples} samples are void");
         match units(&self.layer.tallied(&self.counted().tallies)) {

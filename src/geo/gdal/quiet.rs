@@ -36,7 +36,7 @@ mod printers {
     type Handler = extern "C" fn(c_int, c_int, *const c_char);
 
     /// PROJ's default, which contexts made without GDAL take over, and libgeotiff's.
-    pub fn silence_process() {
+    pub(super) fn silence_process() {
         if let Some(set) = found(c"proj_log_func") {
             // SAFETY: `void proj_log_func(PJ_CONTEXT *, void *, PJ_LOG_FUNCTION)`; a null context is the default one.
             unsafe {
@@ -54,7 +54,7 @@ mod printers {
     }
 
     /// HDF5's automatic printing.
-    pub fn silence_thread() {
+    pub(super) fn silence_thread() {
         if let Some(set) = found(c"H5Eset_auto2") {
             // SAFETY: `herr_t H5Eset_auto2(hid_t, H5E_auto2_t, void *)`, ids of 64 bits since HDF5 1.10; 0 is the default
             // stack, and no function means no printing.

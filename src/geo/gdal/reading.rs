@@ -9,9 +9,9 @@ use std::sync::Arc;
 
 use super::crs::Proj;
 use super::finest;
-use super::grid::Grid;
+use super::grid::GeoGrid;
 use super::held::hold;
-use super::layer::Layer;
+use super::layer::FileLayer;
 use super::layers::Layers;
 use super::limits::are_held;
 use super::part::Part;
@@ -23,7 +23,7 @@ use crate::dem::scale::Scale;
 use crate::dem::{Dem, Georeference, History, Tiles, not_held};
 use crate::error::{Error, Result, Setting};
 use crate::geo::info::name_of;
-use crate::geo::{ReadOptions, Stage};
+use crate::geo::{ReadOptions, ReadStage};
 use crate::message;
 
 /// Largest exaggeration: above it the highest mountain stands higher than the Earth is wide.
@@ -60,7 +60,7 @@ impl Reading {
     /// Every file on the disk that the DEM is made of: those named, what they name in turn, archives and containers around
     /// them, and what stands beside each and may be read with it. No output may replace one of them.
     pub fn files(&self) -> impl Iterator<Item = &Path> {
-        self.layers.all().iter().flat_map(Layer::files)
+        self.layers.all().iter().flat_map(FileLayer::files)
     }
 
     /// The format of the first file, in GDAL's words.
@@ -86,7 +86,7 @@ impl Reading {
     ///
     /// # Errors
     /// Those of [`read_all`](crate::geo::read_all()).
-    pub fn finish(self, progress: &dyn Fn(Stage, f64)) -> Result<Dem> {
+    pub fn finish(self, progress: &dyn Fn(ReadStage, f64)) -> Result<Dem> {
         self.dem(true, progress)
     }
 
@@ -95,7 +95,7 @@ impl Reading {
     ///
     /// # Errors
     /// As [`Self::finish`].
-    pub fn finish_as_read(self, progress: &dyn Fn(Stage, f64)) -> Result<Dem> {
+    pub fn finish_as_read(self, progress: &dyn Fn(ReadStage, f64)) -> Result<Dem> {
         self.dem(false, progress)
     }
 
@@ -104,11 +104,11 @@ impl Reading {
     /// # Errors
     /// [`Error::Limit`] where they stay in their files.
     pub fn check_held(&self) -> Result<()> {
-        let Grid { columns, rows, .. } = self.target.grid;
+        let GeoGrid { columns, rows, .. } = self.target.grid;
         if self.held { Ok(()) } else { Err(not_held([columns, rows])) }
     }
 
-    fn dem(self, smooth: bool, progress: &dyn Fn(Stage, f64)) -> Result<Dem> {
+    fn dem(self, smooth: bool, progress: &dyn Fn(ReadStage, f64)) -> Result<Dem> {
         let Self { layers, target, mut history, options, held } = self;
         let label = layers.label();
         let (files, world) = (layers.first().grid.crs.as_defined(), target.grid.crs.clone());
@@ -143,11 +143,11 @@ fn looked(
     options: &ReadOptions,
     history: &mut History,
     scale: Option<Scale>,
-    progress: &dyn Fn(Stage, f64),
+    progress: &dyn Fn(ReadStage, f64),
 ) -> Result<Part> {
     let label = layers.label();
     let part = layers.into_parts(target, options.keep_steps).pop().ok_or_else(|| between(&target.grid))?;
-    part.look(&options.cache, label, &|done| progress(Stage::Look, done))?;
+    part.look(&options.cache, label, &|done| progress(ReadStage::Look, done))?;
     tell(std::slice::from_ref(&part), scale, history);
     Ok(part)
 }
@@ -159,13 +159,13 @@ fn smoothed(
     options: &ReadOptions,
     label: String,
     history: &mut History,
-    progress: &dyn Fn(Stage, f64),
+    progress: &dyn Fn(ReadStage, f64),
 ) -> Result<Arc<dyn Tiles>> {
     let budget = usize::try_from(options.memory).unwrap_or(usize::MAX);
     let smoothing = part.smoothing().cloned();
     let within =
         smoothing.map(|smoothing| Worked::new(part.clone(), Smoothed { part: part.clone(), smoothing }, budget));
-    let keep = Keep { cache: &options.cache, label, history, progress: &|done| progress(Stage::Smooth, done) };
+    let keep = Keep { cache: &options.cache, label, history, progress: &|done| progress(ReadStage::Smooth, done) };
     match (within, scale) {
         (None, None) => Ok(part),
         (Some(within), None) => keep.keep(within),
@@ -208,7 +208,7 @@ pub(super) fn tell(parts: &[Part], scale: Option<Scale>, history: &mut History) 
 }
 
 /// A grid in words.
-fn grid_words(grid: &Grid) -> String {
+fn grid_words(grid: &GeoGrid) -> String {
     let (cell, units) = (grid.cell(), grid.crs.units());
     let [west, south, east, north] = grid.extent_in_file();
     format!(
@@ -222,14 +222,14 @@ fn grid_words(grid: &Grid) -> String {
 }
 
 /// The error for a crop that lies between all files.
-pub(super) fn between(grid: &Grid) -> Error {
+pub(super) fn between(grid: &GeoGrid) -> Error {
     let [west, south, east, north] = grid.extent();
     let what = format!("no file has a sample in {west},{south},{east},{north} {}", grid.crs.units());
     Error::setting(Setting::Crop, what, "move it to where one has")
 }
 
 /// A scale at which something is smoothed, and not so many cells that the work grows without end.
-fn check_scale(metres: f64, grid: &Grid) -> Result<()> {
+fn check_scale(metres: f64, grid: &GeoGrid) -> Result<()> {
     let cell = grid.cell() * grid.crs.metres_per_unit().unwrap_or(1.0);
     let [least, most] = SCALES.map(|cells| cell.min_element() * cells);
     if (least..=most).contains(&metres) {

@@ -10,7 +10,7 @@ use gdal::raster::RasterBand;
 use gdal::{Dataset, GdalOpenFlags, Metadata};
 
 use super::formats::FORMATS;
-use super::name::Place;
+use super::name::RasterPlace;
 use super::source::Source;
 use super::{vsi, xml};
 
@@ -29,7 +29,7 @@ pub(super) struct Said<'a> {
 
 impl<'a> Said<'a> {
     /// Of the band of `source`.
-    pub fn of(source: &'a Source) -> Self {
+    pub(super) fn of(source: &'a Source) -> Self {
         let mut said = Self { own: (&source.dataset, source.band), others: Vec::new() };
         let mut vrt = source.rasters.first().map(|(name, _)| name.clone());
         while let Some(name) = vrt.filter(|name| said.others.len() < DEPTH && xml::is_vrt(name)) {
@@ -45,12 +45,12 @@ impl<'a> Said<'a> {
     }
 
     /// What is said under that name, by the nearest that says it; empty where nobody does.
-    pub fn attribute(&self, name: &str) -> String {
+    pub(super) fn attribute(&self, name: &str) -> String {
         self.bands().find_map(|(dataset, band)| attribute(dataset, &band, name)).unwrap_or_default()
     }
 
     /// What the band and its variable are called.
-    pub fn names(&self) -> Vec<String> {
+    pub(super) fn names(&self) -> Vec<String> {
         let of = |(dataset, band): (&Dataset, RasterBand)| {
             [band.description().ok(), band.metadata_item("NETCDF_VARNAME", ""), variable(dataset, &band)]
         };
@@ -66,14 +66,15 @@ impl<'a> Said<'a> {
 
 /// The raster and band that `band` of a VRT called `name` is made of, the first where there are several. `rasters` are all
 /// that was looked into and may be opened.
-fn part(name: &Path, vrt: &Dataset, band: usize, rasters: &[(PathBuf, Place)]) -> Option<(PathBuf, usize)> {
+fn part(name: &Path, vrt: &Dataset, band: usize, rasters: &[(PathBuf, RasterPlace)]) -> Option<(PathBuf, usize)> {
     let texts = xml::entries(name).ok()?;
-    let turns = |entry: &xml::Entry| entry.name == "scaleratio" && entry.text.trim().starts_with('-');
+    let turns = |entry: &xml::XmlText| entry.name == "scaleratio" && entry.text.trim().starts_with('-');
     if texts.iter().any(|entry| CHANGES.contains(&entry.name.as_str()) || turns(entry)) {
         return None;
     }
     let place = rasters.iter().position(|(known, _)| known == name)? + 1;
-    let local = || rasters[place..].iter().filter(|(_, place)| !matches!(place, Place::Remote)).map(|(name, _)| name);
+    let local =
+        || rasters[place..].iter().filter(|(_, place)| !matches!(place, RasterPlace::Remote)).map(|(name, _)| name);
     let listed = vrt.rasterband(band).ok()?.metadata_domain("vrt_sources").unwrap_or_default();
     let inner = |tag: &str| {
         let (_, rest) = listed.first()?.split_once(&format!("<{tag}"))?;

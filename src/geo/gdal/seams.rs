@@ -9,7 +9,7 @@
 use rayon::prelude::*;
 
 use super::gaps;
-use super::grid::Grid;
+use super::grid::GeoGrid;
 use super::layer::reach;
 use super::lie::Lie;
 use super::part::Part;
@@ -18,10 +18,10 @@ use super::raster::Raster;
 use super::weights::Pair;
 use crate::dem::Window;
 use crate::error::Result;
-use crate::geo::{Order, Stage};
+use crate::geo::{Order, ReadStage};
 
 /// What is laid so far.
-struct Laid {
+struct LaidFiles {
     raster: Raster,
     /// Metres of the cells of the layer that shows at each sample, 0 where none does, negative beyond its outermost
     /// samples.
@@ -46,18 +46,18 @@ struct Upper {
 /// and most. `progress` hears the share of each part.
 pub(super) fn lay(
     parts: &[Part],
-    grid: &Grid,
+    grid: &GeoGrid,
     order: Order,
-    progress: &dyn Fn(Stage, f64),
+    progress: &dyn Fn(ReadStage, f64),
 ) -> Result<(Raster, Option<[f64; 2]>)> {
     let raster = Raster::void(grid.clone())?;
     let shown = vec![0.0; raster.metres.len()];
-    let mut laid = Laid { raster, shown, coarsest: 0.0, seams: None };
+    let mut laid = LaidFiles { raster, shown, coarsest: 0.0, seams: None };
     for (i, part) in parts.iter().enumerate() {
         let share = |stage, done: f64| progress(stage, (i as f64 + done) / parts.len() as f64);
-        let own = part.raster(&|done| share(Stage::Read, done))?;
+        let own = part.raster(&|done| share(ReadStage::Read, done))?;
         let cell = part.layer().cell;
-        if let Some(upper) = Upper::of(own, cell, grid, &|done| share(Stage::Warp, done))? {
+        if let Some(upper) = Upper::of(own, cell, grid, &|done| share(ReadStage::Warp, done))? {
             laid.cover(upper, order);
         }
     }
@@ -66,7 +66,7 @@ pub(super) fn lay(
 
 impl Upper {
     /// Of samples with cells of so many metres, on those of `grid`; `None` where they cover none.
-    fn of(own: Raster, cell: f64, grid: &Grid, progress: &dyn Fn(f64)) -> Result<Option<Self>> {
+    fn of(own: Raster, cell: f64, grid: &GeoGrid, progress: &dyn Fn(f64)) -> Result<Option<Self>> {
         if let Some(Lie::Aligned { first, flip: [false, false] }) = Lie::of(&own.grid, grid) {
             let all_known =
                 |(window, metres): (_, Vec<_>)| Self { window, rim: vec![false; metres.len()], metres, cell };
@@ -81,7 +81,7 @@ impl Upper {
 }
 
 /// Samples of a layer on those of `grid`, where they fall on them, with some voids around, from column and row `first` of the grid on.
-fn copied(grid: &Grid, own: &Raster, first: [i64; 2]) -> Option<(Window, Vec<f32>)> {
+fn copied(grid: &GeoGrid, own: &Raster, first: [i64; 2]) -> Option<(Window, Vec<f32>)> {
     let (size, there) = ([own.grid.columns, own.grid.rows], [grid.columns, grid.rows]);
     let low = [0, 1].map(|i| (first[i] - 1).clamp(0, there[i] as i64));
     let end = [0, 1].map(|i| (first[i] + size[i] as i64 + 1).clamp(0, there[i] as i64));
@@ -95,7 +95,7 @@ fn copied(grid: &Grid, own: &Raster, first: [i64; 2]) -> Option<(Window, Vec<f32
     (samples > 0).then(|| (window, (0..samples).into_par_iter().map(sample).collect()))
 }
 
-impl Laid {
+impl LaidFiles {
     /// Lays a layer over what is there.
     fn cover(&mut self, mut upper: Upper, order: Order) {
         self.leave_rims(&mut upper);
@@ -193,7 +193,7 @@ fn place(columns: usize, window: Window, i: usize) -> usize {
 }
 
 /// A window with so many columns and rows more on each side, as far as `grid` has them.
-fn grown(window: Window, margin: [usize; 2], grid: &Grid) -> Window {
+fn grown(window: Window, margin: [usize; 2], grid: &GeoGrid) -> Window {
     let there = [grid.columns, grid.rows];
     let first = [0, 1].map(|i| window.first[i].saturating_sub(margin[i]));
     let end = [0, 1].map(|i| (window.first[i] + window.size[i] + margin[i]).min(there[i]));

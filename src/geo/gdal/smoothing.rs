@@ -11,7 +11,7 @@ use xxhash_rust::xxh3::{Xxh3, xxh3_128};
 
 use super::part::Part;
 use super::steps::Steps;
-use crate::cache::{Kept, Key, Kind, Sheet};
+use crate::cache::{CacheKey, CacheKind, KeptEntry, NewEntry};
 use crate::dem::Window;
 use crate::dem::focal::Focal;
 use crate::dem::smoothest::{HALO, smoothest};
@@ -22,7 +22,8 @@ use crate::error::Result;
 /// something else.
 const FORMAT: u32 = 1;
 /// The look in the cache.
-const KIND: Kind = Kind { name: "steps", format: FORMAT, words: ["what was found of steps", "what was kept of steps"] };
+const KIND: CacheKind =
+    CacheKind { name: "steps", format: FORMAT, words: ["what was found of steps", "what was kept of steps"] };
 
 /// What is known of the steps of a DEM.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,7 +41,7 @@ pub(super) struct Smoothed {
 
 impl Smoothing {
     /// Makes the heights of a window of `part` the smoothest within their steps; the window's halo is part of it.
-    pub fn smooth(&self, part: &Part, heights: &mut [f32], window: Window, parallel: bool) -> Result<()> {
+    pub(super) fn smooth(&self, part: &Part, heights: &mut [f32], window: Window, parallel: bool) -> Result<()> {
         let mut half = match self.steps.common_half() {
             Some(half) => vec![half; heights.len()],
             None => part.halves(&self.steps, window)?,
@@ -67,12 +68,12 @@ impl Focal for Smoothed {
 }
 
 /// What the look at a DEM with this stamp depends on.
-pub(super) fn key(stamp: u128, of: String) -> Key {
-    Key { kind: KIND, hash: stamp, of }
+pub(super) fn key(stamp: u128, of: String) -> CacheKey {
+    CacheKey { kind: KIND, hash: stamp, of }
 }
 
 /// Writes what was found, that there are no steps too, and a hash of it.
-pub(super) fn keep(found: Option<&Smoothing>, mut sheet: Sheet) {
+pub(super) fn keep(found: Option<&Smoothing>, mut sheet: NewEntry) {
     let (steps, (rows, runs)) = found.map_or_else(Default::default, |found| {
         let metres: &[f64] = found.steps.metres();
         (metres, found.water.parts())
@@ -94,7 +95,7 @@ pub(super) fn keep(found: Option<&Smoothing>, mut sheet: Sheet) {
 }
 
 /// Reads what was kept. Fails where the bytes are not those that were written.
-pub(super) fn recall(Kept { mut file, bytes, .. }: Kept) -> io::Result<Option<Smoothing>> {
+pub(super) fn recall(KeptEntry { mut file, bytes, .. }: KeptEntry) -> io::Result<Option<Smoothing>> {
     let damaged = || io::Error::from(ErrorKind::InvalidData);
     let mut hash = Xxh3::new();
     let mut fill = |bytes: &mut [u8]| {

@@ -18,7 +18,7 @@ use gdal::{Dataset, GdalOpenFlags, config};
 
 use super::archive::{self, Member};
 use super::formats::{self, FORMATS, VECTORS};
-use super::name::{Local, Name, Place};
+use super::name::{Local, Name, RasterPlace};
 use super::{grids, hgt, lossless, mistaken, outside, vrt, vsi};
 use crate::error::{Error, Message, Result, Setting, shown};
 use crate::message;
@@ -48,7 +48,7 @@ pub(super) struct Source {
     /// The band of elevations, from 1.
     pub band: usize,
     /// It and all rasters that VRTs name, as GDAL calls them.
-    pub rasters: Vec<(PathBuf, Place)>,
+    pub rasters: Vec<(PathBuf, RasterPlace)>,
     /// Whether blocks are read with rows for columns: then they are asked for so, too.
     pub transposed: bool,
 }
@@ -57,7 +57,7 @@ impl Source {
     /// Opens `path` for the elevations in `band`, counted from 1. Fails when it is missing, no file, empty, no raster of
     /// a format on the list, or no grid of real numbers; and, without `allow_remote`, when it or anything it names lies
     /// on a network or, for a VRT, outside its folder.
-    pub fn open(path: &Path, band: usize, allow_remote: bool) -> Result<Self> {
+    pub(super) fn open(path: &Path, band: usize, allow_remote: bool) -> Result<Self> {
         formats::restrict(allow_remote);
         let Connection { name, place, exact, member } = connection(path, allow_remote)?;
         let vrt::Inspected { is_vrt, rasters } = vrt::inspect(path, &name, &place, allow_remote)?;
@@ -76,7 +76,7 @@ impl Source {
     }
 
     /// The band of elevations.
-    pub fn band(&self) -> Result<RasterBand<'_>> {
+    pub(super) fn band(&self) -> Result<RasterBand<'_>> {
         self.dataset.rasterband(self.band).map_err(|_| {
             let count = self.dataset.raster_count();
             let bands = if count == 1 { "1 band".to_owned() } else { format!("{count} bands") };
@@ -86,13 +86,13 @@ impl Source {
     }
 
     /// An error about this file.
-    pub fn error(&self, what: impl Into<Message>, remedy: impl Into<Message>) -> Error {
+    pub(super) fn error(&self, what: impl Into<Message>, remedy: impl Into<Message>) -> Error {
         Error::input(&self.path, what, remedy)
     }
 
     /// The error for samples that cannot be read, with GDAL's words where it has any: it says once, not twice, that a
     /// part of a mosaic is missing.
-    pub fn unreadable(&self, words: Option<&str>) -> Error {
+    pub(super) fn unreadable(&self, words: Option<&str>) -> Error {
         if let Some(words) = words.filter(|words| lacks_memory(words)) {
             return Error::limit(
                 format!("{}: not enough memory to read it ({})", shown(&self.path), one_line(words, &self.path)),
@@ -173,7 +173,7 @@ struct Connection {
     /// In GDAL's words.
     name: PathBuf,
     /// Where that lies.
-    place: Place,
+    place: RasterPlace,
     /// The same in the user's words: of an archive the member that was taken.
     exact: PathBuf,
     /// The member, where the user named the archive alone.
@@ -217,11 +217,11 @@ fn connection(path: &Path, allow_remote: bool) -> Result<Connection> {
         }
         None => Connection { name, place, exact: path.to_owned(), member: None },
     };
-    let unnamed = connection.member.is_none() && !matches!(connection.place, Place::File(_));
+    let unnamed = connection.member.is_none() && !matches!(connection.place, RasterPlace::File(_));
     let whole = |archive: &Path| {
         connection.name.as_os_str().as_encoded_bytes().ends_with(archive.as_os_str().as_encoded_bytes())
     };
-    let whole = in_archive && matches!(&connection.place, Place::Archive(archive) if whole(archive));
+    let whole = in_archive && matches!(&connection.place, RasterPlace::Archive(archive) if whole(archive));
     if unnamed && (whole || archive::is_tile(&lossless::text(connection.name.as_os_str()))) {
         // GDAL's driver of .hgt files would look for a tile in it, and end the process where it cannot be read.
         return Err(damaged_archive(path, &connection.place));
@@ -237,25 +237,25 @@ fn connection(path: &Path, allow_remote: bool) -> Result<Connection> {
 }
 
 /// A file on a network, read through where it is an archive.
-fn remote(name: PathBuf) -> (PathBuf, Place, String) {
+fn remote(name: PathBuf) -> (PathBuf, RasterPlace, String) {
     let local = Local::by_ending(&name);
     let through = ["/vsizip/", "/vsitar/"].contains(&local.way()) && !name.starts_with(local.way());
     match through {
-        true => (local.connection(), Place::Remote, local.way().to_owned()),
-        false => (name, Place::Remote, String::new()),
+        true => (local.connection(), RasterPlace::Remote, local.way().to_owned()),
+        false => (name, RasterPlace::Remote, String::new()),
     }
 }
 
 /// What a file that is called an archive is instead.
-fn told_of_archive(path: &Path, place: &Place) -> Option<Error> {
-    let Place::Archive(archive) = place else { return None };
+fn told_of_archive(path: &Path, place: &RasterPlace) -> Option<Error> {
+    let RasterPlace::Archive(archive) = place else { return None };
     let head = vsi::head(archive)?;
     let packed = head.starts_with(b"PK\x03") || head.starts_with(b"\x1f\x8b") || mistaken::is_tar(&head);
     let told = if packed { None } else { mistaken::what(&head, "").or_else(|| mistaken::answer(&head)) };
     told.map(|(what, remedy)| Error::input(path, what, remedy))
 }
 
-fn damaged_archive(path: &Path, place: &Place) -> Error {
+fn damaged_archive(path: &Path, place: &RasterPlace) -> Error {
     told_of_archive(path, place).or_else(|| outside::error(path, place)).unwrap_or_else(|| {
         Error::input(path, "is a damaged archive, or one in another", "copy or download it again, or unpack it first")
     })
@@ -304,7 +304,7 @@ fn is_out_of_files(_: &std::io::Error) -> bool {
 }
 
 /// Why GDAL did not open `name`: vector data, something else in a raster's place, a fault that GDAL names, or no raster.
-fn cannot_open(path: &Path, name: &Path, place: &Place, complaint: Option<String>) -> Error {
+fn cannot_open(path: &Path, name: &Path, place: &RasterPlace, complaint: Option<String>) -> Error {
     if let Err(error) = grids::missing(path, name, place) {
         return error;
     }
@@ -339,8 +339,8 @@ fn cannot_open(path: &Path, name: &Path, place: &Place, complaint: Option<String
 }
 
 /// What the file is instead of a raster, by its first bytes and its name.
-fn told(path: &Path, name: &Path, place: &Place) -> Option<mistaken::Told> {
-    let file = if let Place::File(file) = place { file } else { name };
+fn told(path: &Path, name: &Path, place: &RasterPlace) -> Option<mistaken::Told> {
+    let file = if let RasterPlace::File(file) = place { file } else { name };
     let named = lossless::text(path.as_os_str()).to_ascii_lowercase();
     let tile = || hgt::what(path, fs::metadata(file).ok()?.len());
     let head = vsi::head(file).unwrap_or_default();

@@ -20,7 +20,10 @@ pub(super) struct Steps(Vec<f64>);
 impl Steps {
     /// Of `count` files, of which some numbers are tallied, each by its place; `None` where none has a step. A file that is
     /// too flat to tell has the step of another that its numbers are multiples of: a tile of sea beside others.
-    pub fn of<'a>(count: usize, tallied: impl Iterator<Item = (usize, &'a Tallied<'a>)> + Clone) -> Option<Self> {
+    pub(super) fn of<'a>(
+        count: usize,
+        tallied: impl Iterator<Item = (usize, &'a Tallied<'a>)> + Clone,
+    ) -> Option<Self> {
         let found = |file: &Tallied<'_>| match file
             .tally
             .grain
@@ -48,28 +51,28 @@ impl Steps {
     }
 
     /// From the steps of all files, metres.
-    pub fn from_metres(steps: Vec<f64>) -> Self {
+    pub(super) fn from_metres(steps: Vec<f64>) -> Self {
         Self(steps)
     }
 
     /// Those of all files, metres.
-    pub fn metres(&self) -> &[f64] {
+    pub(super) fn metres(&self) -> &[f64] {
         &self.0
     }
 
     /// Half the step of all files, where they have the same; metres.
-    pub fn common_half(&self) -> Option<f32> {
+    pub(super) fn common_half(&self) -> Option<f32> {
         let first = *self.0.first()?;
         self.0.iter().all(|step| *step == first).then_some((first / 2.0) as f32)
     }
 
     /// Half the step of a file, metres.
-    pub fn half(&self, place: usize) -> f32 {
+    pub(super) fn half(&self, place: usize) -> f32 {
         (self.0[place] / 2.0) as f32
     }
 
     /// What is drawn instead of stairs.
-    pub fn words(&self) -> Message {
+    pub(super) fn words(&self) -> Message {
         let mut steps: Vec<_> = self.0.iter().copied().filter(|step| *step > 0.0).collect();
         let (with, all) = (steps.len(), self.0.len());
         steps.sort_unstable_by(f64::total_cmp);

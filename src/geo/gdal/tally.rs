@@ -48,13 +48,13 @@ pub(super) struct Beyond {
 }
 
 impl Beyond {
-    pub const NONE: Self = Self { count: 0, least: f64::INFINITY, greatest: f64::NEG_INFINITY };
+    pub(super) const NONE: Self = Self { count: 0, least: f64::INFINITY, greatest: f64::NEG_INFINITY };
 
     fn add(&mut self, number: f64) {
         *self = self.with(Self { count: 1, least: number, greatest: number });
     }
 
-    pub fn with(self, other: Self) -> Self {
+    pub(super) fn with(self, other: Self) -> Self {
         let (least, greatest) = (self.least.min(other.least), self.greatest.max(other.greatest));
         Self { count: self.count + other.count, least, greatest }
     }
@@ -62,7 +62,7 @@ impl Beyond {
 
 impl Tally {
     /// Of no samples, under the rules of `elevation`.
-    pub fn new(elevation: &Elevation) -> Self {
+    pub(super) fn new(elevation: &Elevation) -> Self {
         Self {
             samples: 0,
             marks: 0,
@@ -79,7 +79,7 @@ impl Tally {
     }
 
     /// Counts a sample, void or not.
-    pub fn add(&mut self, number: f64, reading: Reading) {
+    pub(super) fn add(&mut self, number: f64, reading: Reading) {
         self.samples += 1;
         if matches!(reading, Reading::Metres(_)) {
             self.grain.add(number);
@@ -104,7 +104,7 @@ impl Tally {
     }
 
     /// Takes over those of other samples of the same file.
-    pub fn merge(&mut self, other: &Self) {
+    pub(super) fn merge(&mut self, other: &Self) {
         self.samples += other.samples;
         self.marks += other.marks;
         for (mine, theirs) in self.outside.iter_mut().zip(other.outside) {

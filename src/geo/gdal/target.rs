@@ -11,9 +11,9 @@ use std::path::Path;
 use glam::DVec2;
 
 use super::crop::carried;
-use super::crs::Way;
+use super::crs::CrsPath;
 use super::cut::{Cut, is_inside};
-use super::grid::{Grid, span};
+use super::grid::{GeoGrid, span};
 use super::ground::{Ground, places};
 use super::inscribed::largest;
 use super::layer::reach;
@@ -41,7 +41,7 @@ const INSIDE: f64 = 0.75;
 #[derive(Debug)]
 pub(super) struct Target {
     /// North-up, in a system of lengths.
-    pub grid: Grid,
+    pub grid: GeoGrid,
     /// The samples to read for it.
     pub window: Window,
     /// Whether it must be warped; else `window` is the grid.
@@ -52,7 +52,7 @@ pub(super) struct Target {
 
 /// What is asked of the files' grid; `path` is the first file, for messages.
 struct Asked<'a> {
-    files: &'a Grid,
+    files: &'a GeoGrid,
     path: &'a Path,
     /// The samples inside the crop.
     window: Window,
@@ -66,8 +66,8 @@ struct Asked<'a> {
 impl Target {
     /// For the grid of the files; `path` is the first, for messages; `crop` is in the coordinates of `files`, and `typed` the
     /// system in which another would be typed. Fails when too little is left.
-    pub fn of(
-        files: &Grid,
+    pub(super) fn of(
+        files: &GeoGrid,
         path: &Path,
         crop: Option<[f64; 4]>,
         typed: &Crs,
@@ -104,7 +104,7 @@ impl Target {
     }
 
     /// Cell size in metres at which no more than `fit` samples are left.
-    pub fn metres_to_fit(&self, fit: u64) -> f64 {
+    pub(super) fn metres_to_fit(&self, fit: u64) -> f64 {
         let cell = self.grid.cell() * self.grid.crs.metres_per_unit().unwrap_or(1.0);
         let samples = self.grid.columns as f64 * self.grid.rows as f64;
         // A percent more, for rows and columns are whole.
@@ -117,7 +117,7 @@ impl Asked<'_> {
     fn truer(&self, off: &Ground) -> Option<Crs> {
         let truer = metric(&self.files.crs, self.files.centre(self.window))?;
         let mut places = places(self.files, self.window).to_vec();
-        Way::between(&self.files.crs, &truer)?.carry(&mut places);
+        CrsPath::between(&self.files.crs, &truer)?.carry(&mut places);
         places.retain(|place| place.is_finite());
         (Ground::at(&truer, &places)?.off() < off.off()).then_some(truer)
     }
@@ -139,8 +139,8 @@ impl Asked<'_> {
     /// Warped to `crs`, from a map that may be `off` the ground.
     fn onto(&self, crs: &Crs, off: Option<&Ground>, history: &mut History) -> Result<Target> {
         let Self { files, path, window, crop, .. } = *self;
-        let way = Way::between(&files.crs, crs).ok_or_else(|| lost(path))?;
-        let back = Way::between(crs, &files.crs).ok_or_else(|| lost(path))?;
+        let way = CrsPath::between(&files.crs, crs).ok_or_else(|| lost(path))?;
+        let back = CrsPath::between(crs, &files.crs).ok_or_else(|| lost(path))?;
         let unit = crs.metres_per_unit().ok_or_else(|| lost(path))?;
         let area = cell_area(files, window, &way).ok_or_else(|| lost(path))?;
         let cell = match self.options.resample {
@@ -229,9 +229,9 @@ fn off_the_ground(off: &Ground, truer: Option<&Crs>, more: Option<Message>, opti
 
 /// The part of the files that a warped grid may cover.
 struct Region<'a> {
-    files: &'a Grid,
+    files: &'a GeoGrid,
     crop: Option<[f64; 4]>,
-    back: Way,
+    back: CrsPath,
 }
 
 impl Region<'_> {
@@ -249,7 +249,7 @@ impl Region<'_> {
 }
 
 /// A crop in the middle of `part` that one map shows, in the units of the files.
-fn middle_part(files: &Grid, part: &Grid, degrees: f64) -> String {
+fn middle_part(files: &GeoGrid, part: &GeoGrid, degrees: f64) -> String {
     let ([west, south, east, north], centre) = (part.extent(), files.centre(files.whole()));
     let middle = part.centre(part.whole());
     let half = DVec2::new(WIDEST, HIGHEST) / degrees / 2.0;
@@ -260,7 +260,7 @@ fn middle_part(files: &Grid, part: &Grid, degrees: f64) -> String {
 }
 
 /// Size of the cell in the middle of `window`, squares of the unit that `way` leads to.
-fn cell_area(files: &Grid, window: Window, way: &Way) -> Option<f64> {
+fn cell_area(files: &GeoGrid, window: Window, way: &CrsPath) -> Option<f64> {
     let middle = files.to_crs.inverse().transform_point2(files.centre(window));
     let mut corners = [DVec2::ZERO, DVec2::X, DVec2::Y].map(|step| files.to_crs.transform_point2(middle + step));
     way.carry(&mut corners);
@@ -269,7 +269,7 @@ fn cell_area(files: &Grid, window: Window, way: &Way) -> Option<f64> {
 }
 
 /// All places at whole multiples of `cell` around a window of the files.
-fn lattice_around(files: &Grid, window: Window, way: &Way, crs: &Crs, cell: f64) -> Option<Grid> {
+fn lattice_around(files: &GeoGrid, window: Window, way: &CrsPath, crs: &Crs, cell: f64) -> Option<GeoGrid> {
     let mut places = files.outline(window);
     way.carry(&mut places);
     let [low, high] = span(&places);
@@ -279,11 +279,11 @@ fn lattice_around(files: &Grid, window: Window, way: &Way, crs: &Crs, cell: f64)
     let corner = DVec2::new(low.x - 0.5, high.y + 0.5) * cell;
     let to_crs = glam::DAffine2::from_mat2_translation(matrix, corner);
     let sound = places.iter().all(|place| place.is_finite()) && size.max_element() < 1e9;
-    sound.then(|| Grid { crs: crs.clone(), to_crs, columns: size.x as usize, rows: size.y as usize })
+    sound.then(|| GeoGrid { crs: crs.clone(), to_crs, columns: size.x as usize, rows: size.y as usize })
 }
 
 /// What is odd about the files' grid.
-fn turned(files: &Grid) -> String {
+fn turned(files: &GeoGrid) -> String {
     match (files.crs.is_geographic(), files.is_north_up()) {
         (true, _) if files.crs.name().is_empty() => "degrees".into(),
         (true, _) => format!("degrees ({})", files.crs.label()),
@@ -292,7 +292,7 @@ fn turned(files: &Grid) -> String {
     }
 }
 
-fn check_sides([width, height]: [usize; 2], files: &Grid, path: &Path) -> Result<()> {
+fn check_sides([width, height]: [usize; 2], files: &GeoGrid, path: &Path) -> Result<()> {
     if width >= MIN_SIDE && height >= MIN_SIDE {
         return Ok(());
     }
@@ -305,7 +305,7 @@ fn check_sides([width, height]: [usize; 2], files: &Grid, path: &Path) -> Result
 }
 
 /// No more places to look at than a DEM twice too large has.
-fn check_extent(all: &Grid, metres: f64, path: &Path) -> Result<()> {
+fn check_extent(all: &GeoGrid, metres: f64, path: &Path) -> Result<()> {
     let samples = all.columns as f64 * all.rows as f64;
     let most = 4.0 * MAX_SAMPLES as f64;
     if samples <= most {
@@ -321,7 +321,7 @@ fn lost(path: &Path) -> Error {
     Error::input(path, what, remedy)
 }
 
-fn too_small(files: &Grid, path: &Path, metres: f64, crs: &Crs) -> Error {
+fn too_small(files: &GeoGrid, path: &Path, metres: f64, crs: &Crs) -> Error {
     if files.columns < WARPED_SIDE || files.rows < WARPED_SIDE {
         let what =
             format!("is {} x {} samples; to be warped to metres it needs at least 5 x 5", files.columns, files.rows);
@@ -342,7 +342,7 @@ fn too_small(files: &Grid, path: &Path, metres: f64, crs: &Crs) -> Error {
     )
 }
 
-fn outside(files: &Grid, path: &Path, typed: &Crs) -> Error {
+fn outside(files: &GeoGrid, path: &Path, typed: &Crs) -> Error {
     let elsewhere = if *typed == files.crs { None } else { carried(files.extent(), &files.crs, &typed.as_defined()) };
     let ([west, south, east, north], units) = match elsewhere {
         Some(extent) => (extent.map(|edge| rounded(edge, CROP_DIGITS)), typed.units()),

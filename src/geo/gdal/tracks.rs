@@ -28,15 +28,15 @@ const NAMED: usize = 5;
 struct Found {
     layer: String,
     crs: Option<Crs>,
-    lines: Vec<Line>,
-    points: Line,
+    lines: Vec<TrackLine>,
+    points: TrackLine,
     /// Whether there is something else.
     other: bool,
 }
 
 /// A line, or points in order.
 #[derive(Default)]
-struct Line {
+struct TrackLine {
     fid: Option<u64>,
     name: Option<String>,
     mode: Option<String>,
@@ -48,7 +48,7 @@ struct Line {
 ///
 /// # Errors
 /// [`Error::Input`] where the file cannot be read, or there is no way in it, or several are.
-pub fn track(path: &Path, allow_remote: bool) -> Result<Track> {
+pub(crate) fn track(path: &Path, allow_remote: bool) -> Result<Track> {
     // Of GPX heights stand in attributes otherwise. Every GDAL that the bindings know has the option.
     let _ = config::set_thread_local_config_option("GPX_ELE_AS_25D", "YES");
     let wrong = |what: Message, remedy: Message| Error::input(path, what, remedy);
@@ -78,7 +78,7 @@ pub fn track(path: &Path, allow_remote: bool) -> Result<Track> {
 }
 
 /// The line, or the points, that can be meant alone.
-fn chosen<'a>(found: &'a [Found], is_gpx: bool, path: &Path) -> Result<(&'a Line, &'a Found)> {
+fn chosen<'a>(found: &'a [Found], is_gpx: bool, path: &Path) -> Result<(&'a TrackLine, &'a Found)> {
     let wrong = |what: String, remedy: String| Err(Error::input(path, what, remedy));
     let mut with_lines: Vec<&Found> = found.iter().filter(|found| !found.lines.is_empty()).collect();
     let mut with_points: Vec<&Found> = found.iter().filter(|found| !found.points.points.is_empty()).collect();
@@ -97,7 +97,7 @@ fn chosen<'a>(found: &'a [Found], is_gpx: bool, path: &Path) -> Result<(&'a Line
         ([found], _) => match &found.lines[..] {
             [line] => Ok((line, found)),
             lines => {
-                let named: Vec<_> = lines.iter().take(NAMED).map(Line::named).collect();
+                let named: Vec<_> = lines.iter().take(NAMED).map(TrackLine::named).collect();
                 let more = if lines.len() > NAMED { ", …" } else { "" };
                 let what = format!("holds {} lines in layer {} ({}{more})", lines.len(), found.layer, named.join(", "));
                 let fid = lines[0].fid.unwrap_or_default();
@@ -123,13 +123,18 @@ impl Found {
             let text =
                 |name: &str| feature.field_index(name).ok().and_then(|i| feature.field_as_string(i).ok().flatten());
             let Some(geometry) = feature.geometry().filter(|geometry| !geometry.is_empty()) else { continue };
-            let line = Line { fid: feature.fid(), name: name(&feature), mode: text("altitudeMode"), ..Line::default() };
+            let line = TrackLine {
+                fid: feature.fid(),
+                name: name(&feature),
+                mode: text("altitudeMode"),
+                ..TrackLine::default()
+            };
             found.take(geometry, line);
         }
         found
     }
 
-    fn take(&mut self, geometry: &Geometry, mut line: Line) {
+    fn take(&mut self, geometry: &Geometry, mut line: TrackLine) {
         match parts(geometry) {
             Some(parts) if parts.lines => {
                 line.add(parts);
@@ -180,7 +185,7 @@ fn parts(geometry: &Geometry) -> Option<Parts> {
     Some(Parts { lines, points, has_heights })
 }
 
-impl Line {
+impl TrackLine {
     fn add(&mut self, parts: Parts) {
         self.has_heights |= parts.has_heights;
         self.points.extend(parts.points);

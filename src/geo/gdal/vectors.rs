@@ -65,7 +65,7 @@ impl Vectors {
     ///
     /// # Errors
     /// [`Error::Input`] where the file cannot be read, and for a layer that it lacks.
-    pub fn open(path: &Path, purpose: Purpose, allow_remote: bool) -> Result<Self> {
+    pub(super) fn open(path: &Path, purpose: Purpose, allow_remote: bool) -> Result<Self> {
         formats::restrict(allow_remote);
         let (file, layer) = with_layer(path);
         let dataset = open(&file, purpose, allow_remote)?;
@@ -90,7 +90,7 @@ impl Vectors {
     }
 
     /// Whether it is GPX, the layers of which are in order of worth.
-    pub fn is_gpx(&self) -> bool {
+    pub(super) fn is_gpx(&self) -> bool {
         is_gpx(&self.dataset)
     }
 
@@ -98,7 +98,7 @@ impl Vectors {
     ///
     /// # Errors
     /// [`Error::Input`] where a layer cannot be read to its end.
-    pub fn read<T>(&self, of: impl Fn(&mut Layer) -> T) -> Result<Vec<T>> {
+    pub(super) fn read<T>(&self, of: impl Fn(&mut Layer) -> T) -> Result<Vec<T>> {
         let (read, complaint) = heard(|| {
             let layers = self.layers.iter().filter_map(|name| self.dataset.layer_by_name(name).ok());
             layers.map(|mut layer| of(&mut layer)).collect()

@@ -11,8 +11,8 @@ use std::collections::HashSet;
 use std::path::{Component, Path, PathBuf};
 
 use super::archive;
-use super::name::{Name, Place, names_remote};
-use super::xml::{self, Entry};
+use super::name::{Name, RasterPlace, names_remote};
+use super::xml::{self, XmlText};
 use crate::error::{Error, Message, Result, Setting, shown};
 use crate::message;
 
@@ -48,15 +48,15 @@ pub(super) struct Inspected {
     /// Whether the first file is a VRT.
     pub is_vrt: bool,
     /// It and all rasters that VRTs name, as GDAL calls them; some more than once.
-    pub rasters: Vec<(PathBuf, Place)>,
+    pub rasters: Vec<(PathBuf, RasterPlace)>,
 }
 
 /// Looks into what GDAL would open for `connection`. `path` is what the user calls it.
-pub(super) fn inspect(path: &Path, connection: &Path, place: &Place, allow_remote: bool) -> Result<Inspected> {
+pub(super) fn inspect(path: &Path, connection: &Path, place: &RasterPlace, allow_remote: bool) -> Result<Inspected> {
     let (first, folder) = match place {
-        Place::File(file) => (followed(file), followed(file).parent().map(Path::to_owned)),
-        Place::Archive(file) => (connection.to_owned(), followed(file).parent().map(Path::to_owned)),
-        Place::Remote => (connection.to_owned(), None),
+        RasterPlace::File(file) => (followed(file), followed(file).parent().map(Path::to_owned)),
+        RasterPlace::Archive(file) => (connection.to_owned(), followed(file).parent().map(Path::to_owned)),
+        RasterPlace::Remote => (connection.to_owned(), None),
     };
     let mut inspection =
         Inspection { path, first, folder, allow_remote, open: Vec::new(), seen: HashSet::new(), rasters: Vec::new() };
@@ -76,23 +76,23 @@ struct Inspection<'a> {
     /// The VRTs that need not be looked into again.
     seen: HashSet<PathBuf>,
     /// The rasters so far.
-    rasters: Vec<(PathBuf, Place)>,
+    rasters: Vec<(PathBuf, RasterPlace)>,
 }
 
 impl Inspection<'_> {
     /// A raster and what stands beside it.
-    fn raster(&mut self, connection: &Path, place: &Place) -> Result<()> {
+    fn raster(&mut self, connection: &Path, place: &RasterPlace) -> Result<()> {
         self.rasters.push((connection.to_owned(), place.clone()));
         self.vrt(connection, place)?;
         let (beside, archive) = match place {
-            Place::File(file) => (file.as_path(), false),
-            Place::Archive(_) => (connection, true),
+            RasterPlace::File(file) => (file.as_path(), false),
+            RasterPlace::Archive(_) => (connection, true),
             // Each look would be a request, mostly in vain.
-            Place::Remote => return Ok(()),
+            RasterPlace::Remote => return Ok(()),
         };
         for ending in BESIDE {
             let name = with_ending(beside, ending);
-            let place = if archive { place.clone() } else { Place::File(name.clone()) };
+            let place = if archive { place.clone() } else { RasterPlace::File(name.clone()) };
             self.vrt(&name, &place)?;
         }
         let auxiliary = with_ending(beside, ".aux.xml");
@@ -102,16 +102,16 @@ impl Inspection<'_> {
     }
 
     /// What a VRT names, and what that names; nothing for other files.
-    fn vrt(&mut self, connection: &Path, place: &Place) -> Result<()> {
+    fn vrt(&mut self, connection: &Path, place: &RasterPlace) -> Result<()> {
         if !xml::is_vrt(connection) {
             return Ok(());
         }
         let name = match place {
             // GDAL, too, follows links before it looks for what a VRT names.
-            Place::File(file) => followed(file),
-            Place::Archive(_) | Place::Remote => connection.to_owned(),
+            RasterPlace::File(file) => followed(file),
+            RasterPlace::Archive(_) | RasterPlace::Remote => connection.to_owned(),
         };
-        if matches!(place, Place::Archive(_)) {
+        if matches!(place, RasterPlace::Archive(_)) {
             return Err(self.refused(&name, "is a VRT in an archive", "unpack it with the files it names"));
         }
         if self.open.contains(&name) {
@@ -128,17 +128,17 @@ impl Inspection<'_> {
             self.refused(&name, format!("is a damaged VRT{}", words.unwrap_or_default()), "copy or download it again")
         })?;
         self.open.push(name.clone());
-        entries.iter().try_for_each(|entry| self.entry(entry, &name, matches!(place, Place::Remote)))?;
+        entries.iter().try_for_each(|entry| self.entry(entry, &name, matches!(place, RasterPlace::Remote)))?;
         self.open.pop();
         Ok(())
     }
 
     /// One text of `vrt`.
-    fn entry(&mut self, entry: &Entry, vrt: &Path, remote: bool) -> Result<()> {
+    fn entry(&mut self, entry: &XmlText, vrt: &Path, remote: bool) -> Result<()> {
         let text = &entry.text;
         match entry.name.as_str() {
             name if SOURCES.contains(&name) => match self.source(entry, vrt, remote)? {
-                (name, Place::Remote) => self.raster(&name, &Place::Remote),
+                (name, RasterPlace::Remote) => self.raster(&name, &RasterPlace::Remote),
                 (name, _) if !entry.raw && !xml::is_raster(&name) => Err(self.refused(
                     vrt,
                     format!("names {text:?}, which is in no raster format that hachure reads"),
@@ -161,7 +161,7 @@ impl Inspection<'_> {
     }
 
     /// The raster that `entry` of `vrt` names: GDAL's name of it and its place.
-    fn source(&self, entry: &Entry, vrt: &Path, remote: bool) -> Result<(PathBuf, Place)> {
+    fn source(&self, entry: &XmlText, vrt: &Path, remote: bool) -> Result<(PathBuf, RasterPlace)> {
         let text = &entry.text;
         let names = |what: &str, remedy: &str| Err(self.refused(vrt, format!("names {text:?}, {what}"), remedy));
         let relative = entry.relative.as_deref() == Some("1");
@@ -173,7 +173,7 @@ impl Inspection<'_> {
             Name::Remote(name) if name != Path::new(text) => {
                 return names("which GDAL knows by another name", &format!("write `{}` there", shown(&name)));
             }
-            Name::Remote(name) => return Ok((name, Place::Remote)),
+            Name::Remote(name) => return Ok((name, RasterPlace::Remote)),
             Name::Other => return names("which is no file", PLAIN),
             Name::Local(local) => local,
         };
@@ -181,7 +181,7 @@ impl Inspection<'_> {
             let Some(name) = local.beside(vrt).filter(|_| relative) else {
                 return names("which does not lie beside it on the network", "download it with the files it names");
             };
-            return Ok((name, Place::Remote));
+            return Ok((name, RasterPlace::Remote));
         }
         // In an archive's name GDAL takes a way as it stands, whatever is said of it.
         if relative && !local.archive {
@@ -206,7 +206,7 @@ impl Inspection<'_> {
         }
         let (connection, place) = (local.connection(), local.place());
         let readable = match place {
-            Place::Archive(_) => archive::check(&connection, &place),
+            RasterPlace::Archive(_) => archive::check(&connection, &place),
             _ => archive::check_tile(&file, &place),
         };
         match readable {
@@ -216,7 +216,7 @@ impl Inspection<'_> {
     }
 
     /// A text that is no source by its element, but that GDAL might come to open.
-    fn stays_here(&self, entry: &Entry, at: &Path) -> Result<()> {
+    fn stays_here(&self, entry: &XmlText, at: &Path) -> Result<()> {
         let text = &entry.text;
         let away = if entry.metadata {
             // An address may stand inside, as in `NETCDF:"http://…":lon`.
@@ -228,12 +228,12 @@ impl Inspection<'_> {
         if away && !self.allow_remote { Err(self.away(entry, at)) } else { Ok(()) }
     }
 
-    fn away(&self, entry: &Entry, at: &Path) -> Error {
+    fn away(&self, entry: &XmlText, at: &Path) -> Error {
         let what = format!("names {:?}, which lies on a network", entry.text);
         self.refused(at, what, message!["download it first, or add `", Setting::AllowRemote, "` if you trust it"])
     }
 
-    fn outside(&self, entry: &Entry, at: &Path) -> Error {
+    fn outside(&self, entry: &XmlText, at: &Path) -> Error {
         let what = format!("names {:?}, which lies outside its folder", entry.text);
         let remedy = message!["move both into one folder, or add `", Setting::AllowRemote, "` if you trust the file"];
         self.refused(at, what, remedy)

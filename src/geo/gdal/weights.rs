@@ -41,7 +41,7 @@ struct Parts {
 impl<F: Fn(usize) -> f32 + Sync> Pair<'_, F> {
     /// The weight of each sample, and the least and most metres over which seams are blended; `None` where there is no
     /// seam.
-    pub fn weights(&self) -> Option<(Vec<f32>, [f64; 2])> {
+    pub(super) fn weights(&self) -> Option<(Vec<f32>, [f64; 2])> {
         let Self { size, step, .. } = *self;
         let kinds = self.kinds();
         let seam = |kind: f32| SEAM_CELLS * f64::from(kind).max(self.cell);

@@ -17,7 +17,7 @@ use super::vsi::c_string;
 
 /// A text of the tree.
 #[derive(Debug)]
-pub(super) struct Entry {
+pub(super) struct XmlText {
     /// Name of the element or attribute around it.
     pub name: String,
     /// The text.
@@ -54,7 +54,7 @@ fn is_claimed(name: &Path, driver: Option<&CStr>) -> bool {
 }
 
 /// All texts of the XML file `name`, and GDAL's complaint if there is none that it can parse.
-pub(super) fn entries(name: &Path) -> Result<Vec<Entry>, Option<String>> {
+pub(super) fn entries(name: &Path) -> Result<Vec<XmlText>, Option<String>> {
     let Some(name) = c_string(name) else { return Err(None) };
     let (entries, complaint) = heard(|| {
         let mut bytes = ptr::null_mut();
@@ -76,7 +76,7 @@ pub(super) fn entries(name: &Path) -> Result<Vec<Entry>, Option<String>> {
 ///
 /// # Safety
 /// `tree` is null or a tree of GDAL's.
-unsafe fn flattened(tree: *const CPLXMLNode) -> Vec<Entry> {
+unsafe fn flattened(tree: *const CPLXMLNode) -> Vec<XmlText> {
     let mut entries = Vec::new();
     let mut open = vec![(tree, false, false)];
     while let Some((first, in_raw, in_metadata)) = open.pop() {
@@ -90,7 +90,7 @@ unsafe fn flattened(tree: *const CPLXMLNode) -> Vec<Entry> {
             let raw = in_raw || child("subclass").is_some_and(|class| class == "VRTRawRasterBand");
             let metadata = in_metadata || lower(node.pszValue) == "metadata";
             for value in unsafe { siblings(node.psChild) }.filter(|c| c.eType == CPLXMLNodeType::CXT_Text) {
-                entries.push(Entry {
+                entries.push(XmlText {
                     name: lower(node.pszValue),
                     text: text(value.pszValue),
                     relative: child("relativetovrt"),

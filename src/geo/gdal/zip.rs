@@ -26,7 +26,7 @@ pub(super) struct Packing {
 
 impl Packing {
     /// What packs it, in words.
-    pub fn words(self) -> String {
+    pub(super) fn words(self) -> String {
         match self.method {
             _ if self.encrypted => "encrypted".into(),
             9 => "compressed with deflate64".into(),

@@ -58,7 +58,7 @@ enum Change {
 type Gain = (f64, Change, [Option<End>; 6]);
 
 /// The order with less way through the air, which begins at a place.
-pub fn improved(strokes: &[Stroke], visits: Vec<Visit>, from: DVec2) -> Vec<Visit> {
+pub(super) fn improved(strokes: &[Stroke], visits: Vec<Visit>, from: DVec2) -> Vec<Visit> {
     let ends = visits.iter().flat_map(|visit| visit.ends);
     let mut tour = Tour {
         places: [from, from].into_iter().chain(ends).collect(),

@@ -20,7 +20,7 @@ const STROKE: f64 = 0.0515;
 pub const GROWTH: f64 = STROKE / 2.0;
 
 /// The stroke without segments that are too short. A ring of two points is left to go there and back.
-pub fn thinned(mut stroke: Stroke) -> Stroke {
+pub(super) fn thinned(mut stroke: Stroke) -> Stroke {
     if segments(&stroke).all(|[a, b]| a.distance(b) >= SEGMENT) {
         return stroke;
     }
@@ -75,12 +75,12 @@ fn length(stroke: &Stroke) -> f64 {
 }
 
 /// Whether a stroke is long enough as it is.
-pub fn leaves_ink(stroke: &Stroke) -> bool {
+pub(super) fn leaves_ink(stroke: &Stroke) -> bool {
     length(stroke) >= STROKE
 }
 
 /// A thinned stroke that was shorter, drawn out at both ends to the least length; a dot, to the left and to the right.
-pub fn lengthened(mut stroke: Stroke) -> Stroke {
+pub(super) fn lengthened(mut stroke: Stroke) -> Stroke {
     let more = (STROKE - length(&stroke)) / 2.0;
     if let [dot] = stroke.points[..] {
         stroke.points.push(dot);

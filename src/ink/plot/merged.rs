@@ -31,7 +31,7 @@ fn other(end: End) -> End {
 
 /// The strokes with those joined whose ends meet, in the order of the first of each; closed where they come round. A place
 /// where ends meet is a point of either.
-pub fn merged(strokes: Vec<Stroke>) -> Vec<Stroke> {
+pub(super) fn merged(strokes: Vec<Stroke>) -> Vec<Stroke> {
     let partners = partners(&strokes);
     let mut left: Vec<Option<Stroke>> = strokes.into_iter().map(Some).collect();
     let ends = 0..partners.len() as End;

@@ -14,7 +14,7 @@ const LEAF: usize = 8;
 
 /// Places by number.
 #[derive(Debug)]
-pub struct Nearest {
+pub(super) struct Nearest {
     /// By their place in the tree.
     places: Vec<(DVec2, u32)>,
     /// Where a place of a number stands in the tree; `None` once it has been taken away.
@@ -31,7 +31,7 @@ struct Node {
 }
 
 /// How far, squared, and which.
-pub type Found = (f64, u32);
+pub(super) type Found = (f64, u32);
 
 /// Nearer first, then by number.
 fn by_distance(a: &Found, b: &Found) -> Ordering {
@@ -52,7 +52,7 @@ fn halves(node: usize, range: &Range<usize>) -> Option<[(usize, Range<usize>); 2
 
 impl Nearest {
     /// Of places that are numbered from 0 on.
-    pub fn new(places: impl Iterator<Item = DVec2>) -> Self {
+    pub(super) fn new(places: impl Iterator<Item = DVec2>) -> Self {
         let places: Vec<(DVec2, u32)> = places.zip(0..).collect();
         let leaves = places.len().div_ceil(LEAF).next_power_of_two();
         let nothing = Node { low: DVec2::INFINITY, high: DVec2::NEG_INFINITY, left: 0 };
@@ -78,7 +78,7 @@ impl Nearest {
     }
 
     /// Takes a place away, if it is still there.
-    pub fn remove(&mut self, number: u32) {
+    pub(super) fn remove(&mut self, number: u32) {
         let Some(slot) = self.slots[number as usize].take() else { return };
         let mut at = Some((0, 0..self.places.len()));
         while let Some((node, range)) = at {
@@ -90,7 +90,7 @@ impl Nearest {
 
     /// The `most` nearest that are left and wanted, not farther than `reach`: the nearest first, of equally near ones that
     /// with the lower number.
-    pub fn find(&self, from: DVec2, most: usize, reach: f64, is_wanted: impl Fn(u32) -> bool) -> Vec<Found> {
+    pub(super) fn find(&self, from: DVec2, most: usize, reach: f64, is_wanted: impl Fn(u32) -> bool) -> Vec<Found> {
         let mut found: Vec<Found> = Vec::with_capacity(most + 1);
         let worst = |found: &Vec<Found>| if found.len() < most { reach * reach } else { found[most - 1].0 };
         let mut open = vec![(self.nodes[0].distance_squared(from), 0, 0..self.places.len())];

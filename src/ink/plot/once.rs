@@ -18,7 +18,7 @@ const FILED: f64 = 1000.0;
 type Key = [[i64; 2]; 2];
 
 /// The strokes without what an earlier one draws, or the same one has drawn: what is left of them between.
-pub fn once(strokes: Vec<Stroke>) -> Vec<Stroke> {
+pub(super) fn once(strokes: Vec<Stroke>) -> Vec<Stroke> {
     let mut drawn: FxHashSet<Key> = FxHashSet::default();
     strokes.into_iter().flat_map(|stroke| left_of(stroke, &mut drawn)).collect()
 }

@@ -21,7 +21,7 @@ const MOST: usize = 200_000;
 
 /// A stroke in the order.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Visit {
+pub(super) struct Visit {
     /// Which one.
     pub stroke: usize,
     /// At which of its points it begins: the first or the last, but of closed ones any.
@@ -38,7 +38,7 @@ impl Visit {
     }
 
     /// The same the other way round.
-    pub fn turned(self, strokes: &[Stroke]) -> Self {
+    pub(super) fn turned(self, strokes: &[Stroke]) -> Self {
         let Stroke { points, closed, .. } = &strokes[self.stroke];
         let begin = if *closed { self.begin } else { points.len() - 1 - self.begin };
         Self::new(strokes, self.stroke, begin)
@@ -46,7 +46,7 @@ impl Visit {
 }
 
 /// The strokes in their order, from a place on.
-pub fn ordered(strokes: Vec<Stroke>, from: DVec2) -> Vec<Stroke> {
+pub(super) fn ordered(strokes: Vec<Stroke>, from: DVec2) -> Vec<Stroke> {
     let visits = match strokes.len() > MOST {
         true => along_curve(&strokes, from),
         false => improved(&strokes, by_nearest(&strokes, from), from),

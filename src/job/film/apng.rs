@@ -11,7 +11,7 @@ const PARTS: f64 = 65_535.0;
 ///
 /// # Errors
 /// The writer's, and those of the pictures.
-pub fn write(
+pub(super) fn write(
     out: &mut dyn Write,
     fps: f64,
     pictures: &mut dyn ExactSizeIterator<Item = io::Result<Picture>>,

@@ -17,7 +17,7 @@ const MOST_SAID: u64 = 1 << 16;
 ///
 /// # Errors
 /// [`Error::Setting`] where it is not, or does not run.
-pub fn look() -> Result<()> {
+pub(super) fn look() -> Result<()> {
     let missing = |why: String| {
         let remedy = "install it (`apt-get install ffmpeg`, `brew install ffmpeg`), or name a .gif or .png";
         Error::setting(Setting::Video, format!("ffmpeg makes it, {why}"), remedy)
@@ -34,7 +34,7 @@ pub fn look() -> Result<()> {
 ///
 /// # Errors
 /// [`Error::Input`] for a picture that cannot be read, [`Error::Output`] with ffmpeg's words.
-pub fn write(
+pub(super) fn write(
     output: &mut Output,
     format: &str,
     fps: f64,

@@ -20,7 +20,7 @@ const TICKS: f64 = 100.0;
 ///
 /// # Errors
 /// The writer's, and those of the pictures.
-pub fn write(
+pub(super) fn write(
     out: &mut dyn Write,
     fps: f64,
     inks: &Inks,

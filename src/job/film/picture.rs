@@ -7,7 +7,7 @@ use std::path::Path;
 use crate::error::{Error, Result};
 
 /// Red, green and blue of each pixel, row by row.
-pub struct Picture {
+pub(super) struct Picture {
     /// Pixels across and down.
     pub size: [u32; 2],
     /// Three bytes a pixel.
@@ -16,7 +16,7 @@ pub struct Picture {
 
 /// A rectangle of pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Part {
+pub(super) struct Part {
     /// Left and top.
     pub from: [u32; 2],
     /// Pixels across and down.
@@ -28,7 +28,7 @@ impl Picture {
     ///
     /// # Errors
     /// [`Error::Input`].
-    pub fn read(path: &Path) -> Result<Self> {
+    pub(super) fn read(path: &Path) -> Result<Self> {
         let wrong = |what: String| Error::input(path, what, "remove it and draw it anew");
         let file = File::open(path).map_err(|error| wrong(format!("it cannot be read ({error})")))?;
         let broken = |error: ::png::DecodingError| wrong(format!("it is no whole picture ({error})"));
@@ -43,13 +43,13 @@ impl Picture {
     }
 
     /// All of it.
-    pub fn whole(&self) -> Part {
+    pub(super) fn whole(&self) -> Part {
         Part { from: [0; 2], size: self.size }
     }
 
     /// The least rectangle that holds all pixels that differ from those of a picture of the same size; one pixel where none
     /// do.
-    pub fn changed(&self, other: &Self) -> Part {
+    pub(super) fn changed(&self, other: &Self) -> Part {
         let row = 3 * self.size[0] as usize;
         let rows = self.rgb.chunks_exact(row).zip(other.rgb.chunks_exact(row)).enumerate();
         let (mut low, mut high) = (self.size, [0, 0]);
@@ -68,7 +68,7 @@ impl Picture {
     }
 
     /// The bytes of a rectangle.
-    pub fn part(&self, part: Part) -> Vec<u8> {
+    pub(super) fn part(&self, part: Part) -> Vec<u8> {
         let Part { from: [left, top], size: [width, height] } = part;
         let row = |y: u32| {
             let start = 3 * (y as usize * self.size[0] as usize + left as usize);

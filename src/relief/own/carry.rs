@@ -17,7 +17,7 @@ const WIDER: f64 = 1.5 / (PLACES - 1) as f64;
 const STEP: f64 = 8.0;
 
 /// A part of a line in the file's coordinates.
-struct Run {
+struct OwnRun {
     line: usize,
     places: Vec<DVec2>,
 }
@@ -32,16 +32,17 @@ pub(super) fn to_grid(lines: &[OwnLine], crs: &Crs, dem: &Dem) -> Vec<Vec<Vec<DV
             Some(around) => within(&places, around),
             None => vec![places],
         };
-        within.into_iter().map(move |places| Run { line: i, places })
+        within.into_iter().map(move |places| OwnRun { line: i, places })
     });
-    let runs: Vec<Run> = runs.collect();
+    let runs: Vec<OwnRun> = runs.collect();
     let coarse = carried(&runs, crs, dem);
     let is_world = crs == dem.georeference().world();
     let (runs, carried_over) = if is_world {
         (runs, coarse)
     } else {
-        let fine = |(run, on_grid): (Run, Vec<DVec2>)| Run { line: run.line, places: refined(&run.places, &on_grid) };
-        let runs: Vec<Run> = runs.into_iter().zip(coarse).map(fine).collect();
+        let fine =
+            |(run, on_grid): (OwnRun, Vec<DVec2>)| OwnRun { line: run.line, places: refined(&run.places, &on_grid) };
+        let runs: Vec<OwnRun> = runs.into_iter().zip(coarse).map(fine).collect();
         let on_grid = carried(&runs, crs, dem);
         (runs, on_grid)
     };
@@ -69,7 +70,7 @@ fn around(crs: &Crs, dem: &Dem) -> Option<[DVec2; 2]> {
 }
 
 /// Columns and rows of the places of each run; NaN where there is no such place.
-fn carried(runs: &[Run], crs: &Crs, dem: &Dem) -> Vec<Vec<DVec2>> {
+fn carried(runs: &[OwnRun], crs: &Crs, dem: &Dem) -> Vec<Vec<DVec2>> {
     // All at once: the way from one system to another is dear to find.
     let places: Vec<DVec2> = runs.iter().flat_map(|run| &run.places).copied().collect();
     let worlds = dem.georeference().world_places(crs, &places);

@@ -12,7 +12,7 @@ use super::trace::Tracer;
 use super::{SlopeBlock, SlopeLine, SlopePoint};
 
 /// Makes a block from all the blocks that it needs.
-pub fn made<'a>(
+pub(super) fn made<'a>(
     land: &Land,
     blocks: &Blocks,
     at: BlockAt,
@@ -39,7 +39,7 @@ pub fn made<'a>(
 }
 
 /// Least and most column and row.
-pub fn bounds(line: &SlopeLine) -> [DVec2; 2] {
+pub(super) fn bounds(line: &SlopeLine) -> [DVec2; 2] {
     let none = [DVec2::INFINITY, DVec2::NEG_INFINITY];
     line.points.iter().fold(none, |[low, high], point| [low.min(point.at), high.max(point.at)])
 }

@@ -21,21 +21,24 @@ use super::block::bounds;
 use super::land::Land;
 use super::level::BlockAt;
 use super::{SlopeBlock, SlopeLine, SlopePoint};
-use crate::cache::{Cache, Hearing, Kept, Key, Kind, Sheet};
+use crate::cache::{Cache, CacheKey, CacheKind, CacheObserver, KeptEntry, NewEntry};
 use crate::dem::Dem;
 use crate::error::Result;
 use crate::relief::kept::digest;
 
 /// Raise it when the lines of the same heights come out otherwise, or when the bytes below mean something else.
 const FORMAT: u32 = 1;
-const KIND: Kind =
-    Kind { name: "slopes", format: FORMAT, words: ["what was made of slope lines", "what is kept of slope lines"] };
+const KIND: CacheKind = CacheKind {
+    name: "slopes",
+    format: FORMAT,
+    words: ["what was made of slope lines", "what is kept of slope lines"],
+};
 /// Fewer blocks are made as fast as they are read.
 const LEAST: usize = 200;
 
 /// Where the lines of a DEM are kept.
 #[derive(Debug)]
-pub struct Store {
+pub(super) struct Store {
     cache: Cache,
     /// Of all that lines depend on.
     hash: u128,
@@ -60,7 +63,7 @@ struct Block {
 
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-struct Line {
+struct KeptLine {
     id: [u32; 2],
     points: u32,
 }
@@ -79,7 +82,7 @@ impl Store {
     ///
     /// # Errors
     /// Those of reading the samples.
-    pub fn new(cache: &Cache, dem: &Dem, exaggeration: f64, land: &Land) -> Result<Option<Self>> {
+    pub(super) fn new(cache: &Cache, dem: &Dem, exaggeration: f64, land: &Land) -> Result<Option<Self>> {
         if cache.folder().is_none() {
             return Ok(None);
         }
@@ -95,7 +98,7 @@ impl Store {
     ///
     /// # Errors
     /// None of its own.
-    pub fn blocks(
+    pub(super) fn blocks(
         &self,
         wanted: &[BlockAt],
         make: impl FnOnce() -> Vec<Arc<SlopeBlock>>,
@@ -106,8 +109,8 @@ impl Store {
         let mut hash = Xxh3::new();
         hash.update(&self.hash.to_le_bytes());
         wanted.iter().for_each(|at| hash.update(bytemuck::bytes_of(&[at.level, at.row, at.column])));
-        let key = Key { kind: KIND, hash: hash.digest128(), of: self.of.clone() };
-        let hearing = Hearing { warn: &|_| (), progress: &|_| () };
+        let key = CacheKey { kind: KIND, hash: hash.digest128(), of: self.of.clone() };
+        let hearing = CacheObserver { warn: &|_| (), progress: &|_| () };
         let are_wanted = |blocks: &Vec<Arc<SlopeBlock>>| {
             let at = |block: &Arc<SlopeBlock>| BlockAt { level: block.level, row: block.at[1], column: block.at[0] };
             blocks.iter().map(at).eq(wanted.iter().copied())
@@ -132,12 +135,12 @@ impl Store {
 }
 
 /// Writes and publishes blocks.
-fn write(sheet: Sheet, blocks: &[Arc<SlopeBlock>]) -> Result<Kept> {
+fn write(sheet: NewEntry, blocks: &[Arc<SlopeBlock>]) -> Result<KeptEntry> {
     let lines = || blocks.iter().flat_map(|block| &block.lines);
     let header = Header { blocks: blocks.len() as u64, lines: lines().count() as u64 };
     let block = |block: &Arc<SlopeBlock>| Block { level: block.level, at: block.at, lines: block.lines.len() as u32 };
     let line =
-        |line: &SlopeLine| Line { id: [line.id as u32, (line.id >> 32) as u32], points: line.points.len() as u32 };
+        |line: &SlopeLine| KeptLine { id: [line.id as u32, (line.id >> 32) as u32], points: line.points.len() as u32 };
     let point = |point: &SlopePoint| {
         let SlopePoint { at, height, gradient, room } = *point;
         Point { at: at.to_array(), height, gradient: gradient.to_array(), room }
@@ -150,7 +153,7 @@ fn write(sheet: Sheet, blocks: &[Arc<SlopeBlock>]) -> Result<Kept> {
 }
 
 /// Reads blocks. Fails where the bytes are not those that were written.
-fn recall(kept: Kept) -> io::Result<Vec<Arc<SlopeBlock>>> {
+fn recall(kept: KeptEntry) -> io::Result<Vec<Arc<SlopeBlock>>> {
     let damaged = || io::Error::from(ErrorKind::InvalidData);
     let bytes = kept.whole()?;
     let (header, rest) = bytes.split_at_checked(size_of::<Header>()).ok_or_else(damaged)?;
@@ -159,14 +162,14 @@ fn recall(kept: Kept) -> io::Result<Vec<Arc<SlopeBlock>>> {
         <[u8]>::split_at_checked(bytes, usize::try_from(count).ok()?.checked_mul(size)?)
     };
     let (blocks, rest) = parted(rest, header.blocks, size_of::<Block>()).ok_or_else(damaged)?;
-    let (lines, points) = parted(rest, header.lines, size_of::<Line>()).ok_or_else(damaged)?;
-    let mut lines = lines.chunks_exact(size_of::<Line>()).map(bytemuck::pod_read_unaligned::<Line>);
+    let (lines, points) = parted(rest, header.lines, size_of::<KeptLine>()).ok_or_else(damaged)?;
+    let mut lines = lines.chunks_exact(size_of::<KeptLine>()).map(bytemuck::pod_read_unaligned::<KeptLine>);
     let mut points = points.chunks_exact(size_of::<Point>()).map(bytemuck::pod_read_unaligned::<Point>);
     let point = |point: Point| {
         let Point { at, height, gradient, room } = point;
         SlopePoint { at: DVec2::from_array(at), height, gradient: Vec2::from_array(gradient), room }
     };
-    let mut line = |line: Line| SlopeLine {
+    let mut line = |line: KeptLine| SlopeLine {
         id: u64::from(line.id[0]) | u64::from(line.id[1]) << 32,
         points: points.by_ref().take(line.points as usize).map(point).collect(),
     };

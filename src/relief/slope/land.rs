@@ -26,7 +26,7 @@ const NEARLY: f64 = 0.5;
 
 /// The land and its rules.
 #[derive(Debug)]
-pub struct Land {
+pub(super) struct Land {
     /// Held.
     pub surface: Arc<Surface>,
     /// Metres of the surface's cells.
@@ -43,7 +43,7 @@ pub struct Land {
 
 /// A place of the land.
 #[derive(Debug, Clone, Copy)]
-pub struct Place {
+pub(super) struct LandPlace {
     /// Metres on the map from the north-west sample, x east and y south, by columns and rows.
     pub at: DVec2,
     /// Exaggerated metres.
@@ -54,7 +54,7 @@ pub struct Place {
     pub downhill: DVec2,
 }
 
-impl Place {
+impl LandPlace {
     /// Whether the map's way downhill is no more than so far, by its cosine, from that of another place.
     fn is_towards(&self, other: &Self, cosine: f64) -> bool {
         self.gradient.dot(other.gradient) >= cosine * self.gradient.length() * other.gradient.length()
@@ -66,7 +66,7 @@ impl Land {
     ///
     /// # Errors
     /// As [`Dem::spaced`].
-    pub fn new(
+    pub(super) fn new(
         surface: Arc<Surface>,
         exaggeration: f64,
         rules: SlopeRules,
@@ -89,24 +89,24 @@ impl Land {
     }
 
     /// Adds to a hash what lines depend on beside the heights.
-    pub fn identify(&self, hash: &mut Xxh3) {
+    pub(super) fn identify(&self, hash: &mut Xxh3) {
         hash.update(bytemuck::bytes_of(&[self.least, self.turned]));
         hash.update(&[self.water.is_some().into()]);
         self.stops.identify(hash);
     }
 
     /// Metres on the map of a column and row of the DEM.
-    pub fn metres(&self, at: DVec2) -> DVec2 {
+    pub(super) fn metres(&self, at: DVec2) -> DVec2 {
         at * self.metres
     }
 
     /// The column and row of the DEM of such metres.
-    pub fn samples(&self, at: DVec2) -> DVec2 {
+    pub(super) fn samples(&self, at: DVec2) -> DVec2 {
         at / self.metres
     }
 
     /// Whether the land about a place may slope enough for a line to begin there, as its nearest sample tells.
-    pub fn may_slope(&self, at: DVec2) -> bool {
+    pub(super) fn may_slope(&self, at: DVec2) -> bool {
         let dem = self.surface.dem();
         let [c, r] = (at / self.cell).round().max(DVec2::ZERO).as_usizevec2().to_array();
         let is_inside = c < dem.columns() && r < dem.rows();
@@ -114,17 +114,17 @@ impl Land {
     }
 
     /// Whether lines may be on land of a gradient, exaggerated metres a metre.
-    pub fn is_steep(&self, gradient: DVec2) -> bool {
+    pub(super) fn is_steep(&self, gradient: DVec2) -> bool {
         gradient.length_squared() >= self.least * self.least
     }
 
     /// The share of the way between two places at which a line ends.
-    pub fn met(&self, [from, to]: [DVec2; 2]) -> Option<f64> {
+    pub(super) fn met(&self, [from, to]: [DVec2; 2]) -> Option<f64> {
         self.stops.met([from / self.cell, to / self.cell])
     }
 
     /// Whether a line through `seed` may be at a place.
-    pub fn allows(&self, place: &Place, seed: &Place) -> bool {
+    pub(super) fn allows(&self, place: &LandPlace, seed: &LandPlace) -> bool {
         let is_water = |water: &FlatWater| {
             let at = self.samples(place.at).round().as_usizevec2();
             water.is_water(at.x, at.y)
@@ -145,7 +145,7 @@ fn thinned(dem: &Dem, spacing: usize) -> Result<Surface> {
 
 /// Goes over the land, and knows the patch that it is on.
 #[derive(Debug)]
-pub struct Walker<'a> {
+pub(super) struct Walker<'a> {
     /// Where.
     pub land: &'a Land,
     patch: Option<(PatchAt, Patch)>,
@@ -156,12 +156,12 @@ type PatchAt = [usize; 3];
 
 impl<'a> Walker<'a> {
     /// Nowhere yet.
-    pub fn new(land: &'a Land) -> Self {
+    pub(super) fn new(land: &'a Land) -> Self {
         Self { land, patch: None }
     }
 
     /// A place by its metres; none outside, at voids, where the surface is level and where it folds.
-    pub fn place(&mut self, at: DVec2) -> Option<Place> {
+    pub(super) fn place(&mut self, at: DVec2) -> Option<LandPlace> {
         let (dem, cell) = (self.land.surface.dem(), self.land.cell);
         let place = at / cell;
         let last = DVec2::new(dem.columns() as f64, dem.rows() as f64) - 1.0;
@@ -181,7 +181,7 @@ impl<'a> Walker<'a> {
         let way = -gradient.normalize_or_zero();
         let downhill = DVec2::new(way.perp_dot(south.truncate()), east.truncate().perp_dot(way)) / normal.z * cell;
         let is_sloping = normal.z <= -LEAST_COVER * cell.x * cell.y && gradient.length_squared() > 0.0;
-        is_sloping.then(|| Place { at, height: point.z, gradient, downhill: downhill.normalize_or_zero() })
+        is_sloping.then(|| LandPlace { at, height: point.z, gradient, downhill: downhill.normalize_or_zero() })
     }
 
     /// A patch; none where a corner is a void.

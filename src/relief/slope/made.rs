@@ -117,15 +117,6 @@ impl Slopes {
         Ok(Self { land, exaggeration, blocks, made: Mutex::default(), store: None })
     }
 
-    /// The same, whose lines are kept in a cache from one process to the next; `dem` is that of the surface.
-    ///
-    /// # Errors
-    /// Those of reading the samples.
-    pub fn kept_in(self, cache: &Cache, dem: &Dem) -> Result<Self> {
-        let store = Store::new(cache, dem, self.exaggeration, &self.land)?;
-        Ok(Self { store, ..self })
-    }
-
     /// Blocks whose lines may be drawn, by level, row and column: those whose lines may have as much room as is needed in the box
     /// that they are in and in more than a few places on the land of it, some of which are seen. Those that are not known yet are
     /// made, on every core.
@@ -167,19 +158,9 @@ impl Slopes {
         missing.iter().filter_map(|at| new.get(at).cloned()).collect()
     }
 
-    /// How far apart the closest lines are, metres on the map.
-    pub fn least_spacing(&self) -> f64 {
-        self.blocks.spacing(LEVELS - 1)
-    }
-
     /// Exaggerated metres for one of the land.
     pub fn exaggeration(&self) -> f64 {
         self.exaggeration
-    }
-
-    /// Where a point of a line lies, metres of the exaggerated world.
-    pub fn world(&self, point: &SlopePoint) -> DVec3 {
-        self.on_map(self.land.metres(point.at)).extend(point.height.into())
     }
 
     /// A place of the map by its metres from the north-west sample.
@@ -321,5 +302,28 @@ impl Slopes {
 
     fn lock(&self) -> MutexGuard<'_, Made> {
         self.made.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// What other stages and tests look into.
+#[doc(hidden)]
+impl Slopes {
+    /// The same, whose lines are kept in a cache from one process to the next; `dem` is that of the surface.
+    ///
+    /// # Errors
+    /// Those of reading the samples.
+    pub fn kept_in(self, cache: &Cache, dem: &Dem) -> Result<Self> {
+        let store = Store::new(cache, dem, self.exaggeration, &self.land)?;
+        Ok(Self { store, ..self })
+    }
+
+    /// How far apart the closest lines are, metres on the map.
+    pub fn least_spacing(&self) -> f64 {
+        self.blocks.spacing(LEVELS - 1)
+    }
+
+    /// Where a point of a line lies, metres of the exaggerated world.
+    pub fn world(&self, point: &SlopePoint) -> DVec3 {
+        self.on_map(self.land.metres(point.at)).extend(point.height.into())
     }
 }

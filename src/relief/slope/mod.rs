@@ -32,7 +32,8 @@ mod trace;
 
 use glam::{DVec2, Vec2};
 
-pub use made::{Need, Needed, Slopes};
+pub(crate) use made::Needed;
+pub use made::{Need, Slopes};
 
 /// When slope lines end.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -17,7 +17,7 @@ const NONE: u32 = u32::MAX;
 
 /// Pieces of lines in a rectangle.
 #[derive(Debug)]
-pub struct Neighbours {
+pub(super) struct Neighbours {
     low: DVec2,
     /// Side of a bucket, metres.
     side: f32,
@@ -25,14 +25,14 @@ pub struct Neighbours {
     size: [i32; 2],
     /// The last piece of each bucket, row by row.
     last: Vec<u32>,
-    pieces: Vec<Piece>,
+    pieces: Vec<LinePiece>,
     /// Half of the longest piece, metres.
     half: f32,
 }
 
 /// A straight piece of a line; metres from the low corner.
 #[derive(Debug, Clone, Copy)]
-struct Piece {
+struct LinePiece {
     middle: Vec2,
     way: Vec2,
     half: f32,
@@ -42,7 +42,7 @@ struct Piece {
     before: u32,
 }
 
-impl Piece {
+impl LinePiece {
     /// From a place, squared: across, and [`AHEAD`] times as far before its ends.
     fn distance_squared(&self, place: Vec2) -> f32 {
         let off = place - self.middle;
@@ -54,7 +54,7 @@ impl Piece {
 
 impl Neighbours {
     /// None yet, in a rectangle with buckets of a side; metres.
-    pub fn new([low, high]: [DVec2; 2], side: f64) -> Self {
+    pub(super) fn new([low, high]: [DVec2; 2], side: f64) -> Self {
         let size = ((high - low) / side).ceil().as_ivec2().to_array().map(|buckets| buckets.max(1));
         let last = vec![NONE; (size[0] * size[1]) as usize];
         Self { low, side: side as f32, size, last, pieces: Vec::new(), half: 0.0 }
@@ -62,7 +62,7 @@ impl Neighbours {
 
     /// Takes in a line whose points lie at most a step apart, metres, as far as it lies in the rectangle; `place` tells their
     /// metres.
-    pub fn add(&mut self, line: &[SlopePoint], step: f64, place: impl Fn(&SlopePoint) -> DVec2) {
+    pub(super) fn add(&mut self, line: &[SlopePoint], step: f64, place: impl Fn(&SlopePoint) -> DVec2) {
         let (low, last) = (self.low, line.len() - 1);
         let size = IVec2::from(self.size).as_vec2() * self.side;
         let points = (f64::from(self.side * LONGEST) / step).max(1.0) as usize;
@@ -84,7 +84,13 @@ impl Neighbours {
                 let half = from.distance(to) / 2.0;
                 let room = line[k..=end].iter().map(|point| point.room).fold(0.0, f32::max);
                 let before = &mut self.last[(y * self.size[0] + x) as usize];
-                self.pieces.push(Piece { middle, way: (to - from).normalize_or_zero(), half, room, before: *before });
+                self.pieces.push(LinePiece {
+                    middle,
+                    way: (to - from).normalize_or_zero(),
+                    half,
+                    room,
+                    before: *before,
+                });
                 *before = self.pieces.len() as u32 - 1;
                 self.half = self.half.max(half);
             }
@@ -93,13 +99,13 @@ impl Neighbours {
     }
 
     /// Whether no line is so near to a place that has more room than that, metres.
-    pub fn leave(&self, place: DVec2, distance: f32) -> bool {
+    pub(super) fn leave(&self, place: DVec2, distance: f32) -> bool {
         let place = (place - self.low).as_vec2();
         // Buckets are as wide as spacings: all that is nearer than one lies in those about the place, and in its own most likely.
         let Some([x, y]) = self.bucket(place) else { return true };
         let [columns, rows] = self.size;
         let reach = ((distance + self.half) / self.side).ceil() as i32;
-        let is_far = |piece: &Piece| piece.distance_squared(place) >= distance.min(piece.room).powi(2);
+        let is_far = |piece: &LinePiece| piece.distance_squared(place) >= distance.min(piece.room).powi(2);
         let is_clear = |column: i32, row: i32| {
             let is_inside = (0..columns).contains(&column) && (0..rows).contains(&row);
             !is_inside || self.of_bucket(row * columns + column).all(is_far)
@@ -109,7 +115,7 @@ impl Neighbours {
 
     /// How far a place is from the nearest line that has more room than that, at most `most`, metres: across the line, and ahead
     /// of its ends [`AHEAD`] times as far. Anything below `enough` is as good as the least: the search ends there.
-    pub fn room(&self, place: DVec2, most: f32, enough: f32) -> f32 {
+    pub(super) fn room(&self, place: DVec2, most: f32, enough: f32) -> f32 {
         let place = (place - self.low).as_vec2();
         let Some([x, y]) = self.bucket(place) else { return most };
         let corner = Vec2::new(x as f32, y as f32) * self.side;
@@ -142,7 +148,7 @@ impl Neighbours {
         })
     }
 
-    fn of_bucket(&self, bucket: i32) -> impl Iterator<Item = &Piece> {
+    fn of_bucket(&self, bucket: i32) -> impl Iterator<Item = &LinePiece> {
         let first = self.pieces.get(self.last[bucket as usize] as usize);
         std::iter::successors(first, |piece| self.pieces.get(piece.before as usize))
     }

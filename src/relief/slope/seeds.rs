@@ -8,7 +8,7 @@ use super::tile::{PLACES, SIDE, order};
 
 /// The seeds of a block, the first to be tried first, each with its number: one somewhere in each of some of 32 x 32 squares. The tile is
 /// turned, mirrored and shifted anew in each block, so that blocks and levels do not look alike.
-pub fn seeds(blocks: &Blocks, at: BlockAt) -> impl Iterator<Item = (usize, DVec2)> {
+pub(super) fn seeds(blocks: &Blocks, at: BlockAt) -> impl Iterator<Item = (usize, DVec2)> {
     let [low, high] = blocks.square(at);
     let square = (high - low) / SIDE as f64;
     let seed = at.id();

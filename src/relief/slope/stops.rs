@@ -12,7 +12,7 @@ const SLACK: f64 = 1e-9;
 
 /// Pieces of lines by the cells that they touch. Places are columns and rows.
 #[derive(Debug)]
-pub struct Stops {
+pub(super) struct Stops {
     cells: [usize; 2],
     /// Where in `pieces` those of each cell begin, row by row, and where the last end.
     first: Vec<u32>,
@@ -21,7 +21,7 @@ pub struct Stops {
 
 impl Stops {
     /// Of lines on a grid of cells, each a share of the cells that the lines are told in.
-    pub fn new(lines: &[SurfaceLine], cells: [usize; 2], scale: f64) -> Self {
+    pub(super) fn new(lines: &[SurfaceLine], cells: [usize; 2], scale: f64) -> Self {
         let of_line = |line: &SurfaceLine| {
             let last = line.points.last().filter(|_| line.closed).into_iter().chain(&line.points);
             let ends: Vec<DVec2> = last.map(|point| point.at / scale).collect();
@@ -40,12 +40,12 @@ impl Stops {
     }
 
     /// Adds to a hash where they are.
-    pub fn identify(&self, hash: &mut Xxh3) {
+    pub(super) fn identify(&self, hash: &mut Xxh3) {
         self.pieces.iter().for_each(|[from, to]| hash.update(bytemuck::bytes_of(&[from.to_array(), to.to_array()])));
     }
 
     /// The share of the way from one place to another at which the first piece is met.
-    pub fn met(&self, [from, to]: [DVec2; 2]) -> Option<f64> {
+    pub(super) fn met(&self, [from, to]: [DVec2; 2]) -> Option<f64> {
         let of_cell = |cell: usize| &self.pieces[self.first[cell] as usize..self.first[cell + 1] as usize];
         let pieces = overlapped(self.cells, [from, to]).flat_map(of_cell);
         pieces.filter_map(|piece| crossing([from, to], *piece)).reduce(f64::min)

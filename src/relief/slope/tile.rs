@@ -6,9 +6,9 @@
 use std::sync::OnceLock;
 
 /// Places along a side.
-pub const SIDE: usize = 32;
+pub(super) const SIDE: usize = 32;
 /// Places.
-pub const PLACES: usize = SIDE * SIDE;
+pub(super) const PLACES: usize = SIDE * SIDE;
 /// Standard deviation of the Gaussian by which places crowd, places.
 const SIGMA: f64 = 1.5;
 /// One, of the Gaussian.
@@ -17,7 +17,7 @@ const ONE: f64 = (1 << 20) as f64;
 const FIRST: usize = PLACES / 10;
 
 /// Places row by row, by their ranks.
-pub fn order() -> &'static [u16] {
+pub(super) fn order() -> &'static [u16] {
     static ORDER: OnceLock<Vec<u16>> = OnceLock::new();
     ORDER.get_or_init(made)
 }

@@ -6,7 +6,7 @@
 use glam::DVec2;
 
 use super::SlopePoint;
-use super::land::{Place, Walker};
+use super::land::{LandPlace, Walker};
 use super::level::Blocks;
 use super::neighbours::Neighbours;
 
@@ -24,7 +24,7 @@ const SHORTEST: f64 = 0.5;
 
 /// Makes lines of a level.
 #[derive(Debug)]
-pub struct Tracer<'a> {
+pub(super) struct Tracer<'a> {
     walker: Walker<'a>,
     spacing: f64,
     reach: f64,
@@ -38,13 +38,13 @@ pub struct Tracer<'a> {
 
 /// Where a step leads.
 enum Step {
-    On(Place),
-    End(Place),
+    On(LandPlace),
+    End(LandPlace),
 }
 
 impl<'a> Tracer<'a> {
     /// Of lines of a level.
-    pub fn new(walker: Walker<'a>, blocks: &Blocks, level: u32) -> Self {
+    pub(super) fn new(walker: Walker<'a>, blocks: &Blocks, level: u32) -> Self {
         let between = blocks.point_step(level);
         let steps = (between / (STEP * blocks.unit)).ceil();
         Self {
@@ -59,7 +59,7 @@ impl<'a> Tracer<'a> {
     }
 
     /// The line through a seed among others; none where it may not begin or gets too short.
-    pub fn line(&mut self, others: &Neighbours, seed: DVec2) -> Option<Vec<SlopePoint>> {
+    pub(super) fn line(&mut self, others: &Neighbours, seed: DVec2) -> Option<Vec<SlopePoint>> {
         if !others.leave(seed, self.spacing as f32) || !self.walker.land.may_slope(seed) {
             return None;
         }
@@ -73,7 +73,7 @@ impl<'a> Tracer<'a> {
     }
 
     /// Points from a seed on down (`sign` 1) or up (-1), and how far they lead, metres.
-    fn half(&mut self, others: &Neighbours, seed: &Place, sign: f64) -> (Vec<SlopePoint>, f64) {
+    fn half(&mut self, others: &Neighbours, seed: &LandPlace, sign: f64) -> (Vec<SlopePoint>, f64) {
         let mut points = Vec::new();
         // Of the last point and of the last place.
         let (mut kept, mut here) = (*seed, *seed);
@@ -102,8 +102,8 @@ impl<'a> Tracer<'a> {
     }
 
     /// A step of so many metres downhill; none where a line must not go on.
-    fn step(&mut self, here: &Place, metres: f64, seed: &Place) -> Option<Step> {
-        let goes_on = |next: &Place| next.downhill.dot(here.downhill) > 0.0;
+    fn step(&mut self, here: &LandPlace, metres: f64, seed: &LandPlace) -> Option<Step> {
+        let goes_on = |next: &LandPlace| next.downhill.dot(here.downhill) > 0.0;
         let middle = self.walker.place(here.at + here.downhill * (metres / 2.0)).filter(goes_on)?;
         let to = here.at + middle.downhill * metres;
         if let Some(share) = self.walker.land.met([here.at, to]) {
@@ -115,7 +115,7 @@ impl<'a> Tracer<'a> {
         self.walker.land.allows(&next, seed).then_some(Step::On(next))
     }
 
-    fn point(&self, place: &Place, room: f32) -> SlopePoint {
+    fn point(&self, place: &LandPlace, room: f32) -> SlopePoint {
         let at = self.walker.land.samples(place.at);
         SlopePoint { at, height: place.height as f32, gradient: place.gradient.as_vec2(), room }
     }

@@ -11,20 +11,20 @@ use xxhash_rust::xxh3::{Xxh3, xxh3_128};
 
 use super::super::{PyramidBuilder, SurfaceBand};
 use super::{Pyramid, Surface, WORDS};
-use crate::cache::{Kept, Key, Kind, Sheet, not_kept};
+use crate::cache::{CacheKey, CacheKind, KeptEntry, NewEntry, not_kept};
 use crate::dem::{Dem, Samples};
 use crate::error::{Message, Result};
 
 /// Raise it when the pyramid of the same samples comes out otherwise, or when the bytes mean something else.
 const FORMAT: u32 = 1;
-const KIND: Kind = Kind { name: "bounds", format: FORMAT, words: WORDS };
+const KIND: CacheKind = CacheKind { name: "bounds", format: FORMAT, words: WORDS };
 
 /// What the pyramid of a DEM with this stamp depends on.
-pub(super) fn key(dem: &Dem, stamp: u128, exaggeration: f64) -> Key {
+pub(super) fn key(dem: &Dem, stamp: u128, exaggeration: f64) -> CacheKey {
     let of = dem.label();
     let of = if exaggeration == 1.0 { of } else { format!("{of}, exaggerated {exaggeration} times") };
     let bytes = [&stamp.to_le_bytes()[..], &exaggeration.to_bits().to_le_bytes()].concat();
-    Key { kind: KIND, hash: xxh3_128(&bytes), of }
+    CacheKey { kind: KIND, hash: xxh3_128(&bytes), of }
 }
 
 /// Makes the pyramid in a look at every sample; `beside` takes them too, as they are drawn, band by band.
@@ -49,7 +49,7 @@ pub(super) fn make(
 }
 
 /// Writes a pyramid where it is kept.
-pub(super) fn keep(pyramid: &Pyramid, sheet: Option<Sheet>, warn: &dyn Fn(&Message)) {
+pub(super) fn keep(pyramid: &Pyramid, sheet: Option<NewEntry>, warn: &dyn Fn(&Message)) {
     let Some(mut sheet) = sheet else { return };
     let (key, mut hash) = (sheet.key().clone(), Xxh3::new());
     for bytes in pyramid.bytes() {
@@ -63,7 +63,7 @@ pub(super) fn keep(pyramid: &Pyramid, sheet: Option<Sheet>, warn: &dyn Fn(&Messa
 }
 
 /// Reads what was kept. Fails where the bytes are not those that were written.
-pub(super) fn recall(dem: &Dem, Kept { file, bytes, .. }: Kept) -> io::Result<Pyramid> {
+pub(super) fn recall(dem: &Dem, KeptEntry { file, bytes, .. }: KeptEntry) -> io::Result<Pyramid> {
     let mut file = BufReader::new(file).take(bytes);
     let mut hash = Xxh3::new();
     let pyramid = Pyramid::from_bytes(dem, |bytes| {

@@ -15,14 +15,14 @@ use bytemuck::{Pod, Zeroable};
 use xxhash_rust::xxh3::Xxh3;
 
 use super::WORDS;
-use crate::cache::{Kept, Key, Kind, Sheet, not_kept};
-use crate::dem::{Band, Dem, Entry, OverviewBuilder, Overviews, Samples, Survey, SurveyBuilder, Validity};
+use crate::cache::{CacheKey, CacheKind, KeptEntry, NewEntry, not_kept};
+use crate::dem::{Band, Dem, OverviewBuilder, OverviewEntry, Overviews, Samples, Survey, SurveyBuilder, Validity};
 use crate::error::{Message, Result};
 
 /// Raise it when the survey or the overviews of the same samples come out otherwise, or when the bytes below mean something
 /// else: settings stand in them by the names that they have in the code.
 const FORMAT: u32 = 3;
-const KIND: Kind = Kind { name: "heights", format: FORMAT, words: WORDS };
+const KIND: CacheKind = CacheKind { name: "heights", format: FORMAT, words: WORDS };
 
 /// What stands before the thinned samples.
 #[repr(C)]
@@ -60,18 +60,18 @@ pub(super) struct HeightsBuilder<'a> {
     dem: &'a Dem,
     survey: SurveyBuilder<'a>,
     overviews: OverviewBuilder,
-    sheet: Option<Sheet>,
+    sheet: Option<NewEntry>,
 }
 
 /// What the heights of a DEM with this stamp depend on.
-pub(super) fn key(dem: &Dem, stamp: u128) -> Key {
-    Key { kind: KIND, hash: stamp, of: dem.label() }
+pub(super) fn key(dem: &Dem, stamp: u128) -> CacheKey {
+    CacheKey { kind: KIND, hash: stamp, of: dem.label() }
 }
 
 /// Makes them in a look of their own.
 pub(super) fn make(
     dem: &Dem,
-    sheet: Option<Sheet>,
+    sheet: Option<NewEntry>,
     warn: &dyn Fn(&Message),
     progress: &dyn Fn(f64),
 ) -> Result<Heights> {
@@ -89,7 +89,7 @@ pub(super) fn make(
 
 impl<'a> HeightsBuilder<'a> {
     /// Of a DEM without exaggeration, no row seen yet. Without a sheet there are no overviews.
-    pub(super) fn new(dem: &'a Dem, sheet: Option<Sheet>) -> Self {
+    pub(super) fn new(dem: &'a Dem, sheet: Option<NewEntry>) -> Self {
         Self { dem, survey: SurveyBuilder::new(dem), overviews: OverviewBuilder::new(dem), sheet }
     }
 
@@ -108,7 +108,7 @@ impl<'a> HeightsBuilder<'a> {
         let key = sheet.key().clone();
         finish(&mut sheet, &survey, &index);
         let overviews = match sheet.publish() {
-            Ok(Kept { file, path, .. }) => Overviews::new(self.dem, &path, file, index),
+            Ok(KeptEntry { file, path, .. }) => Overviews::new(self.dem, &path, file, index),
             Err(error) => {
                 warn(&not_kept(&key, &error));
                 None
@@ -127,7 +127,7 @@ impl Heights {
 }
 
 /// Writes what follows the blocks.
-fn finish(sheet: &mut Sheet, survey: &Survey, index: &[Entry]) {
+fn finish(sheet: &mut NewEntry, survey: &Survey, index: &[OverviewEntry]) {
     let Survey { range, voids, marks, assumed, patches, thinned, validity } = survey;
     // Words are always JSON; a file without them is damaged, and made anew.
     let assumed = serde_json::to_vec(assumed).unwrap_or_default();
@@ -156,7 +156,7 @@ fn finish(sheet: &mut Sheet, survey: &Survey, index: &[Entry]) {
 }
 
 /// Reads what was kept. Fails where the bytes are not those that were written.
-pub(super) fn recall(dem: &Dem, Kept { file, bytes: size, path }: Kept) -> io::Result<Heights> {
+pub(super) fn recall(dem: &Dem, KeptEntry { file, bytes: size, path }: KeptEntry) -> io::Result<Heights> {
     let damaged = || io::Error::from(ErrorKind::InvalidData);
     let mut file = BufReader::new(file);
     file.seek(SeekFrom::Start(size.checked_sub(size_of::<Footer>() as u64).ok_or_else(damaged)?))?;
@@ -179,7 +179,7 @@ pub(super) fn recall(dem: &Dem, Kept { file, bytes: size, path }: Kept) -> io::R
     fill(bytemuck::cast_slice_mut(&mut thinned))?;
     let mut valid = vec![0; validity as usize];
     fill(bytemuck::cast_slice_mut(&mut valid))?;
-    let mut index = vec![Entry::zeroed(); Overviews::blocks(dem)];
+    let mut index = vec![OverviewEntry::zeroed(); Overviews::blocks(dem)];
     fill(bytemuck::cast_slice_mut(&mut index))?;
     let mut words = vec![0; assumed as usize];
     fill(&mut words)?;

@@ -11,7 +11,7 @@ use rstar::primitives::Line as Segment;
 use rstar::{PointDistance, RTree};
 
 use super::{Agreement, Judge, Offsets, share_within, sum, summary};
-use crate::truth::Piece;
+use crate::truth::TruthPiece;
 use crate::view::cut::{Step, steps};
 
 /// Lines within this of each other agree, px.
@@ -63,15 +63,15 @@ impl Judge<'_> {
     }
 
     /// Share of truth's length within 1 px of a chain.
-    pub fn recalled(&self, chains: &[Vec<DVec2>]) -> f64 {
+    pub(crate) fn recalled(&self, chains: &[Vec<DVec2>]) -> f64 {
         let segment = |[a, b]: [DVec2; 2]| Segment::new(a.to_array(), b.to_array());
         let lines = RTree::bulk_load(chains.iter().flat_map(|chain| sides(chain)).map(segment).collect());
-        let to_chain = |piece: &&Piece| {
+        let to_chain = |piece: &&TruthPiece| {
             let middle = piece.middle().to_array();
             let nearest = lines.nearest_neighbor(middle);
             (nearest.map_or(f64::INFINITY, |line| line.distance_2(&middle).sqrt()), piece.length())
         };
-        let pieces: Vec<&Piece> = self.truth.on_page().collect();
+        let pieces: Vec<&TruthPiece> = self.truth.on_page().collect();
         share_within(AGREES, &pieces.par_iter().map(to_chain).collect::<Vec<_>>())
     }
 }

@@ -44,7 +44,7 @@ pub(super) enum Curve {
 /// Cubic pieces and how long they are.
 #[derive(Debug, Clone)]
 pub(super) struct Spline {
-    pieces: Vec<Piece>,
+    pieces: Vec<Cubic>,
     parts: Vec<Part>,
     /// Metres to each point; of a closed one to the first again.
     pub knots: Vec<f64>,
@@ -54,7 +54,7 @@ pub(super) struct Spline {
 
 /// A cubic over 0 to 1, by powers.
 #[derive(Debug, Clone, Copy)]
-struct Piece([DVec2; 4]);
+struct Cubic([DVec2; 4]);
 
 /// A part of a piece.
 #[derive(Debug, Clone, Copy)]
@@ -69,7 +69,7 @@ struct Part {
 
 impl Curve {
     /// Metres over ground.
-    pub fn length(&self) -> f64 {
+    pub(super) fn length(&self) -> f64 {
         match self {
             Self::Spline(spline) => spline.length,
             Self::Circle { radius, .. } => TAU * radius,
@@ -77,7 +77,7 @@ impl Curve {
     }
 
     /// Whether it ends where it begins.
-    pub fn is_closed(&self) -> bool {
+    pub(super) fn is_closed(&self) -> bool {
         match self {
             Self::Spline(spline) => spline.closed,
             Self::Circle { .. } => true,
@@ -85,7 +85,7 @@ impl Curve {
     }
 
     /// The place so many metres from its start.
-    pub fn place(&self, metres: f64) -> DVec2 {
+    pub(super) fn place(&self, metres: f64) -> DVec2 {
         match self {
             Self::Spline(spline) => spline.place(metres),
             Self::Circle { centre, radius } => {
@@ -98,7 +98,7 @@ impl Curve {
 
 impl Spline {
     /// Through points, at least two, none where the one before it is; a closed one goes on from the last to the first.
-    pub fn new(points: &[DVec2], closed: bool) -> Self {
+    pub(super) fn new(points: &[DVec2], closed: bool) -> Self {
         let count = points.len();
         let point = |i: isize| match closed {
             true => points[i.rem_euclid(count as isize) as usize],
@@ -109,7 +109,7 @@ impl Spline {
         };
         let pieces = if closed { count } else { count - 1 };
         let pieces: Vec<_> =
-            (0..pieces as isize).map(|i| Piece::through([-1, 0, 1, 2].map(|d| point(i + d)))).collect();
+            (0..pieces as isize).map(|i| Cubic::through([-1, 0, 1, 2].map(|d| point(i + d)))).collect();
         let (mut parts, mut knots, mut metres) = (Vec::new(), vec![0.0], 0.0);
         for (number, piece) in pieces.iter().enumerate() {
             piece.part(0.0, 1.0, piece.length(0.0, 1.0), 0, &mut |from, to, length| {
@@ -146,7 +146,7 @@ impl Spline {
 
     /// Directions in the map along the way, radians clockwise from the y axis, not leaping at a full turn: (metres, radians),
     /// and how far a closed way turns in all.
-    pub fn headings(&self) -> (Vec<(f64, f64)>, f64) {
+    pub(super) fn headings(&self) -> (Vec<(f64, f64)>, f64) {
         let mut nodes: Vec<(f64, f64)> = Vec::new();
         let mut on = |metres: f64, slope: DVec2| {
             let heading = slope.x.atan2(slope.y);
@@ -165,7 +165,7 @@ impl Spline {
     }
 }
 
-impl Piece {
+impl Cubic {
     /// From the second of four points to the third: tangents by Barry and Goldman's recursion over centripetal knots.
     fn through([before, from, to, after]: [DVec2; 4]) -> Self {
         let apart = |a: DVec2, b: DVec2| a.distance(b).sqrt();

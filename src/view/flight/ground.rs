@@ -50,7 +50,7 @@ impl Ground {
     ///
     /// # Errors
     /// As [`Surface::part`], of a surface whose samples stay in their file.
-    pub fn below(curve: &Curve, surface: &Surface, level: Level) -> Result<Self> {
+    pub(super) fn below(curve: &Curve, surface: &Surface, level: Level) -> Result<Self> {
         let length = curve.length();
         let step = surface.dem().cell().min_element() / 2.0;
         let count = (length / step).ceil().clamp(1.0, MOST_STATIONS);
@@ -73,7 +73,7 @@ impl Ground {
     }
 
     /// Heights at the stations, straight over what has none; `None` where none has.
-    pub fn filled(&self) -> Option<Vec<f64>> {
+    pub(super) fn filled(&self) -> Option<Vec<f64>> {
         let known: Vec<(usize, f64)> =
             self.stations.iter().enumerate().filter_map(|(i, height)| Some((i, (*height)?))).collect();
         let height = |i: usize| {

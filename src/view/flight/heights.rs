@@ -33,7 +33,7 @@ pub(super) struct Smooth {
 
 impl Smooth {
     /// The mean of the ground over `half` metres to both sides; `None` where there is no ground.
-    pub fn of(ground: &Ground, curve: &Curve, half: f64) -> Option<Self> {
+    pub(super) fn of(ground: &Ground, curve: &Curve, half: f64) -> Option<Self> {
         let (heights, length) = (ground.filled()?, curve.length());
         let step = length / (heights.len().max(2) - 1) as f64;
         let nodes: Vec<_> = heights.into_iter().enumerate().map(|(i, height)| (i as f64 * step, height)).collect();
@@ -42,7 +42,7 @@ impl Smooth {
     }
 
     /// Exaggerated metres.
-    pub fn at(&self, metres: f64) -> f64 {
+    pub(super) fn at(&self, metres: f64) -> f64 {
         self.pieces.mean(metres, self.half)
     }
 
@@ -93,7 +93,7 @@ pub(super) struct Heights {
 impl Heights {
     /// Of a base over ground with so much clearance; `moments` are those at which the eye comes to and leaves a place so many
     /// metres along, `knots` those at which the base may turn, `half` the half window of lifts.
-    pub fn new(
+    pub(super) fn new(
         base: Base,
         ground: &Ground,
         curve: &Curve,
@@ -128,7 +128,7 @@ impl Heights {
     }
 
     /// Exaggerated metres at a moment, so many metres along the way.
-    pub fn at(&self, moment: f64, metres: f64) -> f64 {
+    pub(super) fn at(&self, moment: f64, metres: f64) -> f64 {
         let lift = self.lift.as_ref().map_or(0.0, |(pieces, half)| pieces.mean(metres, *half));
         self.base.at(moment, metres) + lift
     }

@@ -16,7 +16,7 @@ pub(super) struct Pieces {
 
 impl Pieces {
     /// Through nodes (x, y), at least one, x never falling: two nodes at one x are a jump. Beyond its ends it is level.
-    pub fn new(nodes: impl IntoIterator<Item = (f64, f64)>) -> Self {
+    pub(super) fn new(nodes: impl IntoIterator<Item = (f64, f64)>) -> Self {
         let (x, y): (Vec<f64>, Vec<f64>) = nodes.into_iter().unzip();
         let base = y.first().copied().unwrap_or_default();
         let mut sums = vec![[0.0; 2]; x.len()];
@@ -43,14 +43,14 @@ impl Pieces {
     }
 
     /// Its mean over `at` - `half` to `at` + `half`, weighted by a triangle; `half` above 0.
-    pub fn mean(&self, at: f64, half: f64) -> f64 {
+    pub(super) fn mean(&self, at: f64, half: f64) -> f64 {
         let base = self.y.first().copied().unwrap_or_default();
         let sum = self.twice(at + half) - 2.0 * self.twice(at) + self.twice(at - half);
         base + sum / (half * half)
     }
 
     /// Largest less smallest value.
-    pub fn range(&self) -> f64 {
+    pub(super) fn range(&self) -> f64 {
         let low = self.y.iter().copied().fold(f64::INFINITY, f64::min);
         let high = self.y.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         (high - low).max(0.0)

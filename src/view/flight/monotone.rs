@@ -14,12 +14,12 @@ pub(super) struct Monotone {
 
 impl Monotone {
     /// One number everywhere.
-    pub fn constant(y: f64) -> Self {
+    pub(super) fn constant(y: f64) -> Self {
         Self { x: vec![0.0], y: vec![y], slope: vec![0.0] }
     }
 
     /// Through (x, y), x rising, at least one; beyond its ends it stays as it is there.
-    pub fn new(x: &[f64], y: &[f64]) -> Self {
+    pub(super) fn new(x: &[f64], y: &[f64]) -> Self {
         let steps: Vec<f64> = x.windows(2).map(|x| x[1] - x[0]).collect();
         let rises: Vec<f64> = y.windows(2).zip(&steps).map(|(y, step)| (y[1] - y[0]) / step).collect();
         let slope = (0..x.len().min(y.len())).map(|i| slope(&steps, &rises, i)).collect();
@@ -27,7 +27,7 @@ impl Monotone {
     }
 
     /// The same for what comes round: the last knot is the first again, higher by `rise`, and is as smooth as the others.
-    pub fn closed(x: &[f64], y: &[f64], rise: f64) -> Self {
+    pub(super) fn closed(x: &[f64], y: &[f64], rise: f64) -> Self {
         let count = x.len();
         if count < 3 {
             return Self::new(x, y);
@@ -44,7 +44,7 @@ impl Monotone {
     }
 
     /// Its value.
-    pub fn at(&self, at: f64) -> f64 {
+    pub(super) fn at(&self, at: f64) -> f64 {
         let i = self.x.partition_point(|x| *x <= at);
         if i == 0 || i == self.x.len() {
             return self.y[i.saturating_sub(1)];
@@ -58,12 +58,12 @@ impl Monotone {
     }
 
     /// The first x at which a function that never falls is `y` or more.
-    pub fn first_at(&self, y: f64) -> f64 {
+    pub(super) fn first_at(&self, y: f64) -> f64 {
         self.parted(|value| value < y)[1]
     }
 
     /// The last x at which a function that never falls is `y` or less.
-    pub fn last_at(&self, y: f64) -> f64 {
+    pub(super) fn last_at(&self, y: f64) -> f64 {
         self.parted(|value| value <= y)[0]
     }
 

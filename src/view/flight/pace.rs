@@ -16,7 +16,7 @@ pub(super) enum Pace {
 
 impl Pace {
     /// The first and the last moment.
-    pub fn span(&self) -> [f64; 2] {
+    pub(super) fn span(&self) -> [f64; 2] {
         match self {
             Self::Constant(length) => [0.0, *length],
             Self::Timed(_, span) => *span,
@@ -24,7 +24,7 @@ impl Pace {
     }
 
     /// Metres at a moment.
-    pub fn metres(&self, moment: f64) -> f64 {
+    pub(super) fn metres(&self, moment: f64) -> f64 {
         match self {
             Self::Constant(_) => moment,
             Self::Timed(metres, _) => metres.at(moment),
@@ -32,7 +32,7 @@ impl Pace {
     }
 
     /// The moments at which the eye comes to a place so many metres along, and leaves it.
-    pub fn moments(&self, metres: f64) -> [f64; 2] {
+    pub(super) fn moments(&self, metres: f64) -> [f64; 2] {
         match self {
             Self::Constant(_) => [metres; 2],
             Self::Timed(way, _) => [way.first_at(metres), way.last_at(metres)],

@@ -6,7 +6,7 @@ use std::hash::Hash;
 
 /// Places for so many items. What a frame does not ask for stays until its place is needed.
 #[derive(Debug)]
-pub struct Pool<T> {
+pub struct SlotCache<T> {
     places: HashMap<T, u32>,
     /// Of each place, the item that it holds and the frame that asked for it last.
     held: Vec<(T, u64)>,
@@ -23,8 +23,8 @@ pub struct Placed<T> {
     pub missing: Vec<(u32, T)>,
 }
 
-impl<T: Copy + Eq + Hash> Pool<T> {
-    /// An empty pool.
+impl<T: Copy + Eq + Hash> SlotCache<T> {
+    /// An empty one.
     pub fn new(capacity: usize) -> Self {
         Self { places: HashMap::new(), held: Vec::new(), capacity, frame: 0 }
     }
