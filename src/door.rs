@@ -118,6 +118,12 @@ pub mod gpu {
 }
 
 pub mod ink {
+    pub mod furniture {
+        pub use crate::ink::furniture::{Credits, Texts};
+    }
+    pub mod letters {
+        pub use crate::ink::letters::{Face, Lettering};
+    }
     pub use crate::ink::unstroked::unstroked;
     pub mod drawing {
         pub use crate::ink::drawing::{Layer, Pen, StrokeForm};

@@ -6,6 +6,7 @@ use glam::{DVec2, DVec3};
 use hachure::door::files::Output;
 use hachure::door::line::crowded;
 use hachure::error::Error;
+use hachure::ink::Surround;
 use hachure::ink::plot::Journey;
 use hachure::ink::style::Weight;
 use hachure::ink::{Colour, Drawing, Layer, Pen, Sheet, Stroke, StrokeForm, StrokePoint, Style, draw, write_png};
@@ -32,7 +33,8 @@ fn ridge(crest: u32) -> (Perspective, InkRaster) {
 /// The drawing of lines, blunt, a pixel a millimetre.
 fn drawn(lines: &Lines) -> Drawing {
     let weight = Weight { taper: 0.0, ..Weight::default() };
-    let sheet = Sheet { size: DVec2::new(lines.width.into(), lines.height.into()), margin: 0.0 };
+    let sheet =
+        Sheet { size: DVec2::new(lines.width.into(), lines.height.into()), margin: 0.0, surround: Surround::NONE };
     draw(lines, &sheet, &Style { weight, ..Style::default() }, &[]).expect("a drawing")
 }
 
@@ -116,11 +118,17 @@ fn jumps_thicken_lines() {
 /// The page of one layer in black on white, gray values by row and column.
 fn page(width: u32, height: u32, pen: f64, strokes: Vec<Stroke>) -> image::GrayImage {
     let pen = Pen { width: pen, colour: Colour([0; 3]), opacity: 1.0 };
-    let layers =
-        vec![Layer { name: "1 ink".into(), pen, form: StrokeForm::Outlines, found: Journey::default(), strokes }];
-    let sheet = Sheet { size: DVec2::new(width.into(), height.into()), margin: 0.0 };
+    let layers = vec![Layer {
+        name: "1 ink".into(),
+        pen,
+        form: StrokeForm::Outlines,
+        found: Journey::default(),
+        strokes,
+        areas: Vec::new(),
+    }];
+    let sheet = Sheet { size: DVec2::new(width.into(), height.into()), margin: 0.0, surround: Surround::NONE };
     let mut file = Vec::new();
-    write_png(&Drawing { sheet, paper: Colour([255; 3]), layers, seal: None }, 1.0, &mut file).unwrap();
+    write_png(&Drawing { sheet, paper: Colour([255; 3]), layers, title: None, seal: None }, 1.0, &mut file).unwrap();
     image::load_from_memory(&file).unwrap().to_luma8()
 }
 
@@ -172,9 +180,14 @@ fn closed_strokes_and_huge_pages_are_drawn_whole() {
     assert!((ring - TAU * 20.0 * 2.0).abs() < 3.0, "{ring}");
     let wide = page(40_000, 4, 1.0, vec![through(&[(-10.0, 2.5), (40_010.0, 2.5)])]);
     assert!(wide.enumerate_pixels().all(|(_, y, p)| (p.0[0] < 5) == (y == 2)));
-    let sheet = Sheet { size: DVec2::new(0.0, 5.0), margin: 0.0 };
+    let sheet = Sheet { size: DVec2::new(0.0, 5.0), margin: 0.0, surround: Surround::NONE };
     assert!(
-        write_png(&Drawing { sheet, paper: Colour([255; 3]), layers: vec![], seal: None }, 1.0, Vec::new()).is_err()
+        write_png(
+            &Drawing { sheet, paper: Colour([255; 3]), layers: vec![], title: None, seal: None },
+            1.0,
+            Vec::new()
+        )
+        .is_err()
     );
 }
 

@@ -7,6 +7,7 @@ use std::process::Command;
 use glam::DVec2;
 use hachure::door::ink::drawing::{Layer, Pen, StrokeForm};
 use hachure::door::job::{Film, Inks};
+use hachure::ink::Surround;
 use hachure::ink::plot::Journey;
 use hachure::ink::{Colour, Drawing, Sheet, Stroke, StrokePoint, write_png};
 
@@ -29,13 +30,14 @@ fn pictures(folder: &Path, count: u32) -> Vec<PathBuf> {
         form: StrokeForm::Outlines,
         found: Journey::default(),
         strokes: vec![stroke],
+        areas: Vec::new(),
     };
     let frame = |n: u32| {
         let x = 5.0 + 7.0 * f64::from(if n == 2 { 1 } else { n });
         let layers =
             vec![layer(INKS[0], stroke([4.0, 50.0], [115.0, 57.0])), layer(INKS[1], stroke([x, 5.0], [x + 8.0, 40.0]))];
-        let sheet = Sheet { size: DVec2::new(121.0, 63.0), margin: 0.0 };
-        let drawing = Drawing { sheet, paper: PAPER, layers, seal: None };
+        let sheet = Sheet { size: DVec2::new(121.0, 63.0), margin: 0.0, surround: Surround::NONE };
+        let drawing = Drawing { sheet, paper: PAPER, layers, title: None, seal: None };
         let path = folder.join(format!("{n}.png"));
         write_png(&drawing, 1.0, File::create(&path).expect("a file")).expect("a picture");
         path

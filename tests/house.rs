@@ -49,7 +49,7 @@ fn names_gdal(source: &str) -> bool {
     })
 }
 
-/// Every file in a folder of the repository and in its folders.
+/// Every text in a folder of the repository and in its folders: a font is none.
 fn files(folder: &str) -> Vec<PathBuf> {
     let mut found = Vec::new();
     let mut open = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join(folder)];
@@ -59,6 +59,7 @@ fn files(folder: &str) -> Vec<PathBuf> {
             false => found.push(path),
         }
     }
+    found.retain(|path| path.extension().is_none_or(|ending| ending != "ttf"));
     found
 }
 

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3, UVec2};
 use hachure::door::line::{smooth, trace};
-use hachure::ink::{self, Drawing, Sheet, Style, write_mask};
+use hachure::ink::{self, Drawing, Sheet, Style, Surround, write_mask};
 use hachure::line::{Chain, InkRaster, Kind, Line, Lines, Marks, Pixel};
 use hachure::view::{Camera, Perspective};
 
@@ -27,7 +27,7 @@ fn smooth(chains: &[Chain], tolerance: f64) -> Vec<Chain> {
 /// The drawing of a raster's ink, a pixel a millimetre.
 fn draw(raster: &InkRaster, style: &Style) -> Drawing {
     let (marks, frame) = (Marks::from(raster), [raster.width, raster.height]);
-    let sheet = Sheet { size: UVec2::from(frame).as_dvec2(), margin: 0.0 };
+    let sheet = Sheet { size: UVec2::from(frame).as_dvec2(), margin: 0.0, surround: Surround::NONE };
     ink::draw(&Lines::of(&marks, &perspective(frame), TOLERANCE), &sheet, style, &[]).expect("a drawing")
 }
 

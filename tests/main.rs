@@ -31,6 +31,7 @@ mod flights;
 mod fly;
 mod forms;
 mod frames;
+mod furniture;
 mod generalise;
 mod georeferenced;
 mod gpu_errors;

@@ -6,6 +6,7 @@ use std::sync::{Arc, OnceLock};
 use glam::DVec2;
 use hachure::door::ink::sheet::PAPERS;
 use hachure::geo::{ReadOptions, read};
+use hachure::ink::Surround;
 use hachure::ink::styles::BuiltIn;
 use hachure::ink::{Drawing, Sheet, draw};
 use hachure::plan::{Border, Curves, Detail, Method, Plan};
@@ -17,7 +18,7 @@ use serde_json::Value;
 use crate::cli::{Place, refuses, stderr};
 use crate::common::gpu;
 
-const A4: Sheet = Sheet { size: DVec2::new(210.0, 297.0), margin: 10.0 };
+const A4: Sheet = Sheet { size: DVec2::new(210.0, 297.0), margin: 10.0, surround: Surround::NONE };
 
 #[test]
 fn a_frame_fills_the_sheet_less_its_margins() {
@@ -28,14 +29,14 @@ fn a_frame_fills_the_sheet_less_its_margins() {
     assert_eq!(placement.on_sheet(DVec2::new(1520.0, 2216.0)), DVec2::new(200.0, 287.0));
     assert_eq!(placement.in_frame(placement.on_sheet(DVec2::new(3.0, 7.0))), DVec2::new(3.0, 7.0));
     // Letters are no whole pixels: square ones all the same, and half of what stands over on either side.
-    let letter = Sheet { size: DVec2::new(215.9, 279.4), margin: 10.0 };
+    let letter = Sheet { size: DVec2::new(215.9, 279.4), margin: 10.0, surround: Surround::NONE };
     let frame = letter.frame(8.0);
     let placement = letter.placement(frame);
     let over = placement.on_sheet(DVec2::new(0.0, f64::from(frame[1]))).y - (279.4 - 10.0);
     assert!((0.0..0.5 / placement.px_per_mm).contains(&over), "{over} mm");
     assert_eq!(placement.on_sheet(DVec2::new(f64::from(frame[0]), 0.0)).x, 215.9 - 10.0);
     for (name, size) in PAPERS {
-        let sheet = Sheet { size: size.into(), margin: 10.0 };
+        let sheet = Sheet { size: size.into(), margin: 10.0, surround: Surround::NONE };
         for px_per_mm in [1.0, 8.0, 11.81] {
             sheet.check_frame(sheet.frame(px_per_mm)).unwrap_or_else(|e| panic!("{name}: {e}"));
         }
@@ -136,7 +137,7 @@ pub fn real_drawings() -> &'static [(BuiltIn, Drawing)] {
 fn draw_all() -> Vec<(BuiltIn, Drawing)> {
     let dem = concat!(env!("CARGO_MANIFEST_DIR"), "/dem/golden-gate.tif");
     let surface = Arc::new(Surface::new(read(dem, &ReadOptions::default()).expect("a DEM")));
-    let sheet = Sheet { size: DVec2::new(105.0, 74.0), margin: 7.5 };
+    let sheet = Sheet { size: DVec2::new(105.0, 74.0), margin: 7.5, surround: Surround::NONE };
     let frame = sheet.frame(8.0);
     let camera = choose(surface.dem(), Fixed::default(), 60.0, frame[0], frame[1]).expect("a view");
     let mut renderer = Renderer::new(gpu().clone(), surface).expect("a renderer");

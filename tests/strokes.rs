@@ -3,12 +3,13 @@
 use glam::{DVec2, DVec3};
 use hachure::door::line::ends;
 use hachure::error::Error;
+use hachure::ink::Surround;
 use hachure::ink::style::{Dashes, Plot, Weight, Wobble};
 use hachure::ink::{Drawing, Pen, Sheet, Stroke, StrokeForm, Style, draw};
 use hachure::line::{Chain, ChainPoint, Id, Line, Lines, Recession};
 
 /// A sheet of 200 x 100 mm without margins, and its frame of 2 pixels a millimetre.
-const SHEET: Sheet = Sheet { size: DVec2::new(200.0, 100.0), margin: 0.0 };
+const SHEET: Sheet = Sheet { size: DVec2::new(200.0, 100.0), margin: 0.0, surround: Surround::NONE };
 const FRAME: [u32; 2] = [400, 200];
 
 /// A point of a skyline so far away, m; its place in mm.
@@ -275,7 +276,7 @@ fn a_pen_broader_than_the_sheet_draws_nothing() {
     let mut style = pens(&[0.5, 10.0]);
     style.pens.silhouette.width = 10.0;
     style.plot.registration = true;
-    let sheet = Sheet { size: DVec2::new(20.0, 10.0), margin: 1.0 };
+    let sheet = Sheet { size: DVec2::new(20.0, 10.0), margin: 1.0, surround: Surround::NONE };
     let drawing = draw(&lines(vec![plain(1, [10, 190], 50.0)], vec![]), &sheet, &style, &[]).expect("a drawing");
     assert!(drawing.layers.is_empty(), "{:?}", names(&drawing));
 }

@@ -5,6 +5,7 @@ use std::fs;
 use glam::{DVec2, DVec3};
 use hachure::door::ink::unstroked;
 use hachure::door::ink::unstroked::{Unstroked, Why};
+use hachure::ink::Surround;
 use hachure::ink::style::{Plot, Weight};
 use hachure::ink::{Sheet, Style, draw};
 use hachure::line::{Chain, ChainPoint, Kind, Line, Lines, Marks, Recession};
@@ -15,7 +16,7 @@ use crate::cli::{Place, stderr};
 use crate::ink::raster;
 
 const FRAME: [u32; 2] = [120, 60];
-const SHEET: Sheet = Sheet { size: DVec2::new(120.0, 60.0), margin: 0.0 };
+const SHEET: Sheet = Sheet { size: DVec2::new(120.0, 60.0), margin: 0.0, surround: Surround::NONE };
 
 #[test]
 fn on_real_land_every_line_of_the_mask_has_its_stroke_or_is_left_out_by_economy() {

@@ -3,6 +3,6 @@
 mod files;
 mod many;
 mod outlines;
-mod pictures;
+pub mod pictures;
 mod samples;
-mod strangers;
+pub mod strangers;

@@ -26,6 +26,7 @@ use crate::error::{Error, Result, shown};
 use crate::files::{Taken, relative};
 use crate::gpu::Gpu;
 use crate::ink::Seal;
+use crate::ink::furniture::Set;
 use crate::job::manifest::SequenceKey;
 use crate::job::name::Naming;
 use crate::job::{Job, JobFile, Manifest};
@@ -90,8 +91,8 @@ struct BatchDrawing<'a> {
 
 /// What it is made of.
 enum What {
-    /// What an eye sees, by this adapter.
-    View(Box<Page>, Illustration, String),
+    /// What an eye sees, what stands around it, and by which adapter.
+    View(Box<Page>, Illustration, Set, String),
     /// A plan, which is drawn.
     Plan(Planned),
 }
@@ -214,6 +215,7 @@ impl Studio<'_> {
             return Err(Error::mistake("a DEM was read and is not there"));
         };
         let view = entry.draw.look(&surface, &illustration, talk)?;
+        let furniture = entry.draw.furniture(&illustration, &view, &surface)?;
         let renderer = match &mut scene.renderer {
             Some(renderer) => renderer,
             none => none.insert(Renderer::new(gpu, surface.clone())?),
@@ -222,7 +224,7 @@ impl Studio<'_> {
         let page = renderer.page(&illustration.plan, &view.camera, |_| ())?;
         entry.draw.warn_of_page(renderer, &view, &page, talk);
         let inputs = inputs(scene, &entry.draw);
-        Ok(BatchDrawing { entry, inputs, what: What::View(Box::new(page), illustration, adapter) })
+        Ok(BatchDrawing { entry, inputs, what: What::View(Box::new(page), illustration, furniture, adapter) })
     }
 
     /// The device: open, or opened.
@@ -294,8 +296,9 @@ impl BatchDrawing<'_> {
             return Ok(());
         }
         let (page, mut drawing, px_per_mm, adapter) = match what {
-            What::View(page, illustration, adapter) => {
-                let (_, drawing) = illustration.drawing(&page)?;
+            What::View(page, illustration, furniture, adapter) => {
+                let (_, mut drawing) = illustration.drawing(&page)?;
+                furniture.onto(&mut drawing, &illustration.style);
                 (Some(page), drawing, illustration.px_per_mm, adapter)
             }
             What::Plan(planned) => (None, planned.drawing, planned.px_per_mm, "none".to_owned()),

@@ -16,7 +16,7 @@ use super::values;
 use super::view_report::ViewReport;
 use super::viewpoint::{View, ViewArguments};
 use super::words::told;
-use super::{bare, blank, georeferenced, journey, plan, reference, scene};
+use super::{bare, blank, furniture, georeferenced, journey, plan, reference, scene};
 use crate::cache::Cache;
 use crate::error::{Error, Result, Setting};
 use crate::files::Taken;
@@ -125,6 +125,7 @@ pub(crate) fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     let map = outputs.map_format().map(|format| georeferenced::crs(format, surface.dem())).transpose()?;
     let gpu = scene::prepare_and_open(&surface, &cache, &arguments.device, talk)?;
     let view = arguments.look(&surface, &illustration, talk)?;
+    let furniture = arguments.furniture(&illustration, &view, &surface)?;
     let land = scene::land(&arguments.drawing, &illustration.land, &arguments.terrain, &surface, &cache, talk)?;
     let gpu = Arc::new(gpu?);
     DeviceArguments::tell(&gpu, talk)?;
@@ -134,7 +135,9 @@ pub(crate) fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     let page = renderer.page(&illustration.plan, &view.camera, |share| talk.progress("drawing", 0.3 + 0.3 * share))?;
     cache.discard_damaged(surface.dem(), &|message| talk.warn(&told(message)));
     let mut drawn = DrawnPage { renderer: &mut renderer, view: &view, page };
-    let (lines, drawing) = illustration.drawing(&drawn.page)?;
+    let (lines, mut drawing) = illustration.drawing(&drawn.page)?;
+    let is_bare = drawing.layers.is_empty();
+    furniture.onto(&mut drawing, &illustration.style);
     let stroked = Stroked { illustration: &illustration, lines: &lines, drawing: &drawing };
     let report = outputs.want_report().then(|| arguments.report(&mut drawn, stroked, talk)).transpose()?;
     if arguments.explain || talk.is_verbose() {
@@ -153,7 +156,7 @@ pub(crate) fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     journey::tell(&drawing, &illustration.style.plot, talk)?;
     arguments.tell(&drawn, started, talk)?;
     let DrawnPage { page, .. } = drawn;
-    if drawing.layers.is_empty() && page.marks.inked() > 0 {
+    if is_bare && page.marks.inked() > 0 {
         talk.warn("nothing is drawn: the style leaves no stroke of the lines; give it finer pens, or --min-gap 0 --min-jump 0");
     }
     arguments.warn_of_page(&mut renderer, &view, &page, talk);
@@ -166,7 +169,7 @@ impl DrawArguments {
         self.outputs.fill_stdout()
     }
 
-    /// The same of a sheet of a map, which is `called` so: of the DEM in `crop`, in the file's coordinates, or all of it; a plan is of `area`,
+    /// The same of a sheet of a map, which is `called` so, with its `name` for the `mark` in texts: of the DEM in `crop`, in the file's coordinates, or all of it; a plan is of `area`,
     /// metres of the world; its files are `renamed`.
     ///
     /// # Errors
@@ -174,6 +177,7 @@ impl DrawArguments {
     pub(crate) fn of_sheet(
         &self,
         called: &str,
+        [mark, name]: [&str; 2],
         crop: Option<[f64; 4]>,
         area: [f64; 4],
         renamed: impl Fn(&Path) -> Result<PathBuf>,
@@ -182,6 +186,7 @@ impl DrawArguments {
         let outputs = self.outputs.renamed(renamed)?;
         let mut sheet = Self { terrain, outputs, area: Some(area), ..self.clone() };
         sheet.drawing.land.lines.on_sheet(called);
+        sheet.drawing.furniture.on_sheet(mark, name);
         Ok(sheet)
     }
 
@@ -211,12 +216,34 @@ impl DrawArguments {
         let naming = Naming::new().with("dem", dem.hash()).with("read", self.terrain.read_as());
         if let Some(scale) = self.scale() {
             let of = format!("{scale} {:?} {:?} {:?}", self.area, self.drawing.page, plan::check(self)?);
-            return Ok([naming.with("plan", of).name(); 2]);
+            return Ok([naming.with("plan", of).with("furniture", self.furnished()).name(); 2]);
         }
         let illustration = self.check()?;
         let seen = naming.with("view", format!("{:?} {}", self.view, self.drawing.exaggeration));
         let of_mask = seen.clone().with("mask", illustration.of_mask());
-        Ok([seen.with("drawing", format!("{illustration:?}")).name(), of_mask.name()])
+        let of_drawing = seen.with("drawing", format!("{illustration:?}")).with("furniture", self.furnished());
+        Ok([of_drawing.name(), of_mask.name()])
+    }
+
+    /// What stands around the picture, in words: with the names of the files, where these are told.
+    fn furnished(&self) -> String {
+        let furniture = self.drawing.furniture.furniture();
+        let names = furniture.credits.is_some().then_some(&self.terrain.dems);
+        format!("{furniture:?} {names:?}")
+    }
+
+    /// What stands around the picture of a view, set on its sheet.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] for a text that does not fit, or holds letters that no font has.
+    pub(crate) fn furniture(
+        &self,
+        illustration: &Illustration,
+        view: &View,
+        surface: &Surface,
+    ) -> Result<ink::furniture::Set> {
+        let texts = furniture::of_view(view, self.drawing.exaggeration, &self.terrain.dems, surface.dem());
+        self.drawing.furniture.furniture().set(&illustration.sheet, &illustration.style, &texts)
     }
 
     /// Warns where a page of it, or land that is to be hatched, is blank.

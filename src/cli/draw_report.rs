@@ -81,6 +81,8 @@ pub(super) struct LeftOutReport {
 pub(super) struct PageReport {
     size_mm: [f64; 2],
     margin_mm: f64,
+    /// Where the frame lies: left, top, right, bottom.
+    frame_mm: [f64; 4],
     frame_px_per_mm: f64,
 }
 
@@ -106,9 +108,11 @@ struct PlotReport {
 
 impl PageReport {
     pub(super) fn of(sheet: &Sheet, frame: [u32; 2]) -> Self {
+        let [low, high] = sheet.area();
         Self {
             size_mm: sheet.size.to_array(),
             margin_mm: sheet.margin,
+            frame_mm: [low.x, low.y, high.x, high.y],
             frame_px_per_mm: sheet.placement(frame).px_per_mm,
         }
     }

@@ -2,6 +2,7 @@
 //! page they stand, in which style.
 
 use super::choices;
+use super::furniture::FurnitureArguments;
 use super::land::LandArguments;
 use super::page::{Layout, PageArguments};
 use super::style::StyleArguments;
@@ -53,6 +54,9 @@ pub(crate) struct DrawingArguments {
     /// Lines of the land.
     #[command(flatten)]
     pub land: LandArguments,
+    /// What stands around the picture.
+    #[command(flatten)]
+    pub furniture: FurnitureArguments,
 }
 
 /// What is asked for of a view.
@@ -99,7 +103,7 @@ impl DrawingArguments {
     ) -> Result<Illustration> {
         let (plan, style) = (self.plan(wanted)?, self.style.style()?);
         let land = self.wanted(&style, &plan, allow_remote)?;
-        let layout = self.layout(size, pictures)?;
+        let layout = self.layout(size, &style, pictures)?;
         let frame = [layout.frame.width, layout.frame.height];
         let px_per_mm = layout.sheet.placement(frame).px_per_mm;
         let economy = self.style.economy(&style, px_per_mm);
@@ -140,8 +144,8 @@ impl DrawingArguments {
     }
 
     /// How the page is laid out.
-    fn layout(&self, size: Option<Size>, pictures: bool) -> Result<Layout> {
-        let layout = self.page.layout(size, SIZE)?;
+    fn layout(&self, size: Option<Size>, style: &Style, pictures: bool) -> Result<Layout> {
+        let layout = self.page.layout(size, SIZE, &self.furniture.furniture(), style)?;
         if pictures {
             layout.check_picture()?;
         }

@@ -111,6 +111,7 @@ pub(crate) fn run(arguments: &FlyArguments, talk: &Talk) -> Result<()> {
     if arguments.jobs.serve {
         serve::end_unread();
     }
+    arguments.drawing.furniture.refuse_for_frames()?;
     let cache = arguments.cache.cache();
     if let Some(path) = &arguments.preview {
         return arguments.preview(path, &cache, talk);

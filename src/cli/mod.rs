@@ -19,6 +19,7 @@ mod flight_keys;
 mod flight_plan;
 pub(crate) mod fly;
 pub(crate) mod frames;
+pub(crate) mod furniture;
 pub(crate) mod generate;
 mod georeferenced;
 pub(crate) mod info;

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::values::{self, Size};
 use crate::error::{Error, Result, Setting};
-use crate::ink::{Sheet, png};
+use crate::ink::{Furniture, Sheet, Style, Surround, png};
 use crate::message;
 use crate::plan::pieces::LARGEST_PAGE;
 
@@ -23,7 +23,7 @@ pub struct PageArguments {
     #[arg(
         long, value_name = "NAME|WxH", value_parser = values::page,
         help = format!(
-            "Sheet of paper: {}, or millimetres across and down; the frame fills it less its margins, at {} pixels a millimetre \
+            "Sheet of paper: {}, or millimetres across and down; the frame fills it less its margins and furniture, at {} pixels a millimetre \
              unless --size says [default: {} mm across, as --size is shaped]",
             values::paper_names(), Sheet::FRAME_PX_PER_MM, Sheet::WIDTH
         )
@@ -67,7 +67,7 @@ impl PageArguments {
     fn sheet(&self) -> Option<Sheet> {
         let page = self.page?;
         let page = if self.landscape { DVec2::new(page.max_element(), page.min_element()) } else { page };
-        Some(Sheet { size: page, margin: self.margin.unwrap_or(MARGIN) })
+        Some(Sheet { size: page, margin: self.margin.unwrap_or(MARGIN), surround: Surround::NONE })
     }
 
     /// Blank on all sides, mm.
@@ -80,18 +80,22 @@ impl PageArguments {
         self.dpi.unwrap_or(DPI) / MM_PER_INCH
     }
 
-    /// The sheet with a frame of this size, or `otherwise` where it has to do without a page.
+    /// The sheet with a frame of this size, or `otherwise` where it has to do without a page, and with room for furniture in a style.
     ///
     /// # Errors
-    /// [`Error::Setting`] where they do not go together, or are too large or too small.
-    pub fn layout(&self, size: Option<Size>, otherwise: Size) -> Result<Layout> {
+    /// [`Error::Setting`] where they do not go together, or are too large or too small; as [`Furniture::within`].
+    pub fn layout(&self, size: Option<Size>, otherwise: Size, furniture: &Furniture, style: &Style) -> Result<Layout> {
         let Some(sheet) = self.sheet() else {
             if self.margin.is_some() {
                 let remedy = message!["add ", Setting::Page.with_value(), " or leave it out"];
                 return Err(Error::setting(Setting::Margin, "goes with a page of millimetres only", remedy));
             }
             let frame = size.unwrap_or(otherwise);
-            let sheet = Sheet::for_frame([frame.width, frame.height]);
+            let bare = Sheet::for_frame([frame.width, frame.height]);
+            let sheet = match furniture.is_none() {
+                true => bare,
+                false => bare.surrounded(MARGIN, furniture.around(bare.inner(), style)?),
+            };
             let own = f64::from(frame.width) / Sheet::WIDTH;
             return Ok(Layout { sheet, frame, px_per_mm: self.dpi.map_or(own, |dpi| dpi / MM_PER_INCH) });
         };
@@ -99,6 +103,11 @@ impl PageArguments {
         if (page - 2.0 * sheet.margin).min_element() < LEAST_AREA {
             let what = format!("margins of {} mm leave nothing of a page of {} x {} mm", sheet.margin, page.x, page.y);
             return Err(Error::setting(Setting::Margin, what, message!["use a smaller ", Setting::Margin]));
+        }
+        let sheet = Sheet { surround: furniture.within(page - 2.0 * sheet.margin, style)?, ..sheet };
+        if sheet.inner().min_element() < LEAST_AREA {
+            let what = format!("furniture leaves nothing of a page of {} x {} mm", page.x, page.y);
+            return Err(Error::setting(Setting::Page, what, "use a larger one, or leave out some of it"));
         }
         let frame = match size {
             Some(Size { width, height }) => sheet.check_frame([width, height]).map(|()| [width, height])?,

@@ -10,6 +10,7 @@ use serde::Serialize;
 use super::bare;
 use super::draw::DrawArguments;
 use super::draw_report::{DemReport, LayerReport, PageReport};
+use super::furniture;
 use super::georeferenced;
 use super::journey;
 use super::page::{Layout, MARGIN};
@@ -21,7 +22,7 @@ use crate::dem::Dem;
 use crate::error::{Error, Result, Setting};
 use crate::files::Taken;
 use crate::ink::strokes::inset;
-use crate::ink::{self, Drawing, Sheet, Style};
+use crate::ink::{self, Drawing, Sheet, Style, Surround};
 use crate::line::hachures::NEAR;
 use crate::line::{Land, Lines, Overhead};
 use crate::message;
@@ -85,7 +86,9 @@ pub(crate) fn draw(
 ) -> Result<Planned> {
     let (style, wanted) = check(arguments)?;
     let area = arguments.area.unwrap_or(dem.extent());
-    let layout = layout(area, scale, inset(style.broadest()) + style.wobble.reach, arguments)?;
+    let layout = layout(area, scale, &style, arguments)?;
+    let texts = furniture::of_plan(scale, area, &arguments.terrain.dems, dem)?;
+    let furniture = arguments.drawing.furniture.furniture().set(&layout.sheet, &style, &texts)?;
     let frame = [layout.frame.width, layout.frame.height];
     let px_per_mm = layout.sheet.placement(frame).px_per_mm;
     let economy = arguments.drawing.style.economy(&style, px_per_mm);
@@ -99,7 +102,8 @@ pub(crate) fn draw(
         }
         lines.chains.extend(overhead.land(land, economy.min_gap, hachures.as_ref())?);
     }
-    let drawing = ink::draw(&lines, &layout.sheet, &style, &[])?;
+    let mut drawing = ink::draw(&lines, &layout.sheet, &style, &[])?;
+    furniture.onto(&mut drawing, &style);
     Ok(Planned { drawing, px_per_mm: layout.px_per_mm, style, layout, lines })
 }
 
@@ -149,12 +153,14 @@ pub(crate) fn run(arguments: &DrawArguments, scale: f64, talk: &Talk) -> Result<
     ))
 }
 
-/// The page that is this part of the DEM's world at that scale, with margins; in these lies so much that a pen takes to draw the border.
-fn layout(area: [f64; 4], scale: f64, pen: f64, arguments: &DrawArguments) -> Result<Layout> {
+/// The page that is this part of the DEM's world at that scale, with margins, in which lies so much that a pen takes to draw the border,
+/// and with room for furniture.
+fn layout(area: [f64; 4], scale: f64, style: &Style, arguments: &DrawArguments) -> Result<Layout> {
+    let pen = inset(style.broadest()) + style.wobble.reach;
     let ([west, south, east, north], margin) = (area, arguments.drawing.page.margin().unwrap_or(MARGIN));
     let area = DVec2::new(east - west, north - south) * (MM / scale);
     let margin = margin.max(pen);
-    let sheet = Sheet { size: area + 2.0 * margin, margin: margin - pen };
+    let sheet = Sheet { size: area + 2.0 * margin, margin: margin - pen, surround: Surround::NONE };
     let [least, most] = PAGES_MM;
     if 2.0 * margin + least > most {
         let what = format!("margins of {margin} mm leave nothing of a page of {most} mm");
@@ -176,6 +182,11 @@ fn layout(area: [f64; 4], scale: f64, pen: f64, arguments: &DrawArguments) -> Re
         let most = format!("1:{:.0}", (area.min_element() / least * scale).floor().max(1.0));
         return Err(Error::setting(Setting::Scale, what, message!["use ", Setting::Scale.at(most)]));
     }
+    let furniture = arguments.drawing.furniture.furniture();
+    let sheet = match furniture.is_none() {
+        true => sheet,
+        false => sheet.surrounded(margin, furniture.around(sheet.inner(), style)?),
+    };
     let frame = sheet.frame(Sheet::FRAME_PX_PER_MM);
     let layout = Layout {
         sheet,

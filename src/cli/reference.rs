@@ -115,6 +115,8 @@ the lines are and how a style draws them, `hachure styles --help` says; what is 
   - PDF: the same, compressed, with layers that readers list
   - PNG: with its size in metres
 
+Furniture (--title, --neatline, --view-line, --credits) stands on top, in a layer of its own, or one a pen: rules and letters as areas, in the outlines of Old Standard (SIL Open Font License); for plotters as single strokes, Hershey's Roman simplex. No reader needs a font. Sizes grow more slowly than sheets: a title is 7.6 mm an em on A4, a view line 3.1, credits 2.5. What is too long is set smaller, view line and credits in two lines, down to 1.8 mm (2.4 for pens); beyond that, or with a letter that the font lacks, nothing is drawn. Old Standard has Latin, Greek and Cyrillic; single strokes have Latin. The title is told in the file too, as the title of an SVG or a PDF.
+
 Lines of varying width are written as the areas they cover; those of one width, and with `centre-lines = true` in [plot] all, as \
 the lines that a pen follows. The same input gives the same bytes.
 

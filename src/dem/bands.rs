@@ -20,8 +20,6 @@ pub struct Band<'a> {
     pub samples: Cow<'a, Samples>,
 }
 
-impl Dem {}
-
 /// What other stages and tests look into.
 #[doc(hidden)]
 impl Dem {

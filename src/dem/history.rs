@@ -12,6 +12,7 @@ pub struct History {
     assumed: Vec<Message>,
     usual: Vec<Message>,
     steps: Vec<f64>,
+    credits: Vec<String>,
 }
 
 impl History {
@@ -29,6 +30,20 @@ impl History {
     /// where the heights are as the files have them.
     pub fn steps(&self) -> &[f64] {
         &self.steps
+    }
+
+    /// What the files say of what they are and who made them, each once, in the order of the files: one line each.
+    pub fn credits(&self) -> &[String] {
+        &self.credits
+    }
+
+    /// One thing more that a file says of itself; white space is one space, and what moves a line is left out.
+    pub fn credit(&mut self, text: &str) {
+        let words = text.split_whitespace().map(|word| word.replace(char::is_control, ""));
+        let text = words.filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ");
+        if !text.is_empty() && !self.credits.contains(&text) {
+            self.credits.push(text);
+        }
     }
 
     /// The heights are the smoothest within these steps.
@@ -63,6 +78,7 @@ impl History {
         add(&mut self.converted, of_file.converted);
         add(&mut self.assumed, of_file.assumed);
         add(&mut self.usual, of_file.usual);
+        of_file.credits.iter().for_each(|text| self.credit(text));
     }
 }
 

@@ -34,8 +34,6 @@ pub enum North {
     True,
 }
 
-impl North {}
-
 /// What other stages and tests look into.
 #[doc(hidden)]
 impl North {

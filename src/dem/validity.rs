@@ -195,8 +195,6 @@ impl ValidityBuilder {
     }
 }
 
-impl Dem {}
-
 /// What other stages and tests look into.
 #[doc(hidden)]
 impl Dem {

@@ -50,6 +50,8 @@ settings! {
     Cache = "cache",
     /// Bytes of what is kept.
     CacheSize = "cache size",
+    /// Who made the DEM.
+    Credits = "credits",
     /// Metres between samples of files that do not say.
     Cell = "cell",
     /// The file whose grid is drawn.
@@ -126,6 +128,8 @@ settings! {
     Nodata = "nodata",
     /// The blank edge of the sheet.
     Margin = "margin",
+    /// Whether rules frame the picture.
+    Neatline = "neatline",
     /// What azimuths are counted from.
     North = "north",
     /// The jobs that are done.
@@ -168,8 +172,12 @@ settings! {
     Sizes = "sizes",
     /// The look of the drawing.
     Style = "style",
+    /// What the picture is called.
+    Title = "title",
     /// The motion picture.
     Video = "video",
+    /// Whether it is said from where the land is seen.
+    ViewLine = "view line",
     /// The file of views.
     Views = "file of views",
     /// Whether maps off the ground stay as they are.

@@ -136,7 +136,7 @@ pub fn draw(lines: &Lines, sheet: &Sheet, style: &Style, split: &[f64]) -> Resul
             }
         }
     }
-    Ok(Drawing { sheet: *sheet, paper: style.paper, layers, seal: None })
+    Ok(Drawing { sheet: *sheet, paper: style.paper, layers, title: None, seal: None })
 }
 
 /// Names of layers of the user's own lines, each once: what is taken is counted.
@@ -249,15 +249,22 @@ fn stroke(chain: Option<Id>, pieces: &mut FxHashMap<Id, u32>, run: &PenRun) -> S
 }
 
 /// A layer, in the order of plotting where a pen follows its lines.
-fn layer(name: String, pen: Pen, mut strokes: Vec<Stroke>, sheet: &Sheet, style: &Style) -> Layer {
+pub(super) fn layer(name: String, pen: Pen, mut strokes: Vec<Stroke>, sheet: &Sheet, style: &Style) -> Layer {
     if style.plot.registration {
         strokes.extend(marks(sheet, style.broadest()));
     }
     let is_even = strokes.iter().flat_map(|stroke| &stroke.points).all(|point| point.width == 1.0);
     let found = plot::Journey::through(&strokes);
     match is_even {
-        true => Layer { name, pen, form: StrokeForm::CentreLines, found, strokes: plot::planned(strokes) },
-        false => Layer { name, pen, form: StrokeForm::Outlines, found, strokes },
+        true => Layer {
+            name,
+            pen,
+            form: StrokeForm::CentreLines,
+            found,
+            strokes: plot::planned(strokes),
+            areas: Vec::new(),
+        },
+        false => Layer { name, pen, form: StrokeForm::Outlines, found, strokes, areas: Vec::new() },
     }
 }
 

@@ -18,6 +18,8 @@ pub struct Drawing {
     pub paper: Colour,
     /// From bottom to top, in the order of plotting.
     pub layers: Vec<Layer>,
+    /// What it is called, for files that are to tell.
+    pub title: Option<String>,
     /// What made it, for files that are to tell.
     pub seal: Option<Seal>,
 }
@@ -51,7 +53,13 @@ pub struct Layer {
     pub found: Journey,
     /// In the order of plotting, the same in every run.
     pub strokes: Vec<Stroke>,
+    /// Filled as they are, in layers of outlines: letters and rules.
+    pub areas: Vec<Area>,
 }
+
+/// An area by its borders: rings in millimetres on the sheet, filled together by the non-zero rule.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Area(pub Vec<Vec<DVec2>>);
 
 /// How the strokes of a layer are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -86,8 +86,6 @@ impl Default for LightStyle {
     }
 }
 
-impl HachureStyle {}
-
 /// What other stages and tests look into.
 #[doc(hidden)]
 impl HachureStyle {

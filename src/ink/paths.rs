@@ -7,7 +7,7 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use super::outline::outline;
-use super::{Layer, Stroke, StrokeForm};
+use super::{Area, Layer, Stroke, StrokeForm};
 
 /// Points of the strokes in a piece: about 1 MB of text.
 const PIECE: usize = 1 << 15;
@@ -30,6 +30,11 @@ pub(super) fn paths(stroke: &Stroke, layer: &Layer) -> Vec<Path> {
         }
         StrokeForm::CentreLines => vec![Path::new(stroke.points.iter().map(|point| point.place), stroke.closed)],
     }
+}
+
+/// What a file holds of an area: its borders.
+pub(super) fn borders(area: &Area) -> Vec<Path> {
+    area.0.iter().map(|ring| Path::new(ring.iter().copied(), true)).collect()
 }
 
 impl Path {

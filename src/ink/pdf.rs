@@ -16,8 +16,8 @@ use pdf_writer::types::{LineCapStyle, LineJoinStyle};
 use pdf_writer::writers::Resources;
 use pdf_writer::{Content, Dict, Filter, Finish, Name, Pdf, Rect, Ref, TextStr};
 
-use super::paths::{in_order, number, paths};
-use super::{Drawing, Layer, Seal, Stroke, StrokeForm};
+use super::paths::{Path, borders, in_order, number, paths};
+use super::{Area, Drawing, Layer, Seal, Stroke, StrokeForm};
 
 /// Points in a millimetre.
 const POINTS: f64 = 72.0 / 25.4;
@@ -39,8 +39,8 @@ struct Written<'a> {
 pub fn write_pdf(drawing: &Drawing, mut out: impl Write) -> io::Result<()> {
     let (mut pdf, mut next) = (Pdf::new(), Ref::new(1));
     let [catalog, pages, page, contents] = [(); 4].map(|()| next.bump());
-    if let Some(seal) = &drawing.seal {
-        write_seal(&mut pdf, next.bump(), seal);
+    if drawing.seal.is_some() || drawing.title.is_some() {
+        write_about(&mut pdf, next.bump(), drawing.title.as_deref(), drawing.seal.as_ref());
     }
     let size = drawing.sheet.size;
     let layers: Vec<Written> =
@@ -87,8 +87,10 @@ fn name(kind: char, i: usize) -> String {
 
 /// Writes the form of a layer, the forms of its strokes, and what readers list it as.
 fn write_layer<'a>(pdf: &mut Pdf, next: &mut Ref, layer: &'a Layer, size: DVec2) -> Written<'a> {
-    let compressed = in_order(&layer.strokes, |piece| compress_to_vec_zlib(&operators(piece, layer), LEVEL));
-    let pieces: Vec<Ref> = compressed
+    let strokes = in_order(&layer.strokes, |piece| compress_to_vec_zlib(&operators(piece, layer), LEVEL));
+    let areas = (!layer.areas.is_empty()).then(|| compress_to_vec_zlib(&filled(&layer.areas), LEVEL));
+    let pieces: Vec<Ref> = strokes
+        .chain(areas)
         .map(|piece| {
             let id = next.bump();
             pdf.form_xobject(id, &piece).bbox(rect(size)).filter(Filter::FlateDecode);
@@ -130,10 +132,14 @@ fn write_layer<'a>(pdf: &mut Pdf, next: &mut Ref, layer: &'a Layer, size: DVec2)
     written
 }
 
-/// What made it, in the information about the document.
-fn write_seal(pdf: &mut Pdf, id: Ref, seal: &Seal) {
+/// What it is called and what made it, in the information about the document.
+fn write_about(pdf: &mut Pdf, id: Ref, title: Option<&str>, seal: Option<&Seal>) {
     let plain = |text: &str| text.replace(|c: char| !c.is_ascii(), "?");
     let mut about = pdf.document_info(id);
+    title.into_iter().for_each(|title| {
+        about.title(TextStr(title));
+    });
+    let Some(seal) = seal else { return };
     about.producer(TextStr(Seal::SOFTWARE));
     about.keywords(TextStr(&seal.to_string()));
     about.subject(TextStr(&plain(&seal.adapter)));
@@ -189,18 +195,32 @@ fn content(layers: &[Written], size: DVec2) -> Vec<u8> {
 fn operators(strokes: &[Stroke], layer: &Layer) -> Vec<u8> {
     let mut text = Vec::new();
     for stroke in strokes {
-        for path in paths(stroke, layer) {
-            for (i, [x, y]) in path.corners.iter().enumerate() {
-                number(*x, &mut text);
-                text.push(b' ');
-                number(*y, &mut text);
-                text.extend(if i == 0 { b" m\n" } else { b" l\n" });
-            }
-            if path.closed {
-                text.extend(b"h\n");
-            }
-        }
+        write_paths(&paths(stroke, layer), &mut text);
         text.extend(if layer.form == StrokeForm::Outlines { b"f\n" } else { b"S\n" });
     }
     text
+}
+
+/// What fills areas.
+fn filled(areas: &[Area]) -> Vec<u8> {
+    let mut text = Vec::new();
+    for area in areas {
+        write_paths(&borders(area), &mut text);
+        text.extend(b"f\n");
+    }
+    text
+}
+
+fn write_paths(paths: &[Path], text: &mut Vec<u8>) {
+    for path in paths {
+        for (i, [x, y]) in path.corners.iter().enumerate() {
+            number(*x, text);
+            text.push(b' ');
+            number(*y, text);
+            text.extend(if i == 0 { b" m\n" } else { b" l\n" });
+        }
+        if path.closed {
+            text.extend(b"h\n");
+        }
+    }
 }

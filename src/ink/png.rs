@@ -17,7 +17,7 @@ use glam::DVec2;
 use rayon::prelude::*;
 use tiny_skia::{FillRule, Mask, PathBuilder, Transform};
 
-use super::{Drawing, Layer, Pen, Sheet, Stroke, StrokePoint};
+use super::{Area, Drawing, Layer, Pen, Sheet, Stroke, StrokePoint};
 
 /// Side of a tile, px.
 const TILE: u32 = 128;
@@ -27,6 +27,32 @@ const CHUNK: usize = 1 << 20;
 const SCALE: u32 = 4;
 /// Turning at a joint up to which a flat wedge is as good as a disc: cos 30 degrees.
 const WEDGE_COS: f64 = 0.866;
+
+/// Farthest from a tile that corners of areas are filled from, px: what reaches beyond is a rule, which stays what it is within.
+const FAR: f64 = 4096.0;
+
+/// What is filled.
+enum Shape {
+    Segment(Segment),
+    /// In pixels.
+    Area(Area),
+}
+
+impl Shape {
+    /// Its corners towards the top left and the bottom right, px.
+    fn bounds(&self) -> [DVec2; 2] {
+        match self {
+            Self::Segment(Segment { ends: [a, b], half, .. }) => {
+                let pad = DVec2::splat(half[0].max(half[1]));
+                [a.min(*b) - pad, a.max(*b) + pad]
+            }
+            Self::Area(Area(rings)) => {
+                let places = || rings.iter().flatten().copied();
+                [places().reduce(DVec2::min), places().reduce(DVec2::max)].map(Option::unwrap_or_default)
+            }
+        }
+    }
+}
 
 /// A segment of a stroke as it is filled.
 struct Segment {
@@ -58,7 +84,7 @@ pub fn write_png(drawing: &Drawing, px_per_mm: f64, out: impl Write) -> io::Resu
     let per_metre = (px_per_mm * 1000.0).round() as u32;
     encoder.set_pixel_dims(Some(PixelDimensions { xppu: per_metre, yppu: per_metre, unit: Unit::Meter }));
     drawing.seal.as_ref().map_or(Ok(()), |seal| seal.write_into(&mut encoder))?;
-    let layers: Vec<Vec<Segment>> = drawing.layers.iter().map(|layer| segments(layer, px_per_mm)).collect();
+    let layers: Vec<Vec<Shape>> = drawing.layers.iter().map(|layer| shapes(layer, px_per_mm)).collect();
     let columns = width.div_ceil(TILE) as usize;
     let tiles = sort_into_tiles(&layers, columns, height.div_ceil(TILE) as usize);
     let bands: Vec<_> = tiles.chunks(columns.max(1)).enumerate().collect();
@@ -90,11 +116,11 @@ fn io_error(error: ::png::EncodingError) -> io::Error {
     }
 }
 
-/// A row of tiles, three bytes a pixel: each with its segments as (layer, index), layers in order.
+/// A row of tiles, three bytes a pixel: each with its shapes as (layer, index), layers in order.
 fn band(
     drawing: &Drawing,
     [width, height]: [u32; 2],
-    layers: &[Vec<Segment>],
+    layers: &[Vec<Shape>],
     row: usize,
     tiles: &[Vec<(usize, usize)>],
 ) -> Vec<u8> {
@@ -118,14 +144,14 @@ fn band(
     pixels
 }
 
-/// Which segments, as (layer, index), touch each tile, layers in order.
-fn sort_into_tiles(layers: &[Vec<Segment>], columns: usize, rows: usize) -> Vec<Vec<(usize, usize)>> {
+/// Which shapes, as (layer, index), touch each tile, layers in order.
+fn sort_into_tiles(layers: &[Vec<Shape>], columns: usize, rows: usize) -> Vec<Vec<(usize, usize)>> {
     let mut tiles = vec![Vec::new(); columns * rows];
     let tile = |v: f64| (v / f64::from(TILE)).floor().max(0.0) as usize;
-    for (layer, segments) in layers.iter().enumerate() {
-        for (i, segment) in segments.iter().enumerate() {
-            let pad = DVec2::splat(segment.half[0].max(segment.half[1]) + 1.0);
-            let (low, high) = (segment.ends[0].min(segment.ends[1]) - pad, segment.ends[0].max(segment.ends[1]) + pad);
+    for (layer, shapes) in layers.iter().enumerate() {
+        for (i, shape) in shapes.iter().enumerate() {
+            let [low, high] = shape.bounds();
+            let (low, high) = (low - 1.0, high + 1.0);
             if high.min_element() < 0.0 {
                 continue;
             }
@@ -139,9 +165,12 @@ fn sort_into_tiles(layers: &[Vec<Segment>], columns: usize, rows: usize) -> Vec<
     tiles
 }
 
-/// A layer's strokes in pixels, cut into segments; a dot is a segment without length.
-fn segments(layer: &Layer, px_per_mm: f64) -> Vec<Segment> {
-    layer.strokes.iter().flat_map(|stroke| stroke_segments(stroke, layer.pen.width / 2.0, px_per_mm)).collect()
+/// A layer's strokes in pixels, cut into segments; a dot is a segment without length. And its areas.
+fn shapes(layer: &Layer, px_per_mm: f64) -> Vec<Shape> {
+    let half = layer.pen.width / 2.0;
+    let segments = layer.strokes.iter().flat_map(|stroke| stroke_segments(stroke, half, px_per_mm));
+    let in_px = |area: &Area| Area(area.0.iter().map(|ring| ring.iter().map(|at| *at * px_per_mm).collect()).collect());
+    segments.map(Shape::Segment).chain(layer.areas.iter().map(in_px).map(Shape::Area)).collect()
 }
 
 /// The segments of one stroke; those without length are left out, unless the stroke is a dot.
@@ -168,11 +197,14 @@ fn stroke_segments(stroke: &Stroke, half: f64, px_per_mm: f64) -> Vec<Segment> {
         .collect()
 }
 
-/// How much of each pixel of the tile at `corner` the segments cover, 0 to 255.
-fn fill<'a>(segments: impl Iterator<Item = &'a Segment>, corner: DVec2) -> Vec<u8> {
+/// How much of each pixel of the tile at `corner` the shapes cover, 0 to 255.
+fn fill<'a>(shapes: impl Iterator<Item = &'a Shape>, corner: DVec2) -> Vec<u8> {
     let mut path = PathBuilder::new();
-    for segment in segments {
-        outline(segment, corner, &mut path);
+    for shape in shapes {
+        match shape {
+            Shape::Segment(segment) => outline(segment, corner, &mut path),
+            Shape::Area(Area(rings)) => rings.iter().for_each(|ring| border(ring, corner, &mut path)),
+        }
     }
     let (Some(path), Some(mut mask)) = (path.finish(), Mask::new(TILE * SCALE, TILE * SCALE)) else {
         return Vec::new();
@@ -218,19 +250,30 @@ fn disc(centre: DVec2, radius: f64, path: &mut PathBuilder) {
     polygon(&corners, path);
 }
 
+/// Adds a ring of an area, wound as it is: a hole runs the other way.
+fn border(ring: &[DVec2], corner: DVec2, path: &mut PathBuilder) {
+    let near = |at: &DVec2| (*at - corner).clamp(DVec2::splat(-FAR), DVec2::splat(FAR));
+    ring.iter().map(near).enumerate().for_each(|(i, at)| put(i, at, path));
+    path.close();
+}
+
 /// Adds a polygon, wound the same way as all others whatever the order of its corners.
 fn polygon(corners: &[DVec2], path: &mut PathBuilder) {
     let area: f64 = corners.windows(2).map(|w| (w[0] - corners[0]).perp_dot(w[1] - corners[0])).sum();
-    let put = |path: &mut PathBuilder, i: usize, p: &DVec2| match i {
-        0 => path.move_to(p.x as f32, p.y as f32),
-        _ => path.line_to(p.x as f32, p.y as f32),
-    };
     if area < 0.0 {
-        corners.iter().rev().enumerate().for_each(|(i, p)| put(path, i, p));
+        corners.iter().rev().enumerate().for_each(|(i, at)| put(i, *at, path));
     } else {
-        corners.iter().enumerate().for_each(|(i, p)| put(path, i, p));
+        corners.iter().enumerate().for_each(|(i, at)| put(i, *at, path));
     }
     path.close();
+}
+
+/// Adds a corner; the first of a polygon begins it.
+fn put(i: usize, at: DVec2, path: &mut PathBuilder) {
+    match i {
+        0 => path.move_to(at.x as f32, at.y as f32),
+        _ => path.line_to(at.x as f32, at.y as f32),
+    }
 }
 
 /// A colour laid over another with this coverage, 0 to 255.

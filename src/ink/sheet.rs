@@ -1,6 +1,6 @@
 //! The sheet of paper: its size, its margins, and how the pixels of a frame lie on it.
 //!
-//! A frame fills the sheet less its margins. Its pixels are as wide as the area divided by their number, and square; so the
+//! A frame fills the sheet less its margins and what stands around it. Its pixels are as wide as the area divided by their number, and square; so the
 //! last row may stand over by less than one, half of that on either side.
 
 use glam::{DVec2, UVec2};
@@ -29,6 +29,31 @@ pub struct Sheet {
     pub size: DVec2,
     /// Blank on all four sides.
     pub margin: f64,
+    /// What stands between that and the frame.
+    pub surround: Surround,
+}
+
+/// The room around a frame, within the margins, for rules and letters.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Surround {
+    /// On the left and on the right, mm.
+    pub sides: f64,
+    /// Above, mm.
+    pub head: f64,
+    /// Below, mm.
+    pub foot: f64,
+    /// How large what stands there is: 1 on a sheet of A4.
+    pub scale: f64,
+}
+
+impl Surround {
+    /// No room at all.
+    pub const NONE: Self = Self { sides: 0.0, head: 0.0, foot: 0.0, scale: 1.0 };
+
+    /// What it takes of a sheet across and down, mm.
+    pub fn size(&self) -> DVec2 {
+        DVec2::new(2.0 * self.sides, self.head + self.foot)
+    }
 }
 
 impl Sheet {
@@ -41,12 +66,17 @@ impl Sheet {
     /// The sheet for a frame of so many pixels across and down: [`Self::WIDTH`] wide, without margins.
     pub fn for_frame([width, height]: [u32; 2]) -> Self {
         let height = Self::WIDTH * f64::from(height) / f64::from(width);
-        Self { size: DVec2::new(Self::WIDTH, height), margin: 0.0 }
+        Self { size: DVec2::new(Self::WIDTH, height), margin: 0.0, surround: Surround::NONE }
+    }
+
+    /// A larger sheet on which the same area has margins and a surround.
+    pub fn surrounded(&self, margin: f64, surround: Surround) -> Self {
+        Self { size: self.inner() + surround.size() + 2.0 * margin, margin, surround }
     }
 
     /// Size of that, mm.
-    fn inner(&self) -> DVec2 {
-        self.size - 2.0 * self.margin
+    pub fn inner(&self) -> DVec2 {
+        self.size - 2.0 * self.margin - self.surround.size()
     }
 
     /// Pixels across and down of a frame that fills the area, at least one, at about so many for each millimetre.
@@ -64,7 +94,9 @@ impl Sheet {
     /// How the pixels of a frame lie on the sheet.
     pub fn placement(&self, frame: [u32; 2]) -> Placement {
         let px_per_mm = f64::from(frame[0]) / self.inner().x;
-        Placement { px_per_mm, centre: self.size / 2.0, frame_centre: UVec2::from(frame).as_dvec2() / 2.0 }
+        let down = (self.surround.head - self.surround.foot) / 2.0;
+        let centre = self.size / 2.0 + DVec2::new(0.0, down);
+        Placement { px_per_mm, centre, frame_centre: UVec2::from(frame).as_dvec2() / 2.0 }
     }
 }
 
@@ -73,7 +105,8 @@ impl Sheet {
 impl Sheet {
     /// Where lines may lie: its corners towards the top left and the bottom right.
     pub fn area(&self) -> [DVec2; 2] {
-        [DVec2::splat(self.margin), self.size - self.margin]
+        let Surround { sides, head, foot, .. } = self.surround;
+        [self.margin + DVec2::new(sides, head), self.size - self.margin - DVec2::new(sides, foot)]
     }
 
     /// Whether a frame fills the area.
@@ -101,8 +134,6 @@ pub struct Placement {
     centre: DVec2,
     frame_centre: DVec2,
 }
-
-impl Placement {}
 
 /// What other stages and tests look into.
 #[doc(hidden)]

@@ -33,8 +33,6 @@ pub struct Lack {
     pub asked: [f64; 2],
 }
 
-impl Land {}
-
 /// What other stages and tests look into.
 #[doc(hidden)]
 impl Land {

@@ -137,8 +137,6 @@ impl Hachures {
     }
 }
 
-impl Shade {}
-
 /// What other stages and tests look into.
 #[doc(hidden)]
 impl Shade {

@@ -128,8 +128,6 @@ impl Method {
     }
 }
 
-impl Visibility {}
-
 /// What other stages and tests look into.
 #[doc(hidden)]
 impl Visibility {

@@ -77,8 +77,6 @@ impl Shores {
     }
 }
 
-impl FlatWater {}
-
 /// What other stages and tests look into.
 #[doc(hidden)]
 impl FlatWater {

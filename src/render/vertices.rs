@@ -7,8 +7,6 @@ use crate::plan::PassName::{Project, Seam, Tessellate};
 use crate::plan::{Frame, Plan};
 use crate::view::Camera;
 
-impl Renderer {}
-
 /// What other stages and tests look into.
 #[doc(hidden)]
 impl Renderer {

@@ -12,8 +12,6 @@ use crate::surface::lattice::CELL_STEPS;
 use crate::surface::{Level, Patch};
 use crate::view::Camera;
 
-impl Terrain<'_> {}
-
 /// What other stages and tests look into.
 #[doc(hidden)]
 impl Terrain<'_> {

@@ -6,7 +6,9 @@ use glam::{DVec2, DVec3, Vec3};
 use hachure::dem::Dem;
 use hachure::door::line::Overhead;
 use hachure::door::surface::LatticePoint;
-use hachure::ink::{self, Drawing, HachureStyle, Sheet, Style, write_png};
+use hachure::ink;
+use hachure::ink::Surround;
+use hachure::ink::{Drawing, HachureStyle, Sheet, Style, write_png};
 use hachure::line::{Chain, Land, Lines, Recession};
 use hachure::plan::{Hachures, Tone};
 use hachure::relief::{ChannelArea, FlatWater, Relief, Slopes};
@@ -51,7 +53,11 @@ impl Map {
 
     pub fn drawing(&self) -> Drawing {
         let [width, height] = self.overhead.size;
-        let sheet = Sheet { size: DVec2::new(f64::from(width), f64::from(height)) / PX_PER_MM, margin: 0.0 };
+        let sheet = Sheet {
+            size: DVec2::new(f64::from(width), f64::from(height)) / PX_PER_MM,
+            margin: 0.0,
+            surround: Surround::NONE,
+        };
         let recession = Recession::of([(1.0, 1.0)].into_iter());
         let lines = Lines {
             width,

@@ -6,9 +6,11 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::thread;
 
+use hachure::ink;
+use hachure::ink::Surround;
 use hachure::ink::plot::planned;
 use hachure::ink::styles::BuiltIn;
-use hachure::ink::{self, Colour, Drawing, Layer, Pen, Sheet, Stroke, StrokeForm};
+use hachure::ink::{Colour, Drawing, Layer, Pen, Sheet, Stroke, StrokeForm};
 
 use crate::plots::checks;
 use crate::plots::made::curves;
@@ -87,9 +89,10 @@ fn drawing(layers: Vec<(&str, Vec<Stroke>)>) -> Drawing {
         form: StrokeForm::CentreLines,
         found: hachure::ink::plot::Journey::through(&strokes),
         strokes,
+        areas: Vec::new(),
     };
-    let sheet = Sheet { size: glam::DVec2::new(420.0, 297.0), margin: 0.0 };
-    Drawing { sheet, paper: Colour([255; 3]), layers: layers.into_iter().map(layer).collect(), seal: None }
+    let sheet = Sheet { size: glam::DVec2::new(420.0, 297.0), margin: 0.0, surround: Surround::NONE };
+    Drawing { sheet, paper: Colour([255; 3]), layers: layers.into_iter().map(layer).collect(), title: None, seal: None }
 }
 
 #[test]

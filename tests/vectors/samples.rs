@@ -3,12 +3,13 @@
 use std::f64::consts::TAU;
 
 use glam::{DVec2, dvec2};
+use hachure::ink::Surround;
 use hachure::ink::plot::Journey;
 use hachure::ink::{Colour, Drawing, Layer, Pen, Sheet, Stroke, StrokeForm, StrokePoint};
 use hachure::line::Id;
 
 /// Whole pixels at the scales of the tests.
-pub const SHEET: Sheet = Sheet { size: DVec2::new(100.5, 80.25), margin: 0.0 };
+pub const SHEET: Sheet = Sheet { size: DVec2::new(100.5, 80.25), margin: 0.0, surround: Surround::NONE };
 
 /// A stroke through places of the same width.
 pub fn even(places: impl IntoIterator<Item = DVec2>) -> Stroke {
@@ -57,7 +58,7 @@ pub fn dot(place: DVec2) -> Stroke {
 
 pub fn layer(name: &str, width: f64, colour: [u8; 3], opacity: f64, strokes: Vec<Stroke>) -> Layer {
     let pen = Pen { width, colour: Colour(colour), opacity };
-    Layer { name: name.into(), pen, form: StrokeForm::Outlines, found: Journey::default(), strokes }
+    Layer { name: name.into(), pen, form: StrokeForm::Outlines, found: Journey::default(), strokes, areas: Vec::new() }
 }
 
 pub fn centre_lines(layer: Layer) -> Layer {
@@ -69,7 +70,7 @@ pub fn drawing(mut layers: Vec<Layer>) -> Drawing {
     for (i, stroke) in layers.iter_mut().flat_map(|layer| &mut layer.strokes).enumerate() {
         (stroke.chain, stroke.piece) = (Some(Id(0x2f_0000_0000 + i as u64 / 2)), i as u32 % 2);
     }
-    Drawing { sheet: SHEET, paper: Colour([255; 3]), layers, seal: None }
+    Drawing { sheet: SHEET, paper: Colour([255; 3]), layers, title: None, seal: None }
 }
 
 /// All of it, in four layers, one over the other.

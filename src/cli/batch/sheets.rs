@@ -183,7 +183,7 @@ impl SheetGrid {
         let crop = (!is_window).then(|| bounds(self.halo, &in_file).ok_or_else(nowhere)).transpose()?;
         let area = bounds(0.0, &in_world).ok_or_else(nowhere)?;
         let called = format!("{}, sheet {name}", entry.called);
-        let draw = entry.draw.of_sheet(&called, crop, area, |path| {
+        let draw = entry.draw.of_sheet(&called, [MARK, &name], crop, area, |path| {
             let text = path.to_string_lossy();
             match text.contains(MARK) {
                 true => Ok(PathBuf::from(text.replace(MARK, &name))),

@@ -19,6 +19,7 @@ use super::ground::upright;
 use super::handles::{Handles, Opening};
 use super::lie::Lie;
 use super::raster::Raster;
+use super::said;
 use super::source::{Source, heard};
 use super::tally::{Tallies, Tally};
 use crate::dem::{Crs, History, Tiling, Window};
@@ -224,6 +225,7 @@ impl Placed {
     ) -> Result<Self> {
         let source = Source::open(path, options.band.unwrap_or(1), options.allow_remote)?;
         let source = source.with_chosen_band(options, history)?;
+        said::credits(&source.dataset).iter().for_each(|text| history.credit(text));
         if let Some(member) = &source.member {
             history.convert(format!("{member} is taken of the archive, its only raster"));
         }

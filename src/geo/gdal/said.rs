@@ -87,6 +87,25 @@ fn part(name: &Path, vrt: &Dataset, band: usize, rasters: &[(PathBuf, RasterPlac
     Some((next.clone(), inner("SourceBand").and_then(|band| band.parse().ok()).unwrap_or(1)))
 }
 
+/// Items in which files say what they are and who made them, in the order in which that is told.
+const CREDITS: [&str; 10] = [
+    "TIFFTAG_IMAGEDESCRIPTION",
+    "NC_GLOBAL#title",
+    "TITLE",
+    "TIFFTAG_ARTIST",
+    "NC_GLOBAL#institution",
+    "NC_GLOBAL#source",
+    "ATTRIBUTION",
+    "NC_GLOBAL#attribution",
+    "TIFFTAG_COPYRIGHT",
+    "COPYRIGHT",
+];
+
+/// What a file says of itself, for those who show it to thank.
+pub(super) fn credits(dataset: &Dataset) -> Vec<String> {
+    CREDITS.iter().filter_map(|item| dataset.metadata_item(item, "")).collect()
+}
+
 /// What the file says of the band, or of the variable that it comes from.
 fn attribute(dataset: &Dataset, band: &RasterBand, name: &str) -> Option<String> {
     if let Some(said) = band.metadata_item(name, "") {
