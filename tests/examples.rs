@@ -3,6 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use glam::DVec2;
+use hachure::geo::{ReadOptions, own_lines, read};
+
 /// Runs an example, built by `cargo test` beside the binary.
 fn run(name: &str, arguments: &[&Path]) -> Output {
     let built = Path::new(env!("CARGO_BIN_EXE_hachure")).with_file_name("examples").join(name);
@@ -28,6 +31,25 @@ fn some_twenty_lines_draw_a_dem() {
     let code = include_str!("../examples/draw.rs");
     let lines = code.lines().filter(|line| !line.is_empty() && !line.starts_with("//")).count();
     assert!(lines <= 22, "{lines} lines");
+}
+
+#[test]
+fn what_a_view_shows_goes_to_the_map() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("lines.gpkg");
+    let output = run("contours", &[&sample(), &file]);
+    let said = String::from_utf8(output.stdout).expect("text");
+    let count: usize = said.split_whitespace().next().expect("a number").parse().expect("a number");
+    assert!(count > 50, "{said}");
+    // Read back, as many lines lie where the sample does, whose world is that of its file.
+    let dem = read(sample(), &ReadOptions::default()).expect("the sample");
+    let [west, south, east, north] = dem.extent();
+    let lines = own_lines(&file, false).expect("a GeoPackage");
+    let layer = &lines.layers[0];
+    assert_eq!((lines.layers.len(), layer.lines.len()), (1, count));
+    assert_eq!(layer.crs.as_ref().and_then(|crs| crs.epsg()), Some(32_610));
+    let is_there = |place: &DVec2| (west..=east).contains(&place.x) && (south..=north).contains(&place.y);
+    assert!(layer.lines.iter().flat_map(|line| &line.places).all(is_there));
 }
 
 #[test]
