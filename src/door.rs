@@ -303,6 +303,34 @@ pub mod report {
     }
 }
 
+pub mod stress {
+    pub use crate::stress::{Case, Check, Group, Promise, all, named, short};
+    pub mod accuracy {
+        pub use crate::stress::accuracy::*;
+    }
+    pub mod conditioning {
+        pub use crate::stress::conditioning::*;
+    }
+    pub mod drawing {
+        pub use crate::stress::drawing::*;
+    }
+    pub mod exceptions {
+        pub use crate::stress::exceptions::*;
+    }
+    pub mod finite {
+        pub use crate::stress::finite::*;
+    }
+    pub mod invariance {
+        pub use crate::stress::invariance::*;
+    }
+    pub mod promise {
+        pub use crate::stress::promise::*;
+    }
+    pub mod watertight {
+        pub use crate::stress::watertight::*;
+    }
+}
+
 pub mod surface {
     pub use crate::surface::lattice::Chunk;
     pub use crate::surface::lattice::Lattice;

@@ -173,6 +173,7 @@ pub mod plan;
 pub mod relief;
 pub mod render;
 mod report;
+mod stress;
 pub mod surface;
 pub mod truth;
 pub mod view;

@@ -7,9 +7,9 @@ use clap::CommandFactory;
 use hachure::door::cli::Arguments;
 
 /// Folders and files of `src` in the order in which the data flows; errors are everyone's.
-const ORDER: [&str; 19] = [
+const ORDER: [&str; 20] = [
     "error", "files", "cache", "dem", "geo", "surface", "relief", "view", "plan", "gpu", "line", "ink", "truth",
-    "render", "measure", "job", "report", "cli", "door",
+    "render", "measure", "job", "stress", "report", "cli", "door",
 ];
 
 /// What truth may know.
@@ -19,7 +19,7 @@ const TRUTH: [&str; 5] = ["error", "dem", "surface", "view", "truth"];
 const MACROS: [&str; 2] = ["message", "shader"];
 
 /// What report may know: what was found, by which methods, and how to write it.
-const REPORT: [&str; 7] = ["error", "files", "plan", "ink", "truth", "measure", "report"];
+const REPORT: [&str; 8] = ["error", "files", "plan", "ink", "truth", "measure", "stress", "report"];
 
 /// Modules of the crate that a source names, macros left out.
 fn named(source: &str) -> Vec<&str> {

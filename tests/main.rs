@@ -96,6 +96,7 @@ mod spires;
 mod stepless;
 mod steps;
 mod strays;
+mod stress;
 mod strokes;
 mod styles;
 mod times;

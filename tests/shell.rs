@@ -133,11 +133,12 @@ fn completions_and_man_pages_hold_every_flag() {
     let generate = |arguments: &[&str]| stdout(&succeeds(place.run(&[&["generate"], arguments].concat())));
     let completions = ["bash", "zsh", "fish", "elvish", "powershell"].map(|shell| generate(&["completions", shell]));
     let pages = generate(&["man"]).replace("\\-", "-");
-    assert_eq!(pages.matches("\n.TH hachure").count(), 10, "one page a subcommand: {pages}");
+    assert_eq!(pages.matches("\n.TH hachure").count(), 11, "one page a subcommand: {pages}");
     let command = Arguments::command();
     let of = |name| command.find_subcommand(name).expect("a subcommand").get_arguments();
     let shown = of("draw")
         .chain(of("fly"))
+        .chain(of("stress"))
         .chain(of("batch"))
         .chain(of("merge"))
         .chain(of("compare"))
@@ -154,7 +155,7 @@ fn completions_and_man_pages_hold_every_flag() {
     generate(&["man", "-o", "."]);
     assert_eq!(
         place.written(),
-        ["batch", "cache", "compare", "draw", "fly", "info", "merge", "pick", "styles"]
+        ["batch", "cache", "compare", "draw", "fly", "info", "merge", "pick", "stress", "styles"]
             .map(|name| format!("hachure-{name}.1"))
             .into_iter()
             .chain(["hachure.1".to_owned()])

@@ -5,11 +5,11 @@ use std::collections::HashSet;
 use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::thread::available_parallelism;
 
 use super::cache::CacheArguments;
 use super::device::DeviceArguments;
 use super::flight::{FlightArguments, FlightPlan};
+use super::machine::{command, machine};
 use super::talk::Talk;
 use super::terrain::TerrainArguments;
 use super::values::{self, GivenHeight, LevelChoice, Size};
@@ -32,7 +32,7 @@ use crate::plan::{Border, Method};
 use crate::report::folder::{Contents, Folder};
 use crate::report::lines::lines;
 use crate::report::pictures::{self, Picture};
-use crate::report::results::{ComparedScene, Machine, Results, SCHEMA, TruthSummary};
+use crate::report::results::{ComparedScene, Results, SCHEMA, TruthSummary};
 use crate::report::{error_time_svg, report_html, write_csv};
 use crate::surface::{Level, Surface};
 use crate::truth::Terrain;
@@ -228,7 +228,7 @@ fn results(gpu: &Gpu, scenes: Vec<ComparedScene>, runs: Vec<Run>, sequences: Vec
     Results {
         version: SCHEMA,
         hachure: env!("CARGO_PKG_VERSION"),
-        command: std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect::<Vec<_>>().join(" "),
+        command: command(),
         machine: machine(gpu),
         truth: least_sure(&scenes),
         scenes,
@@ -388,26 +388,6 @@ fn least_sure(scenes: &[ComparedScene]) -> TruthSummary {
     let least = scenes.iter().map(|scene| &scene.truth).min_by(|a, b| a.self_f.total_cmp(&b.self_f));
     let (level, self_f) = least.map_or((0, 0.0), |truth| (truth.level, truth.self_f));
     TruthSummary { level, self_f }
-}
-
-fn machine(gpu: &Gpu) -> Machine {
-    let info = &gpu.info;
-    Machine {
-        system: format!("{} {}{}", std::env::consts::OS, std::env::consts::ARCH, processor()),
-        cores: available_parallelism().map_or(1, usize::from),
-        adapter: info.name.clone(),
-        adapter_kind: format!("{:?}", info.device_type).to_lowercase(),
-        driver: format!("{} {}", info.driver, info.driver_info),
-        int64: gpu.int64,
-        timing: gpu.clock.describe().to_owned(),
-    }
-}
-
-/// The processor's name where Linux tells it.
-fn processor() -> String {
-    let about = std::fs::read_to_string(Path::new("/proc/cpuinfo")).unwrap_or_default();
-    let name = about.lines().find_map(|line| line.strip_prefix("model name")?.split_once(':'));
-    name.map_or(String::new(), |(_, name)| format!(", {}", name.trim()))
 }
 
 #[cfg(test)]

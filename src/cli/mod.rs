@@ -28,6 +28,7 @@ pub(crate) mod journey;
 pub(crate) mod land;
 pub(crate) mod lines;
 pub(crate) mod listing;
+pub(crate) mod machine;
 pub(crate) mod memory;
 pub(crate) mod merge;
 pub(crate) mod norths;
@@ -40,6 +41,7 @@ pub(crate) mod progress;
 pub(crate) mod reference;
 pub(crate) mod scene;
 pub(crate) mod serve;
+pub(crate) mod stress;
 pub(crate) mod style;
 pub(crate) mod styles;
 pub(crate) mod talk;
@@ -88,6 +90,8 @@ enum Command {
     Merge(merge::MergeArguments),
     /// Compare silhouette methods: their errors and their times, as a report
     Compare(Box<compare::CompareArguments>),
+    /// Run stiff and extreme cases and say which of their promises hold, as a report
+    Stress(Box<stress::StressArguments>),
     /// Say what a pixel shows and which rule drew or left out a line there, or where a place stands on the page
     Pick(Box<pick::PickArguments>),
     /// List, clear or make what is kept for later runs
@@ -125,6 +129,7 @@ impl Arguments {
             Command::Batch(arguments) => arguments.jobs().progress.told(batch::run(arguments, talk)),
             Command::Merge(arguments) => merge::run(arguments, talk),
             Command::Compare(arguments) => compare::run(arguments, talk),
+            Command::Stress(arguments) => stress::run(arguments, talk),
             Command::Pick(arguments) => pick::run(arguments, talk),
             Command::Cache(arguments) => cache::run(arguments, talk),
             Command::Styles(arguments) => styles::run(arguments, talk),

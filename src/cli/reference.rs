@@ -2,6 +2,8 @@
 //!
 //! A paragraph is one line, which help wraps; items of lists begin with spaces, so that man pages keep them apart.
 
+use crate::stress::Promise;
+
 /// What stands below the flags in long help, with empty lines between.
 pub(crate) fn of(parts: &[&str]) -> String {
     parts.join("\n\n")
@@ -263,3 +265,25 @@ A file of views is JSON: {\"views\": [{\"name\": \"crater\", \"dem\": \"st-helen
 \"azimuth\": 170, \"altitude\": -3, \"fov\": 60}, ...]}; \"lonlat\": [LON, LAT, HEIGHT] may stand for \"eye\", \"+200\" for a \
 height of 200 m above the ground; \"north\": \"true\" has azimuths count from true north, not grid north. Its views of the DEMs \
 given are drawn, each DEM by itself.";
+
+/// Of `hachure stress`: cases and promises.
+pub(crate) fn stressed() -> String {
+    let promise = |promise: Promise| format!("  - {}: {}", promise.name(), promise.says());
+    let promises = Promise::ALL.map(promise).join("\n");
+    format!("{STRESSED}\n\nPromises:\n{promises}\n\n{STRESSED_FILES}")
+}
+
+const STRESSED: &str = "\
+A case is land made for it, the same on every machine, with its views and what it promises: land of slopes up to 10 000, a needle \
+of 10 km, planes that hold the eye, fields of view of 0.001 to 179.9 degrees, cells of a millimetre and of 10 km, pages of one \
+pixel, voids of every shape; and ordinary hills beside them. Every method draws each view; what is promised is measured, and \
+stands beside its limit and the time of the frame. Promises are those of the walk and the contour; other methods are held to \
+them where their line says so, and told in any case.";
+
+const STRESSED_FILES: &str = "\
+A broken promise gives 1 and a line that names case, view, method, promise and figure; the report is whole all the same. It needs no \
+network: what is promised and what came nearest to breaking it, the plot of error against time with ordinary land ringed, a table \
+of all runs that sorts, and a picture a view: land, ink of the walk on truth (black), missed (blue), astray (red-orange), rings \
+about the places where promises are measured worst. Beside it stand results.json (cases, runs, checks), results.csv (a row a \
+promise), error-time.svg and the pictures. Amplification is the change of lines over the change of the eye, both in pixels of the \
+page: 1 is what projection does by itself.";

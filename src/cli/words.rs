@@ -71,6 +71,7 @@ pub fn flag(setting: Setting) -> &'static str {
         Setting::Fps => "--fps",
         Setting::Frames => "--frames",
         Setting::Of => "--of",
+        Setting::Only => "--only",
         Setting::Orbit => "--orbit",
         Setting::Order => "--order",
         Setting::Output => "--output",

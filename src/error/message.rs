@@ -138,6 +138,8 @@ settings! {
     Fps = "fps",
     /// A place that is asked about.
     Of = "place",
+    /// The case that is run alone.
+    Only = "case",
     /// What a flight circles.
     Orbit = "orbit",
     /// Which files lie on top.

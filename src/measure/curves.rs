@@ -46,7 +46,7 @@ impl Yield for MeasuredCurves {
 }
 
 /// The ink of a page, whose near plane lies `near` metres before the eye.
-pub(super) fn mask_of(marks: &Marks, near: f64) -> Mask {
+pub(crate) fn mask_of(marks: &Marks, near: f64) -> Mask {
     let inked = |mark: &Mark| Inked { column: mark.column, row: mark.row, distance: mark.pixel.distance(near) };
     Mask { size: [marks.width, marks.height], inked: marks.ink().map(inked).collect() }
 }

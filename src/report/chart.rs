@@ -170,7 +170,8 @@ pub(super) fn draw_line(root: &Area, points: &[[f64; 2]], colour: RGBColor, dash
     }
 }
 
-fn draw_marker(root: &Area, (x, y): (i32, i32), look: &PlotLook) -> Drawn {
+/// Draws a marker at a place.
+pub(super) fn draw_marker(root: &Area, (x, y): (i32, i32), look: &PlotLook) -> Drawn {
     let colour = rgb(look.colour);
     let filled = colour.filled();
     let polygon = |corners: &[(i32, i32)]| {
@@ -222,7 +223,7 @@ pub(super) fn draw_label(root: &Area, label: &Placed, colour: RGBColor) -> Drawn
 }
 
 /// Writes a line of text below and to the right of a place.
-fn write(root: &Area, text: &str, at: [f64; 2], size: f64, colour: RGBColor) -> Drawn {
+pub(super) fn write(root: &Area, text: &str, at: [f64; 2], size: f64, colour: RGBColor) -> Drawn {
     root.draw(&Text::new(text, whole(at), font(size, colour)))
 }
 

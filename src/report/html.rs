@@ -71,16 +71,26 @@ pub fn report_html(results: &Results, plot_svg: &str, pictures: &[Picture]) -> R
         results,
         pass_names,
     };
-    render(&page).map_err(|e| Error::no_report(format_args!("the page: {e:#}")))
+    render("report.html", include_str!("report.html"), &page)
 }
 
-fn render(page: &ReportPage) -> std::result::Result<String, minijinja::Error> {
+/// A page from a template, in which every text is escaped.
+///
+/// # Errors
+/// [`Error::Mistake`] where the template fails.
+pub(super) fn render(name: &str, template: &str, page: &impl Serialize) -> Result<String> {
+    let page = try_render(name, template, page);
+    page.map_err(|e| Error::no_report(format_args!("the page: {e:#}")))
+}
+
+fn try_render(name: &str, template: &str, page: &impl Serialize) -> std::result::Result<String, minijinja::Error> {
     let mut engine = Environment::new();
     engine.set_auto_escape_callback(|_| AutoEscape::Html);
     // A key that is not there is a mistake in the template, never an empty place on the page.
     engine.set_undefined_behavior(UndefinedBehavior::Strict);
     engine.set_syntax(SyntaxConfig::builder().trim_blocks(true).lstrip_blocks(true).build()?);
     engine.add_filter("fixed", fixed);
+    engine.add_filter("figure", figure);
     engine.add_filter("plain", |value: f64| value.to_string());
     engine.add_filter("count", count);
     engine.add_filter("ms", |ms: f64| milliseconds(ms));
@@ -88,7 +98,7 @@ fn render(page: &ReportPage) -> std::result::Result<String, minijinja::Error> {
     engine.add_filter("count_cell", |v: Option<f64>| cell(v, |v| count(v as u64)));
     engine.add_filter("level_cell", level_cell);
     engine.add_filter("ms_cell", |v: Option<f64>| cell(v, milliseconds));
-    engine.render_named_str("report.html", include_str!("report.html"), Serde(page))
+    engine.render_named_str(name, template, Serde(page))
 }
 
 /// The pictures the results name, ready to stand in a `src`.
@@ -98,9 +108,14 @@ fn data_uris<'a>(results: &'a Results, pictures: &[Picture]) -> Result<BTreeMap<
     let data_uri = |name: &'a String| {
         let picture = pictures.iter().find(|picture| picture.name == *name);
         let picture = picture.ok_or_else(|| Error::no_report(format_args!("there is no picture {name}")))?;
-        Ok((name.as_str(), format!("data:image/png;base64,{}", STANDARD.encode(&picture.png))))
+        Ok((name.as_str(), self::data_uri(picture)))
     };
     names.map(data_uri).collect()
+}
+
+/// A picture, ready to stand in a `src`.
+pub(super) fn data_uri(picture: &Picture) -> String {
+    format!("data:image/png;base64,{}", STANDARD.encode(&picture.png))
 }
 
 fn row<'a>(run: &'a Run, results: &'a Results, pass_names: &[&str]) -> Row<'a> {
@@ -121,6 +136,16 @@ fn row<'a>(run: &'a Run, results: &'a Results, pass_names: &[&str]) -> Row<'a> {
 /// So many digits behind the point, and a minus as long as a plus.
 fn fixed(value: f64, digits: usize) -> String {
     format!("{value:.digits$}").replace('-', "\u{2212}")
+}
+
+/// A figure with as many digits as tell something: whole, or four of those that count.
+fn figure(value: f64) -> String {
+    match value.abs() {
+        _ if value.fract() == 0.0 => fixed(value, 0),
+        small if small < 1e-4 => format!("{value:.2e}").replace('-', "\u{2212}"),
+        small if small < 0.1 => fixed(value, 6),
+        _ => fixed(value, 4),
+    }
 }
 
 /// A whole number in groups of three digits.

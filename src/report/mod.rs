@@ -13,6 +13,7 @@ pub(crate) mod lines;
 pub(crate) mod pictures;
 pub(crate) mod plot;
 pub(crate) mod results;
+pub(crate) mod stress;
 mod words;
 
 pub use csv::write_csv;

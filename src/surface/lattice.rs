@@ -54,6 +54,10 @@ impl Default for Level {
 impl Level {
     /// Eight subdivisions of a cell's edge.
     pub const EIGHT: Self = Self(8);
+    /// Sixteen subdivisions of a cell's edge.
+    pub const SIXTEEN: Self = Self(16);
+    /// Thirty-two subdivisions of a cell's edge.
+    pub const THIRTY_TWO: Self = Self(32);
     /// As many as there are.
     pub const FINEST: Self = Self(CELL_STEPS);
 
