@@ -3,27 +3,44 @@
 
 @group(0) @binding(22) var<storage, read_write> out_ink: array<atomic<u32>>;
 
-// A rim line is seen where the surface beside it is farther, in the pixel or one of its four neighbours.
+// Whether a pixel shows an underside: two depths are the away and the toward one.
+fn shows_underside(pixel: vec2<u32>) -> bool {
+    if two_depths {
+        return pixel.x > pixel.y;
+    }
+    return pixel.x != 0u && is_away(pixel.x - 1u);
+}
+
+// A rim line is seen where the surface beside it is farther, in the pixel or one of its four neighbours. The rim of an underside
+// is none: where that alone shows, nearer than the edge, the surface that ends there lies behind it, by less than a pixel.
 fn draw(on_whole_page: vec2<i32>, depth: f32) {
     let at = on_whole_page - camera.origin;
     if !on_page(at) {
         return;
     }
-    var farthest = pixel_depth(pixels[pixel_index(at)]);
-    for (var k = 1u; k < 8u; k += 2u) {
-        // Odd neighbours of the 3 x 3 block, without its centre, are its edges.
-        let beside = at + cross_neighbour(k);
+    let edge = bitcast<u32>(depth);
+    var farthest = 0xffffffffu;
+    var behind_underside = false;
+    var shows_top = false;
+    for (var k = 0u; k < 5u; k++) {
+        let beside = at + cross_place(k);
         if on_page(beside) {
-            farthest = min(farthest, pixel_depth(pixels[pixel_index(beside)]));
+            let pixel = pixels[pixel_index(beside)];
+            let away = shows_underside(pixel);
+            farthest = min(farthest, pixel_depth(pixel));
+            behind_underside |= away && pixel_depth(pixel) > edge;
+            shows_top |= !away && pixel_depth(pixel) != 0u;
         }
     }
-    if bitcast<u32>(depth) >= farthest {
+    if edge >= farthest && (shows_top || !behind_underside) {
         atomicOr(&out_ink[pixel_index(at)], BORDER);
     }
 }
 
-fn cross_neighbour(k: u32) -> vec2<i32> {
-    return vec2<i32>(i32(k % 3u) - 1, i32(k / 3u) - 1);
+// The four neighbours, the odd places of a block of 3 x 3, and last its middle, the pixel itself.
+fn cross_place(k: u32) -> vec2<i32> {
+    let i = select(2u * k + 1u, 4u, k == 4u);
+    return vec2<i32>(i32(i % 3u) - 1, i32(i / 3u) - 1);
 }
 
 // Pixels whose centre line of one axis the edge from `p` to `q` crosses; z is depth. `axis` 0: vertical centre lines.

@@ -118,9 +118,19 @@
 //! | [`render`] | the whole algorithm on one screen |
 //! | [`measure`] | trials against truth, costs of passes, floors beside their times; truths that are kept |
 //! | [`job`] | many drawings as one piece of work: skipped where they are done, shared out, taken up again |
+//! | [`stress`] | stiff and extreme cases, what they promise, and whether it is kept |
 //! | [`report`] | comparisons as JSON, CSV, a plot and a page to read |
 //! | [`cli`] | flags as typed become options checked |
-
+//!
+//! # Stiff and extreme cases
+//!
+//! [`stress`] makes land on which numbers may fail, and holds every method to promises with figures: slopes of 10 to 10 000, a needle of
+//! 10 km, exaggeration up to 1 000, planes that hold the eye, the eye on, below and beside the land, fields of view of .001 to 179.9
+//! degrees, cells of 1 mm and 10 km, northings of 0 and 10^7, land of 2 x 2 samples, pages of one pixel, voids of every shape. What holds
+//! without exception: no NaN, no infinity, no pinhole, no frame that fails; the same bits where land and eye are shifted by whole
+//! cells, scaled by a power of two, raised by whole metres. What bends, by how much, and what was tried stands in
+//! [`stress::exceptions`]: a walk over patches that fold, along a ridge that the line of sight touches for kilometres, from an eye on a
+//! sample; lines a fraction of a pixel apart; some pixels of lines where land is turned by half.
 //!
 //! # Words
 //!

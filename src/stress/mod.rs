@@ -7,7 +7,7 @@
 //! | promise | measured by |
 //! |---|---|
 //! | drawn | whether any frame fails |
-//! | finite | every f32 of the buffers of a frame with curves, of its chains and its strokes: [`finite`] |
+//! | finite | every f32 of the buffers of a frame with curves, creases and hachures, of its chains and its strokes: [`finite`] |
 //! | watertight | pixels without a facet that five rays through the f64 mesh hit: [`watertight`] |
 //! | accurate, no-flood | ink against [truth](crate::truth): [`accuracy`] |
 //! | conditioned | ink and truth of an eye a millionth of its distance on: [`conditioning`] |

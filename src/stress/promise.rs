@@ -63,7 +63,9 @@ impl Promise {
     pub fn says(self) -> &'static str {
         match self {
             Self::Drawn => "every frame comes about: nothing fails, hangs or is cut short",
-            Self::Finite => "no NaN and no infinity in any buffer of numbers, chain or stroke of a frame",
+            Self::Finite => {
+                "no NaN and no infinity in any buffer of numbers, chain or stroke of a frame with creases and hachures"
+            }
             Self::Watertight => "no pixel without a facet though five rays about its centre all meet the land",
             Self::Accurate => "F of walk and of contour at least 0.98 within 1 px, where truth has 200 px and more",
             Self::NoFlood => "ink of walk and of contour farther than 1 px from truth on at most 0.1 % of the page",

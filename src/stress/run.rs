@@ -20,8 +20,10 @@ use super::watertight::{RAY_PX, facets, pinholes};
 use crate::error::{Error, Result};
 use crate::gpu::Gpu;
 use crate::ink::{self, Sheet, Style};
+use crate::line::Land;
 use crate::measure::figures::DrawnLevel;
-use crate::plan::{Curves, Method, Plan};
+use crate::plan::{Curves, LandLines, Method, Plan};
+use crate::relief::{ChannelArea, Relief, Slopes};
 use crate::surface::{Level, Surface};
 use crate::truth::{Mask, Terrain, Truth};
 use crate::view::Camera;
@@ -45,6 +47,7 @@ struct Elsewhere {
 struct Run<'a> {
     case: &'a Case,
     drawer: Drawer,
+    land: Arc<Land>,
     elsewhere: Vec<Elsewhere>,
     turned: Vec<Elsewhere>,
     outcome: Outcome,
@@ -80,6 +83,7 @@ pub(crate) fn run(gpu: &Arc<Gpu>, case: &Case, stage: &dyn Fn(&str)) -> Result<O
     let mut run = Run {
         case,
         drawer: Drawer::new(gpu, &surface)?,
+        land: Arc::new(land_of(&surface)?),
         elsewhere: elsewhere(Promise::SameBits, same_bits(&case.dem).into())?,
         turned: elsewhere(Promise::Turned, turned(&case.dem).into())?,
         outcome: Outcome::default(),
@@ -115,6 +119,18 @@ pub(crate) fn run(gpu: &Arc<Gpu>, case: &Case, stage: &dyn Fn(&str)) -> Result<O
     Ok(outcome)
 }
 
+/// Drainage, ridges and slope lines, as the default style's hachures have them.
+fn land_of(surface: &Arc<Surface>) -> Result<Land> {
+    let relief = Relief::of(surface.dem(), 1.0)?;
+    let lines = [relief.drainage(ChannelArea::Auto), relief.ridges()?].concat();
+    let slopes = Style::default().hachures.rules().map(|rules| Slopes::new(surface.clone(), 1.0, rules, &lines, None));
+    let land = Land::new(surface.dem(), 1.0, lines)?;
+    Ok(match slopes.transpose()? {
+        Some(slopes) => land.with_slopes(Arc::new(slopes)),
+        None => land,
+    })
+}
+
 /// That of no visible edge longer than a pixel, as far as the case allows.
 fn truth_level(case: &Case, terrain: &Terrain<'_>, camera: &Camera) -> Level {
     let fine = terrain.level_for(camera).unwrap_or_default().subdivisions().max(LEAST_TRUTH);
@@ -145,17 +161,21 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// What is promised of a frame whatever the method: finite numbers, no pinhole.
+    /// What is promised of a frame whatever the method: finite numbers, in silhouettes, creases and hachures; no pinhole.
     fn frame(&mut self, sight: &mut Sight<'_>) -> Result<()> {
         let camera = &sight.view.camera;
-        let plan = Plan { curves: Curves::On, ..plan(self.case.detail, Method::Walk) };
+        let (style, sheet) = (Style::default(), Sheet::for_frame([camera.width, camera.height]));
+        let px_per_mm = sheet.placement([camera.width, camera.height]).px_per_mm;
+        let (land, hachures) = (LandLines::On, style.hachures(px_per_mm));
+        let plan = Plan { curves: Curves::On, land, hachures, ..plan(self.case.detail, Method::Walk) };
         let renderer = self.drawer.renderer();
+        renderer.set_land(Some(self.land.clone()));
         let page = renderer.page(&plan, camera, |_| ())?;
+        renderer.set_land(None);
         let mut counted = Counted::default();
         counted.buffers(renderer)?;
         counted.chains(&page.chains);
-        let (style, sheet) = (Style::default(), Sheet::for_frame([camera.width, camera.height]));
-        let px_per_mm = sheet.placement([camera.width, camera.height]).px_per_mm;
+        counted.chains(&page.land);
         let lines = page.lines(&style.economy(px_per_mm), style.tolerance * px_per_mm);
         counted.strokes(&ink::draw(&lines, &sheet, &style, &[])?);
         let pixels = u64::from(camera.width) * u64::from(camera.height);
