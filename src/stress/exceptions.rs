@@ -35,7 +35,7 @@ const ON_A_SAMPLE: &str = "The eye lies on a sample: facets about it hold the ey
 const SLIVERS: &str = "Rows there twice make treads whose far sides are slivers on the page, each a line of truth; facets may deviate by \
                        0.15 px there, and chains under 2 px are left out. Nothing was tried.";
 const FOLDS: &str = "Patches over white noise 10 cells high fold over, and lines stand a pixel apart; chains under 2 px are left out. Limited \
-                     tangents would leave no folds, and change the surface: not tried.";
+                     tangents leave no folds: see folds-limited.";
 const ROUNDED: &str = "Offsets of vertices run from the north-west sample of a cell, which is another one on land that is turned: f32 \
                        rounds otherwise, and pixels at which it matters change sides. That this is the cause was not proven; \
                        nothing was tried.";

@@ -20,6 +20,7 @@ pub(super) const CASES: &[Make] = &[
     saw_tooth,
     cells_1_to_1000,
     folds,
+    folds_limited,
 ];
 
 fn stiff(name: &'static str, about: &'static str, dem: Dem) -> Case {
@@ -115,12 +116,18 @@ fn cells_1_to_1000() -> Case {
         .truth_to(Level::SIXTEEN)
 }
 
-/// White noise ten cells high: patches fold over.
-fn folds() -> Case {
+/// White noise ten cells high.
+fn noise(name: &'static str, about: &'static str) -> Case {
     let dem = grid([33, 33], CELL, |c, r| sixteenths(10.0 * CELL * hashed(7, c, r)));
-    stiff("folds", "white noise 10 cells high: patches fold over", dem).seen(
-        "above",
-        [16.0, 50.0, 900.0],
-        [16.0, 16.0, 0.0],
-    )
+    stiff(name, about, dem).seen("above", [16.0, 50.0, 900.0], [16.0, 16.0, 0.0])
+}
+
+/// Patches fold over.
+fn folds() -> Case {
+    noise("folds", "white noise 10 cells high: patches fold over")
+}
+
+/// The same land with tangents limited: none folds.
+fn folds_limited() -> Case {
+    noise("folds-limited", "white noise 10 cells high, tangents limited: no patch folds").limited()
 }
