@@ -7,7 +7,8 @@
 //! triangle is halved until they do: the answer is exact, but that a ground of 0 to 2^-12 of the triangle's side across is a fold.
 //!
 //! A facet folds where its own three places on the map stand clockwise. Of a patch that is *plain* no facet does, at any level: each
-//! pair of the differences of its control points, east and south, spans ground, and sides of facets are means of these.
+//! pair of the differences of its control points, along two sides, spans ground, and sides of facets are means of these. Of others
+//! the four quarters are looked at, and so on down to the finest level.
 //!
 //! Cost: squares of the pyramid whose patches bend by less than a twelfth of a cell are passed over, for these cannot fold (see
 //! [`MAY_FOLD`]); of others some 0.2 us a patch. Does not handle: facets coarser than the grid, which are planes over samples and
@@ -82,9 +83,8 @@ impl Surface {
     pub fn folds(&self) -> Result<Vec<Fold>> {
         let mut folds = self.look(self.bent()?, |part, at| {
             let patch = part.patch(at, |sample| part.gradient_at(sample));
-            let ground = Ground::of(&patch, at.half, self.dem.cell());
             let low = || self.dem.position(at.cell[1] as usize, at.cell[0] as usize);
-            ground.folds().then(|| ground.fold(&patch, at, low()))
+            Ground::of(&patch, self.dem.cell()).folds().then(|| Fold::of(at, &patch, low()))
         })?;
         folds.sort_by_key(|fold| fold.at);
         Ok(folds)
@@ -113,8 +113,7 @@ impl Surface {
         let side = chunk.size().div_ceil(CELL_STEPS);
         let [column, row] = chunk.origin.map(|at| at / CELL_STEPS);
         let part = self.in_memory([column, row], side)?;
-        let is_plain =
-            |at| Ground::of(&part.patch(at, |sample| part.gradient_at(sample)), at.half, self.dem.cell()).is_plain();
+        let is_plain = |at| Ground::of(&part.patch(at, |sample| part.gradient_at(sample)), self.dem.cell()).is_plain();
         if part.patches_of(Cells { first: [row, column], side }).all(is_plain) {
             return Ok(0);
         }
@@ -207,67 +206,105 @@ impl PatchAt {
     }
 }
 
-/// The Jacobian of a patch's ground, of a flat patch 1, and what it is made of.
-#[derive(Debug, Clone)]
-pub(super) struct Ground {
-    /// Bernstein coefficients of degree 4, in the order of [`index`].
-    coefficients: [f64; 15],
-    /// The least of the products that these are means of.
-    least: f64,
-}
+/// A patch as seen from above: its control points in cells, by [`Patch::index`].
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Ground([DVec2; 10]);
+
+/// Corners of the quarters of a triangle, as weights of its own.
+const QUARTERS: [[[f64; 3]; 3]; 4] = [
+    [[1.0, 0.0, 0.0], [0.5, 0.5, 0.0], [0.5, 0.0, 0.5]],
+    [[0.5, 0.5, 0.0], [0.0, 1.0, 0.0], [0.0, 0.5, 0.5]],
+    [[0.5, 0.0, 0.5], [0.0, 0.5, 0.5], [0.0, 0.0, 1.0]],
+    [[0.0, 0.5, 0.5], [0.5, 0.0, 0.5], [0.5, 0.5, 0.0]],
+];
 
 impl Ground {
-    /// Of patch `half` of a cell.
-    pub(super) fn of(patch: &Patch, half: usize, cell: DVec2) -> Self {
-        let control = patch.control().map(|p| p.truncate() / cell);
-        let at = |[j, k]: [usize; 2]| control[Patch::index(j, k)];
-        // East and north along the legs; corners are NW, SW, SE or NW, SE, NE.
-        let [a, b, c] = [[0, 0], [1, 0], [0, 1]];
-        let legs = if half == 0 { [[b, c], [b, a]] } else { [[a, c], [b, c]] };
-        let sum = |p: [usize; 2], q: [usize; 2]| [p[0] + q[0], p[1] + q[1]];
-        let along = legs.map(|[from, to]| QUADRATIC.map(|p| (at(sum(p, to)) - at(sum(p, from))) * 3.0));
-        let (mut coefficients, mut least) = ([0.0; 15], f64::INFINITY);
-        for (i, p) in QUADRATIC.into_iter().enumerate() {
-            for (j, q) in QUADRATIC.into_iter().enumerate() {
-                let ground = along[0][i].perp_dot(along[1][j]);
-                let [x, y] = sum(p, q);
-                coefficients[index(x, y)] += ground * (ways(2, p) * ways(2, q) / ways(4, [x, y]));
-                least = least.min(ground);
+    pub(super) fn of(patch: &Patch, cell: DVec2) -> Self {
+        Self(patch.control().map(|p| p.truncate() / cell))
+    }
+
+    /// Whether the Jacobian is 0 or less anywhere.
+    pub(super) fn folds(&self) -> bool {
+        !self.is_plain() && reaches_zero(&self.jacobian(), HALVINGS)
+    }
+
+    /// Whether neither it nor a facet of it, at any level, folds.
+    pub(super) fn is_upright(&self) -> bool {
+        self.is_plain() || self.facets_are_upright(CELL_STEPS) && !reaches_zero(&self.jacobian(), HALVINGS)
+    }
+
+    /// Whether no facet of it folds, from the one of its own three corners down to those of so many subdivisions.
+    fn facets_are_upright(&self, subdivisions: u32) -> bool {
+        let [a, b, c] = [0, 3, 9].map(|corner| self.0[corner]);
+        let is_upright = (b - a).perp_dot(c - a) > 0.0;
+        let below = || QUARTERS.iter().all(|quarter| self.part(quarter).facets_are_upright(subdivisions / 2));
+        self.is_plain() || is_upright && (subdivisions == 1 || below())
+    }
+
+    /// Whether each pair of differences of its control points, along two sides, spans ground.
+    fn is_plain(&self) -> bool {
+        let [first, second] = self.along();
+        first.iter().all(|a| second.iter().all(|b| a.perp_dot(*b) > 0.0))
+    }
+
+    /// Differences of the control points from the first corner on towards the second and towards the third, three times, by
+    /// [`QUADRATIC`].
+    fn along(&self) -> [[DVec2; 6]; 2] {
+        let at = |[j, k]: [usize; 2]| self.0[Patch::index(j, k)];
+        [[1, 0], [0, 1]].map(|way| QUADRATIC.map(|[j, k]| (at([j + way[0], k + way[1]]) - at([j, k])) * 3.0))
+    }
+
+    /// The same patch over a part of its triangle, by the blossom of its cubic (Farin 1986).
+    fn part(&self, [a, b, c]: &[[f64; 3]; 3]) -> Self {
+        let blossom = |weights: [&[f64; 3]; 3]| {
+            let mut points = self.0;
+            for (degree, [a, b, c]) in (0..3).rev().zip(weights) {
+                for [j, k] in (0..=degree).flat_map(|k| (0..=degree - k).map(move |j| [j, k])) {
+                    let at = |j, k| points[Patch::index(j, k)];
+                    points[Patch::index(j, k)] = at(j, k) * *a + at(j + 1, k) * *b + at(j, k + 1) * *c;
+                }
+            }
+            points[0]
+        };
+        let of = [
+            [a, a, a],
+            [a, a, b],
+            [a, b, b],
+            [b, b, b],
+            [a, a, c],
+            [a, b, c],
+            [b, b, c],
+            [a, c, c],
+            [b, c, c],
+            [c, c, c],
+        ];
+        Self(of.map(blossom))
+    }
+
+    /// The Jacobian, of a flat patch 1: Bernstein coefficients of degree 4, in the order of [`index`].
+    fn jacobian(&self) -> [f64; 15] {
+        let [first, second] = self.along();
+        let mut coefficients = [0.0; 15];
+        for (p, a) in QUADRATIC.into_iter().zip(first) {
+            for (q, b) in QUADRATIC.into_iter().zip(second) {
+                let at = [p[0] + q[0], p[1] + q[1]];
+                coefficients[index(at[0], at[1])] += a.perp_dot(b) * (ways(2, p) * ways(2, q) / ways(4, at));
             }
         }
-        Self { coefficients, least }
+        coefficients
     }
+}
 
-    /// Whether it is 0 or less anywhere.
-    pub(super) fn folds(&self) -> bool {
-        self.least <= 0.0 && reaches_zero(&self.coefficients, HALVINGS)
-    }
-
-    /// Whether no facet of any level folds.
-    pub(super) fn is_plain(&self) -> bool {
-        self.least > 0.0
-    }
-
-    /// Its value at barycentric weights.
-    fn at(&self, weights: [f64; 3]) -> f64 {
-        let power = |weight: f64, n: usize| weight.powi(n as i32);
-        let terms = (0..5).flat_map(|k| (0..5 - k).map(move |j| [j, k]));
-        let term = |[j, k]: [usize; 2]| {
-            let [a, b, c] = weights;
-            self.coefficients[index(j, k)] * ways(4, [j, k]) * power(a, 4 - j - k) * power(b, j) * power(c, k)
-        };
-        terms.map(term).sum()
-    }
-
-    /// Its least value at vertices of the patch, which folds.
-    fn fold(&self, patch: &Patch, at: PatchAt, low: DVec3) -> Fold {
+impl Fold {
+    /// Of a patch that folds, `low` being the north-west corner of its cell, from which it is measured.
+    fn of(at: PatchAt, patch: &Patch, low: DVec3) -> Self {
+        let ground = |[a, b, c]: [DVec3; 3]| (b - a).truncate().perp_dot((c - a).truncate());
+        let flat = ground([0, 3, 9].map(|corner| patch.control()[corner]));
         let vertices = (0..=LOOKED).flat_map(|j| (0..=LOOKED - j).map(move |k| [LOOKED - j - k, j, k]));
-        let looked = vertices.map(|weights| {
-            let weights = weights.map(|weight| f64::from(weight) / f64::from(LOOKED));
-            (self.at(weights), weights)
-        });
+        let weights = vertices.map(|weights| weights.map(|weight| f64::from(weight) / f64::from(LOOKED)));
+        let looked = weights.map(|weights| (ground(patch.derivatives(weights)) / flat, weights));
         let (ground, weights) = looked.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default();
-        Fold { at, ground, place: (low + patch.point(weights)).truncate() }
+        Self { at, ground, place: (low + patch.point(weights)).truncate() }
     }
 }
 

@@ -1,10 +1,11 @@
 //! Tangents limited, so that no patch folds.
 //!
-//! Method: where a patch [folds](super::folds), the gradients of its three samples are made less by a quarter, and so again
-//! until neither it nor a patch about a sample that was changed has a facet that folds at any level ([`Ground::is_plain`]). It
-//! ends, for a patch whose corners are level stands over its flat triangle; a share under 1/64 is none. What does not fold and
-//! has no such sample stays as it is, bit for bit. Since it is normals that change, and a sample has one, the surface stays
-//! without cracks, and everything that looks at it sees the same one: the device, truth, bounds, lines on the land.
+//! Method: where a patch [folds](super::folds), or a facet of it at any level, the gradients of its three samples are made less by a
+//! quarter, and so again, with the patches about samples that were changed, until none does. It ends, for a patch whose corners are
+//! level stands over its flat triangle; a share under 1/64 is none. What has no such sample stays as it is, bit for bit.
+//!
+//! Since it is normals that change, and a sample has one, the surface stays without cracks, and everything that looks at it sees
+//! the same one: the device, truth, bounds, lines on the land.
 //!
 //! Limits depend on the whole DEM, for one patch may lead to the next. They are found once, of a DEM in its files too, of which
 //! only blocks with patches that bend are read. Cost: some rounds over the patches about changed samples, 0.3 us each; memory: 20
@@ -56,12 +57,11 @@ impl Limits {
     /// As [`Surface::folds`]; [`Error::Limit`] where too many samples would change.
     pub(super) fn of(surface: &Surface) -> Result<Self> {
         let (mut limits, cell) = (Self::default(), surface.dem.cell());
-        let corners = |part: &Surface, at: PatchAt, plain: bool, limits: &Self| {
-            let ground = Ground::of(&part.patch(at, |sample| limits.gradient(part, sample)), at.half, cell);
-            let folds = if plain { !ground.is_plain() } else { ground.folds() };
-            folds.then(|| at.corners())
+        let folding = |part: &Surface, at: PatchAt, limits: &Self| {
+            let ground = Ground::of(&part.patch(at, |sample| limits.gradient(part, sample)), cell);
+            (!ground.is_upright()).then(|| at.corners())
         };
-        let mut found = surface.look(surface.bent()?, |part, at| corners(part, at, false, &limits))?;
+        let mut found = surface.look(surface.bent()?, |part, at| folding(part, at, &limits))?;
         while !found.is_empty() {
             let mut samples = found.concat();
             samples.sort_unstable();
@@ -71,7 +71,7 @@ impl Limits {
                 let what = format!("patches fold about more than {MOST} samples");
                 return Err(Error::limit(what, message!["use a ", Setting::Crop, " or less ", Setting::Exaggeration]));
             }
-            found = surface.look(about(&samples), |part, at| corners(part, at, true, &limits))?;
+            found = surface.look(about(&samples), |part, at| folding(part, at, &limits))?;
         }
         Ok(limits)
     }
