@@ -332,9 +332,11 @@ pub mod stress {
 }
 
 pub mod surface {
+    pub use crate::surface::folds::{Fold, PatchAt};
     pub use crate::surface::lattice::Chunk;
     pub use crate::surface::lattice::Lattice;
     pub use crate::surface::lattice::LatticePoint;
+    pub use crate::surface::limits::Moved;
     pub use crate::surface::pyramid::Pyramid;
     pub use crate::surface::tile::Tile;
     pub mod lattice {

@@ -140,6 +140,8 @@
 //! |---|---|
 //! | sample, cell | a height of the grid; the square between four of them |
 //! | patch | a cubic PN triangle (Vlachos et al. 2001), half a cell |
+//! | fold | a patch whose ground, its projection on the map, turns back on itself; a facet that stands on its head |
+//! | limits | what share of their gradients samples keep, so that no patch folds |
 //! | facet | a flat triangle that is drawn, on the integer lattice |
 //! | chunk | 16 x 16 quads of facets with one level of detail: what others call a cluster or tile of the mesh |
 //! | batch, slot | chunks that are drawn at once; the place of one in the device's buffers |

@@ -29,6 +29,7 @@ mod films;
 mod flight_paths;
 mod flights;
 mod fly;
+mod folds;
 mod forms;
 mod frames;
 mod furniture;

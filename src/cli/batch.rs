@@ -260,7 +260,7 @@ impl Studio<'_> {
             self.scene = None;
             let reading = draw.open(self.cache.clone())?;
             let files = reading.files().map(Path::to_owned).collect();
-            let surface = Arc::new(scene::surface(&draw.terrain, reading, talk)?);
+            let surface = Arc::new(scene::surface(&draw.terrain, reading, &self.cache, talk)?);
             scene::prepare(&surface, &self.cache, talk)?;
             self.cache.discard_damaged(surface.dem(), &|message| talk.warn(&told(message)));
             self.scene = Some(BatchScene { of, files, surface, renderer: None, land: None });

@@ -251,7 +251,7 @@ impl CompareArguments {
         let dem = self.terrain.read(reading, talk)?;
         dem.check_patches()?;
         cells::warn(&dem, self.exaggeration, talk);
-        Ok(Surface::new(dem))
+        self.terrain.surface(dem, &Cache::none(), talk)
     }
 
     /// The flight along a path, whose pages are small unless their size is given.

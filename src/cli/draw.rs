@@ -9,6 +9,7 @@ use super::device::DeviceArguments;
 use super::draw_report::{ChainsReport, DemReport, LayerReport, LeftOutReport, PageReport, Report};
 use super::drawing::{DrawingArguments, Wanted};
 use super::flat_earth::FlatEarth;
+use super::folds::{FoldsInView, FoldsReport};
 use super::outputs::OutputArguments;
 use super::talk::Talk;
 use super::terrain::TerrainArguments;
@@ -121,7 +122,7 @@ pub(crate) fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     let (reading, beside) = (arguments.open(cache.clone())?, arguments.drawing.land.lines.files());
     let mut outputs =
         arguments.outputs.open(Taken::inputs(reading.files().chain(beside.iter().map(PathBuf::as_path))))?;
-    let surface = Arc::new(scene::surface(&arguments.terrain, reading, talk)?);
+    let surface = Arc::new(scene::surface(&arguments.terrain, reading, &cache, talk)?);
     let map = outputs.map_format().map(|format| georeferenced::crs(format, surface.dem())).transpose()?;
     let gpu = scene::prepare_and_open(&surface, &cache, &arguments.device, talk)?;
     let view = arguments.look(&surface, &illustration, talk)?;
@@ -154,6 +155,7 @@ pub(crate) fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     talk.progress("writing", 1.0);
     outputs.publish()?;
     journey::tell(&drawing, &illustration.style.plot, talk)?;
+    arguments.folds(&drawn.page, &surface)?.warning().into_iter().for_each(|words| talk.warn(&words));
     arguments.tell(&drawn, started, talk)?;
     let DrawnPage { page, .. } = drawn;
     if is_bare && page.marks.inked() > 0 {
@@ -246,6 +248,11 @@ impl DrawArguments {
         self.drawing.furniture.furniture().set(&illustration.sheet, &illustration.style, &texts)
     }
 
+    /// How much of a page folds over.
+    fn folds(&self, page: &Page, surface: &Surface) -> Result<FoldsInView> {
+        FoldsInView::of(surface, &page.frame.lattice, page.frame.facets(surface))
+    }
+
     /// Warns where a page of it, or land that is to be hatched, is blank.
     pub(crate) fn warn_of_page(&self, renderer: &mut Renderer, view: &View, page: &Page, talk: &Talk) {
         page.bare.into_iter().for_each(|bare| talk.warn(&bare::of_view(bare)));
@@ -293,6 +300,7 @@ impl DrawArguments {
             method: plan.method.entry().family,
             level: plan.detail.into(),
             facets: page.frame.facets(&surface),
+            folds: FoldsReport::of(&surface, self.folds(page, &surface)?, self.drawing.exaggeration)?,
             inked: page.marks.inked(),
             chains: plan.has_curves().then(|| ChainsReport::of(page)),
             without_stroke: ink::unstroked(&page.marks, lines, drawing),

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use serde::Serialize;
 
 use super::flat_earth::FlatEarth;
+use super::folds::FoldsReport;
 use super::view_report::ViewReport;
 use super::words::told;
 use crate::dem::Dem;
@@ -25,6 +26,7 @@ pub(super) struct Report {
     pub method: &'static str,
     pub level: DrawnLevel,
     pub facets: u64,
+    pub folds: FoldsReport,
     pub inked: usize,
     pub chains: Option<ChainsReport>,
     /// Parts of the mask that no stroke draws.

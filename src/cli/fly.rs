@@ -254,7 +254,7 @@ impl FlyArguments {
         let reading = self.open(cache)?;
         Taken::inputs(reading.files().chain(beside.iter().map(PathBuf::as_path))).take(Setting::Preview, path)?;
         let mut output = Output::create(path)?;
-        let surface = scene::surface(&self.terrain, reading, talk)?;
+        let surface = scene::surface(&self.terrain, reading, cache, talk)?;
         scene::prepare(&surface, cache, talk)?;
         let preview = Preview::of(surface.dem(), &self.flight(&plan, &surface, talk)?)?;
         output.write(|out| match format {
@@ -267,7 +267,7 @@ impl FlyArguments {
 
     /// Lists jobs with what they may take.
     fn list(&self, asked: &Asked, jobs: &[Job], cache: &Cache, talk: &Talk) -> Result<()> {
-        let surface = Arc::new(scene::surface(&self.terrain, self.open(cache)?, &talk.hushed())?);
+        let surface = Arc::new(scene::surface(&self.terrain, self.open(cache)?, cache, &talk.hushed())?);
         scene::prepare(&surface, cache, talk)?;
         let (flight, mut kept) = (self.flight(&asked.plan, &surface, &talk.hushed())?, KeptLattice::default());
         for job in jobs {
@@ -288,7 +288,7 @@ impl FlyArguments {
         let mut inputs = Taken::inputs(reading.files().chain(beside.iter().map(PathBuf::as_path)));
         self.video.as_deref().map_or(Ok(()), |video| inputs.take(Setting::Video, video))?;
         files.spare(inputs, jobs)?;
-        let surface = Arc::new(scene::surface(&self.terrain, reading, talk)?);
+        let surface = Arc::new(scene::surface(&self.terrain, reading, cache, talk)?);
         let gpu = scene::prepare_and_open(&surface, cache, &self.device, talk)?;
         cells::warn(surface.dem(), self.drawing.exaggeration, talk);
         warn_of_survey(surface.dem(), talk)?;

@@ -3,11 +3,13 @@
 use super::talk::Talk;
 use super::terrain::{TerrainArguments, words};
 use super::words::told;
-use super::{channels, peaks, reference, values};
+use super::{channels, folds, peaks, reference, values};
 use crate::cache::Cache;
+use crate::dem::Dem;
 use crate::error::Result;
 use crate::geo;
 use crate::gpu::Adapter;
+use crate::surface::Surface;
 
 /// The end of `hachure info --help`.
 const EXAMPLES: &str = "\
@@ -40,6 +42,9 @@ pub struct InfoArguments {
         help = peaks_help(), long_help = format!("{}\n\n{PROMINENCE}", peaks_help())
     )]
     peaks: Option<usize>,
+    /// Factor on every elevation, for folds of the surface: those of a drawing with as much
+    #[arg(long, value_name = "X", value_parser = values::exaggeration, allow_hyphen_values = true, default_value = "1")]
+    exaggeration: f64,
     /// Also list from how much land on water was tried to run in channels, how streams fall with each, and which --channel-area
     /// auto takes; DEMs that stay in their files need a --crop
     #[arg(long)]
@@ -70,7 +75,21 @@ pub fn run(arguments: &InfoArguments, talk: &Talk) -> Result<()> {
     // These first: where they cannot be told, nothing is.
     let peaks = arguments.peaks.map(|count| peaks::told(&dem, count)).transpose()?;
     let channels = arguments.channels.then(|| channels::told(&dem)).transpose()?;
-    talk.answer(&[Some(info.told(told)), peaks, channels].into_iter().flatten().collect::<Vec<_>>().join("\n"))
+    let folds = folds(arguments, dem, talk)?;
+    talk.answer(
+        &[Some(info.told(told)), Some(folds), peaks, channels].into_iter().flatten().collect::<Vec<_>>().join("\n"),
+    )
+}
+
+/// What is told of folds of the surface of `dem`, read anew where heights are exaggerated.
+fn folds(InfoArguments { terrain, exaggeration, .. }: &InfoArguments, dem: Dem, talk: &Talk) -> Result<String> {
+    let dem = match *exaggeration {
+        1.0 => dem,
+        factor => terrain
+            .open(&terrain.dems, factor, Cache::none())?
+            .finish(&|stage, share| talk.progress(words(stage), share))?,
+    };
+    folds::told(Surface::new(dem), *exaggeration, terrain.limits_folds())
 }
 
 /// Adapters, a row each: names last, which hold spaces.

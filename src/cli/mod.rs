@@ -18,6 +18,7 @@ pub(crate) mod flight;
 mod flight_keys;
 mod flight_plan;
 pub(crate) mod fly;
+pub(crate) mod folds;
 pub(crate) mod frames;
 pub(crate) mod furniture;
 pub(crate) mod generate;

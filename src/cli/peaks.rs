@@ -26,18 +26,19 @@ pub(super) fn told(dem: &Dem, count: usize) -> Result<String> {
 
 fn line(dem: &Dem, peak: &Peak) -> Result<String> {
     let Peak { height, prominence, at_edge, .. } = peak;
+    let place = |[c, r]: [usize; 2]| place(dem, dem.position(c, r).truncate());
     let base = match peak.base {
-        Base::Saddle(at, height) => format!("above the saddle, {height:.1} m at {}", place(dem, at)?),
-        Base::Lowest(at, height) => format!("above the lowest sample, {height:.1} m at {}", place(dem, at)?),
+        Base::Saddle(at, height) => format!("above the saddle, {height:.1} m at {}", place(at)?),
+        Base::Lowest(at, height) => format!("above the lowest sample, {height:.1} m at {}", place(at)?),
         Base::Sea => "above the sea".to_owned(),
     };
     let edge = if *at_edge { "; at the edge, beyond which the land may rise" } else { "" };
-    Ok(format!("{height:.1} m at {}, prominence {prominence:.1} m {base}{edge}", place(dem, peak.at)?))
+    Ok(format!("{height:.1} m at {}, prominence {prominence:.1} m {base}{edge}", place(peak.at)?))
 }
 
 /// In the system of the file, and on the globe where that is known.
-fn place(dem: &Dem, [c, r]: [usize; 2]) -> Result<String> {
-    let (world, georeference) = (dem.position(c, r).truncate(), dem.georeference());
+pub(super) fn place(dem: &Dem, world: DVec2) -> Result<String> {
+    let georeference = dem.georeference();
     let file = georeference.file();
     let decimals = if file.is_geographic() { 6 } else { 2 };
     let pair = |place: DVec2, decimals: usize| format!("{:.decimals$},{:.decimals$}", place.x, place.y);

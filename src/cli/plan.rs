@@ -118,7 +118,7 @@ pub(crate) fn run(arguments: &DrawArguments, scale: f64, talk: &Talk) -> Result<
     let (reading, beside) = (arguments.open(cache.clone())?, arguments.drawing.land.lines.files());
     let inputs = reading.files().chain(beside.iter().map(PathBuf::as_path));
     let mut outputs = arguments.outputs.open(Taken::inputs(inputs))?;
-    let surface = Arc::new(scene::surface(&arguments.terrain, reading, talk)?);
+    let surface = Arc::new(scene::surface(&arguments.terrain, reading, &cache, talk)?);
     let dem = surface.dem();
     let map = outputs.map_format().map(|format| georeferenced::crs(format, dem)).transpose()?;
     warn_of_survey(dem, talk)?;

@@ -98,8 +98,8 @@ pass, is found and kept:
     drawn): 1.9 bytes a sample
 
 A later view reads of the file only what it shows at level 1 and finer. What is kept depends on every file the DEM is made of \
-(path, size, time, both ends), on band, crop and way of reading; bounds, which take one more look, on the exaggeration too. A \
-file that changes or breaks while it is drawn fails the frame.
+(path, size, time, both ends), on band, crop and way of reading; bounds, which take one more look, on the exaggeration and on limits \
+of folds too. A file that changes or breaks while it is drawn fails the frame.
 
 `compare` holds all samples: take a part with --crop. What is warped or filled must be held, for GDAL then needs all samples at \
 once: warp it to a map first (gdalwarp), or fill it (gdal_fillnodata.py). Tiled files come in best.";

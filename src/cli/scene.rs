@@ -23,15 +23,15 @@ use crate::surface::Surface;
 /// Reads the DEM and finds its normals.
 ///
 /// # Errors
-/// As [`TerrainArguments::read`]; where there is nothing to draw.
-pub(crate) fn surface(terrain: &TerrainArguments, reading: Reading, talk: &Talk) -> Result<Surface> {
+/// As [`TerrainArguments::read`] and [`TerrainArguments::surface`]; where there is nothing to draw.
+pub(crate) fn surface(terrain: &TerrainArguments, reading: Reading, cache: &Cache, talk: &Talk) -> Result<Surface> {
     let dem = terrain.read(reading, talk)?;
     // The renderer holds all samples on the device.
     talk.progress("computing normals", 0.1);
     if !dem.is_filed() {
         dem.check_patches()?;
     }
-    Ok(Surface::new(dem))
+    terrain.surface(dem, cache, talk)
 }
 
 /// Looks at the samples of a DEM that stays in its file.

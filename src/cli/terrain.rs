@@ -3,14 +3,15 @@
 use std::path::{Path, PathBuf};
 
 use super::talk::Talk;
-use super::values;
 use super::words::told;
+use super::{scene, values};
 use crate::cache::Cache;
 use crate::dem::Dem;
 use crate::error::{Error, Result, Setting, shown};
 use crate::geo::{ElevationUnit, Encoding, Nodata, Order, ReadOptions, ReadStage, Reading};
 use crate::job::Content;
 use crate::job::name::Naming;
+use crate::surface::Surface;
 
 /// Which files, and what of them.
 #[derive(Debug, Clone, clap::Args)]
@@ -69,6 +70,9 @@ pub(crate) struct TerrainArguments {
     /// times a fifth of M.
     #[arg(long, value_name = "M", value_parser = values::metres, allow_hyphen_values = true, help_heading = "Surface")]
     generalise: Option<f64>,
+    /// Limit tangents of the surface where patches fold over, so that none does; elsewhere it stays as it is
+    #[arg(long, help_heading = "Surface")]
+    limit_folds: bool,
     /// Open files on a network, and VRTs that refer to files outside their folder
     #[arg(long, help_heading = "Surface")]
     allow_remote: bool,
@@ -109,7 +113,7 @@ impl TerrainArguments {
         }
     }
 
-    /// How the DEM is read, as far as its heights depend on it.
+    /// How the DEM is read, as far as its surface depends on it.
     pub(crate) fn read_as(&self) -> String {
         let Self { crop, band, cell, order, cell_of, resample, no_warp, fill_voids, .. } = self;
         let Self { elevation_unit, nodata, encoding, keep_steps, generalise, .. } = self;
@@ -118,7 +122,8 @@ impl TerrainArguments {
         let names: Vec<_> = self.dems.iter().map(|dem| dem.file_name().unwrap_or_default()).collect();
         // Of several the finest whose samples fit gives the cells.
         let memory = (self.dems.len() > 1 && cell_of.is_none()).then_some(self.memory);
-        format!("{grid:?} {:?}", (names, memory, elevation_unit, nodata, encoding, keep_steps, generalise))
+        let limited = if self.limit_folds { " limited" } else { "" };
+        format!("{grid:?} {:?}{limited}", (names, memory, elevation_unit, nodata, encoding, keep_steps, generalise))
     }
 
     /// Which files are read, wherever from they are named; of which some may lie outside a crop, but not of sheets, which
@@ -128,6 +133,25 @@ impl TerrainArguments {
         let dems: Vec<PathBuf> = self.dems.iter().map(absolute).collect();
         let crop = self.crop.filter(|_| !self.is_sheet);
         Naming::bare().with("files", format!("{dems:?} {crop:?} {:?} {:?}", self.cell_of, self.band)).name()
+    }
+
+    /// The surface of a DEM that was read, its tangents limited where that is asked for.
+    ///
+    /// # Errors
+    /// As [`Cache::prepare`] and [`Surface::limited`].
+    pub(crate) fn surface(&self, dem: Dem, cache: &Cache, talk: &Talk) -> Result<Surface> {
+        let surface = Surface::new(dem);
+        if !self.limit_folds {
+            return Ok(surface);
+        }
+        scene::prepare(&surface, cache, talk)?;
+        talk.progress("limiting folds", 0.2);
+        surface.limited()
+    }
+
+    /// Whether tangents are to be limited.
+    pub(crate) fn limits_folds(&self) -> bool {
+        self.limit_folds
     }
 
     /// What the DEM's files hold, known or found.

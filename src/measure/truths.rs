@@ -94,6 +94,7 @@ fn key(surface: &Surface, camera: &Camera, level: Level) -> Option<CacheKey> {
     hash.update(bytemuck::cast_slice(&[camera.azimuth, camera.altitude, camera.fov]));
     let counts = [dem.columns() as u64, u64::from(camera.width), u64::from(camera.height), level.subdivisions().into()];
     hash.update(bytemuck::cast_slice(&counts));
+    surface.limits().identify(&mut hash);
     Some(CacheKey { kind: KIND, hash: hash.digest128(), of: dem.label() })
 }
 

@@ -4,8 +4,9 @@ use glam::{DVec2, DVec3};
 
 use super::promise::Promise;
 use crate::dem::Dem;
+use crate::error::Result;
 use crate::plan::Detail;
-use crate::surface::Level;
+use crate::surface::{Level, Surface};
 use crate::view::Camera;
 
 /// What makes a case hard.
@@ -53,6 +54,8 @@ pub struct Case {
     pub about: &'static str,
     /// The land.
     pub dem: Dem,
+    /// Whether tangents of its surface are limited, so that nothing folds.
+    pub limited: bool,
     /// At least one.
     pub views: Vec<View>,
     /// How fine its facets are.
@@ -79,7 +82,7 @@ impl Case {
     pub fn new(group: Group, name: &'static str, about: &'static str, dem: Dem) -> Self {
         let promises = Promise::OF_ALL.to_vec();
         let (detail, truth) = (Detail::default(), TRUTH);
-        Self { name, group, about, dem, views: Vec::new(), detail, truth, promises, short: false }
+        Self { name, group, about, dem, limited: false, views: Vec::new(), detail, truth, promises, short: false }
     }
 
     /// Seen by a camera too.
@@ -97,6 +100,20 @@ impl Case {
     /// Drawn in facets as fine as this.
     pub fn drawn(self, detail: impl Into<Detail>) -> Self {
         Self { detail: detail.into(), ..self }
+    }
+
+    /// With tangents limited.
+    pub fn limited(self) -> Self {
+        Self { limited: true, ..self }
+    }
+
+    /// The surface of its land, or of the same land elsewhere.
+    ///
+    /// # Errors
+    /// As [`Surface::limited`].
+    pub fn surface(&self, dem: &Dem) -> Result<Surface> {
+        let surface = Surface::new(dem.clone());
+        if self.limited { surface.limited() } else { Ok(surface) }
     }
 
     /// Its truth no finer than this.

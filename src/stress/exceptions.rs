@@ -39,10 +39,9 @@ const ON_A_SAMPLE: &str = "The eye lies on a sample: facets about it hold the ey
     to .59.";
 const SLIVERS: &str = "Rows there twice make treads whose far sides are slivers on the page, each a line of truth; facets may \
     deviate by 0.15 px there, and chains under 2 px are left out. Tried: levels 4, 8, 16 and 32 throughout, \
-    walk .942, .996, .999 and 1, contour .911, .959, .966 and .971, at up to 60 times the facets of land \
-    that is not made for it.";
+    walk .942, .996, .999 and 1, contour .911, .959, .966 and .971.";
 const FOLDS: &str = "Patches over white noise 10 cells high fold over, and lines stand a pixel apart; chains under 2 px are left out. Limited \
-                     tangents would leave no folds, and change the surface: not tried.";
+                     tangents leave no folds: see folds-limited.";
 const HALF_TURN: &str = "On land that is turned by half the walk inks a few pixels more or fewer, one beside the other, where \
     depths are the same within a rounding. Tried: offsets of vertices from the nearest sample and sums in an \
     order that a half turn keeps, volumes from the corner off the diagonal, the eye from its nearest sample: \

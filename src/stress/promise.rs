@@ -13,6 +13,8 @@ pub enum Promise {
     Finite,
     /// No pixel of the land is missed.
     Watertight,
+    /// With tangents limited nothing folds.
+    Unfolded,
     /// Ink lies on truth, and truth has ink.
     Accurate,
     /// Ink does not spread where truth has none.
@@ -29,10 +31,11 @@ pub enum Promise {
 
 impl Promise {
     /// All of them.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Drawn,
         Self::Finite,
         Self::Watertight,
+        Self::Unfolded,
         Self::Accurate,
         Self::NoFlood,
         Self::Conditioned,
@@ -41,8 +44,8 @@ impl Promise {
         Self::TurnedFar,
     ];
     /// Those of every case, unless it says otherwise.
-    pub const OF_ALL: [Self; 6] =
-        [Self::Drawn, Self::Finite, Self::Watertight, Self::Accurate, Self::NoFlood, Self::Conditioned];
+    pub const OF_ALL: [Self; 7] =
+        [Self::Drawn, Self::Finite, Self::Watertight, Self::Unfolded, Self::Accurate, Self::NoFlood, Self::Conditioned];
 
     /// What it is called.
     pub fn name(self) -> &'static str {
@@ -50,6 +53,7 @@ impl Promise {
             Self::Drawn => "drawn",
             Self::Finite => "finite",
             Self::Watertight => "watertight",
+            Self::Unfolded => "unfolded",
             Self::Accurate => "accurate",
             Self::NoFlood => "no-flood",
             Self::Conditioned => "conditioned",
@@ -67,6 +71,7 @@ impl Promise {
                 "no NaN and no infinity in any buffer of numbers, chain or stroke of a frame with creases and hachures"
             }
             Self::Watertight => "no pixel without a facet though five rays about its centre all meet the land",
+            Self::Unfolded => "with tangents limited no patch folds over, and no facet of the frame",
             Self::Accurate => "F of walk and of contour at least 0.98 within 1 px, where truth has 200 px and more",
             Self::NoFlood => "ink of walk and of contour farther than 1 px from truth on at most 0.1 % of the page",
             Self::Conditioned => {
@@ -89,7 +94,9 @@ impl Promise {
     /// The limit of all cases, and whether figures are to be no less in the place of no more.
     pub fn limit(self) -> (f64, bool) {
         match self {
-            Self::Drawn | Self::Finite | Self::Watertight | Self::SameBits | Self::TurnedFar => (0.0, false),
+            Self::Drawn | Self::Finite | Self::Watertight | Self::Unfolded | Self::SameBits | Self::TurnedFar => {
+                (0.0, false)
+            }
             Self::Accurate => (limits::F, true),
             Self::NoFlood => (limits::ASTRAY, false),
             Self::Conditioned => (limits::POPPED, false),

@@ -24,7 +24,7 @@ use crate::line::Land;
 use crate::measure::figures::DrawnLevel;
 use crate::plan::{Curves, LandLines, Method, Plan};
 use crate::relief::{ChannelArea, Relief, Slopes};
-use crate::surface::{Level, Surface};
+use crate::surface::{Lattice, Level, Surface};
 use crate::truth::{Mask, Terrain, Truth};
 use crate::view::Camera;
 
@@ -71,11 +71,11 @@ struct Sight<'a> {
 /// [`Error::DeviceLost`] and [`Error::Ended`]: what comes after would fail too.
 pub(crate) fn run(gpu: &Arc<Gpu>, case: &Case, stage: &dyn Fn(&str)) -> Result<Outcome> {
     let start = Instant::now();
-    let surface = Arc::new(Surface::new(case.dem.clone()));
+    let surface = Arc::new(case.surface(&case.dem)?);
     let elsewhere = |promise, moves: Vec<Moved>| {
         let moves = moves.into_iter().filter(|_| case.promises.contains(&promise));
         let ready = |moved: Moved| {
-            let drawer = Drawer::new(gpu, &Arc::new(Surface::new(moved.dem.clone())))?;
+            let drawer = Drawer::new(gpu, &Arc::new(case.surface(&moved.dem)?))?;
             Ok(Elsewhere { moved, drawer })
         };
         moves.map(ready).collect::<Result<Vec<_>>>()
@@ -129,6 +129,15 @@ fn land_of(surface: &Arc<Surface>) -> Result<Land> {
         Some(slopes) => land.with_slopes(Arc::new(slopes)),
         None => land,
     })
+}
+
+/// What folds of a surface with tangents limited: patches, and facets of a lattice; in words what did before.
+fn unfolded(surface: Surface, lattice: &Lattice) -> Result<(u64, String)> {
+    let before = [surface.folds()?.len() as u64, surface.folding_facets(lattice)?];
+    let limited = surface.limited()?;
+    let left = [limited.folds()?.len() as u64, limited.folding_facets(lattice)?];
+    let words = |[patches, facets]: [u64; 2]| format!("{patches} patches and {facets} facets");
+    Ok((left[0] + left[1], format!("{}, without limits {}", words(left), words(before))))
 }
 
 /// That of no visible edge longer than a pixel, as far as the case allows.
@@ -188,6 +197,8 @@ impl Run<'_> {
         self.check(sight, ALL, Promise::Finite, counted.bad as f64, counted.words());
         let of = format!("{} of {tried} uncovered pixels", holes.len());
         self.check(sight, ALL, Promise::Watertight, holes.len() as f64, of);
+        let (folds, of) = unfolded(Surface::new(self.case.dem.clone()), &page.frame.lattice)?;
+        self.check(sight, ALL, Promise::Unfolded, folds as f64, of);
         Ok(())
     }
 

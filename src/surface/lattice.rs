@@ -134,7 +134,7 @@ impl Chunk {
     }
 
     /// Its facets by their vertices, those that have not collapsed.
-    fn facets(&self) -> impl Iterator<Item = [LatticePoint; 3]> {
+    pub(super) fn facets(&self) -> impl Iterator<Item = [LatticePoint; 3]> {
         (0..CHUNK_FACETS).map(|local| self.facet(local)).filter(|[a, b, c]| a != b && b != c && c != a)
     }
 }

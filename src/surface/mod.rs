@@ -2,7 +2,9 @@
 
 mod bounds;
 mod drape;
+pub(crate) mod folds;
 pub(crate) mod lattice;
+pub(crate) mod limits;
 pub(crate) mod normals;
 pub(crate) mod patch;
 mod prepared;
@@ -14,8 +16,10 @@ mod slopes;
 pub(crate) mod tile;
 
 pub(crate) use drape::Drape;
+pub(crate) use folds::Fold;
 pub use lattice::Level;
 pub(crate) use lattice::{Chunk, Lattice, LatticePoint};
+pub(crate) use limits::Moved;
 pub use patch::Surface;
 pub(crate) use patch::{Patch, SurfaceBand};
 pub(crate) use pyramid::{Pyramid, PyramidBuilder};

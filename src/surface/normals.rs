@@ -10,6 +10,7 @@ use std::borrow::Cow;
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
+use super::limits::Limits;
 use crate::dem::{Dem, Samples};
 use crate::error::Result;
 
@@ -48,6 +49,18 @@ impl Gradients {
         let columns = self.size[0];
         let first = r.wrapping_sub(self.first[1]).saturating_mul(columns);
         self.of.each_ref().map(|of| of.get(first..first.saturating_add(columns)).unwrap_or_default())
+    }
+
+    /// The same with those of some samples limited.
+    pub(super) fn limited(mut self, limits: &Limits) -> Self {
+        let ([first_c, first_r], [columns, rows]) = (self.first, self.size);
+        for r in first_r..first_r + rows {
+            for (c, share) in limits.of_row(r, first_c..first_c + columns) {
+                let i = (r - first_r) * columns + (c - first_c);
+                self.of.iter_mut().for_each(|of| of[i] *= share);
+            }
+        }
+        self
     }
 
     /// dz/d east and dz/d north of sample (c, r) of the DEM, `None` outside the window.

@@ -6,11 +6,12 @@
 
 use std::borrow::Cow;
 use std::ops::Range;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use glam::{DVec2, DVec3};
 
 use super::lattice::{CELL_STEPS, LatticePoint, Level};
+use super::limits::Limits;
 use super::normals::{Gradients, cut, gradients, of_samples, with_one_around};
 use super::pyramid::Pyramid;
 use crate::dem::{Band, Dem};
@@ -22,9 +23,11 @@ use crate::error::Result;
 /// far quicker, by [`Surface::part`] and [`Surface::bands`].
 #[derive(Debug, Clone)]
 pub struct Surface {
-    dem: Dem,
+    pub(super) dem: Dem,
     gradients: Option<Gradients>,
     pyramid: OnceLock<Pyramid>,
+    /// Which of its gradients are limited, so that no patch folds.
+    limits: Arc<Limits>,
 }
 
 /// Rows of a surface, in memory with some rows around them.
@@ -41,12 +44,31 @@ impl Surface {
     pub fn new(dem: Dem) -> Self {
         let whole = [dem.columns(), dem.rows()];
         let gradients = dem.held().ok().map(|samples| of_samples(samples, [0, 0], whole, dem.cell()));
-        Self { gradients, dem, pyramid: OnceLock::new() }
+        Self { gradients, dem, pyramid: OnceLock::new(), limits: Arc::default() }
     }
 
     /// The grid below the surface.
     pub fn dem(&self) -> &Dem {
         &self.dem
+    }
+
+    /// The same surface with tangents limited as far as is needed for no patch to fold: itself where none does. Cost: as
+    /// [`Surface::folds`], and gradients and pyramid anew where some are.
+    ///
+    /// # Errors
+    /// As [`Limits::of`].
+    pub fn limited(self) -> Result<Self> {
+        let limits = Arc::new(Limits::of(&self)?);
+        if limits.is_empty() {
+            return Ok(self);
+        }
+        let gradients = self.gradients.map(|gradients| gradients.limited(&limits));
+        Ok(Self { gradients, pyramid: OnceLock::new(), limits, dem: self.dem })
+    }
+
+    /// Which of its gradients are limited.
+    pub(crate) fn limits(&self) -> &Limits {
+        &self.limits
     }
 
     /// Gives it a pyramid that was kept, unless it has one.
@@ -65,9 +87,19 @@ impl Surface {
     /// # Errors
     /// As [`Dem::window`].
     pub fn part(&self, first: [usize; 2], size: [usize; 2]) -> Result<Self> {
+        self.part_with(first, size, self.limits.clone())
+    }
+
+    /// The same with no tangents limited.
+    pub(super) fn part_without_limits(&self, first: [usize; 2], size: [usize; 2]) -> Result<Self> {
+        self.part_with(first, size, Arc::default())
+    }
+
+    fn part_with(&self, first: [usize; 2], size: [usize; 2], limits: Arc<Limits>) -> Result<Self> {
         let samples = with_one_around(&self.dem, first, size)?;
         let gradients = of_samples(&samples, first, cut(&self.dem, first, size), self.dem.cell());
-        Ok(Self { dem: self.dem.with_samples(samples), gradients: Some(gradients), pyramid: OnceLock::new() })
+        let gradients = Some(gradients.limited(&limits));
+        Ok(Self { dem: self.dem.with_samples(samples), gradients, pyramid: OnceLock::new(), limits })
     }
 
     /// World position in metres of a lattice vertex; `None` where a sample it depends on is void or outside.
@@ -125,7 +157,10 @@ impl Surface {
     pub fn gradient(&self, c: usize, r: usize) -> DVec2 {
         match &self.gradients {
             Some(gradients) => gradients.get(c, r).unwrap_or_default(),
-            None => self.dem.kept(gradients(&self.dem, [c, r], [1, 1])).and_then(|g| g.get(c, r)).unwrap_or_default(),
+            None => {
+                let gradients = self.dem.kept(gradients(&self.dem, [c, r], [1, 1]));
+                gradients.and_then(|g| g.limited(&self.limits).get(c, r)).unwrap_or_default()
+            }
         }
     }
 
@@ -141,8 +176,14 @@ impl Surface {
                 Cow::Owned(samples) => {
                     let first = [0, rows.start.saturating_sub(halo)];
                     let size = [self.dem.columns(), (rows.end + halo).min(self.dem.rows()) - first[1]];
-                    let gradients = Some(of_samples(&samples, first, size, self.dem.cell()));
-                    Cow::Owned(Self { dem: self.dem.with_samples(samples), gradients, pyramid: OnceLock::new() })
+                    let gradients = of_samples(&samples, first, size, self.dem.cell());
+                    let (gradients, limits) = (Some(gradients.limited(&self.limits)), self.limits.clone());
+                    Cow::Owned(Self {
+                        dem: self.dem.with_samples(samples),
+                        gradients,
+                        pyramid: OnceLock::new(),
+                        limits,
+                    })
                 }
             };
             Ok(SurfaceBand { rows, surface })

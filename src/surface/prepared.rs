@@ -16,6 +16,7 @@ mod heights;
 
 use std::cell::RefCell;
 
+use super::limits::Limits;
 use super::{Pyramid, Surface};
 use crate::cache::{Cache, CacheKey, CacheObserver, NewEntry};
 use crate::dem::Dem;
@@ -53,7 +54,7 @@ impl Cache {
             cache: self,
             surface,
             plain: plain.as_ref().map(|(plain, _)| plain),
-            bounds: bounds::key(dem, stamp, exaggeration),
+            bounds: bounds::key(dem, stamp, exaggeration, surface.limits()),
             heights: heights::key(dem, stamp),
             warn,
         };
@@ -67,7 +68,8 @@ impl Cache {
 
     /// Whether all that is kept of a DEM in its file, without exaggeration, is there.
     pub fn keeps(&self, dem: &Dem) -> bool {
-        let keys = dem.stamp().map(|stamp| [bounds::key(dem, stamp, 1.0), heights::key(dem, stamp)]);
+        let keys =
+            dem.stamp().map(|stamp| [bounds::key(dem, stamp, 1.0, &Limits::default()), heights::key(dem, stamp)]);
         keys.is_some_and(|keys| keys.iter().all(|key| self.hold(key).is_some()))
     }
 

@@ -188,6 +188,17 @@ impl Pyramid {
         self.square(origin, step).slopes.range()
     }
 
+    /// Squares of the finest layer whose patches leave their flat triangles by more than so many metres: row and column of their
+    /// north-west cells, and cells along their sides.
+    pub(super) fn bent(&self, metres: f64) -> impl Iterator<Item = ([u32; 2], u32)> {
+        let PyramidLayer { columns, size, squares } = &self.layers[0];
+        let bends = move |(i, square): (usize, &Square)| {
+            let first = [i / columns, i % columns].map(|at| (at * size) as u32);
+            (f64::from(square.bulge) > metres).then_some((first, *size as u32))
+        };
+        squares.iter().enumerate().filter_map(bends)
+    }
+
     /// The fences across the square of the chunk at `origin`, of at most 32 cells; `None` where it has voids.
     pub fn fences(&self, origin: [u32; 2], step: u32) -> Option<Fences> {
         Some(self.square(origin, step).fences).filter(|fences| !fences.along_east.is_nan())

@@ -93,6 +93,7 @@ impl Land {
         hash.update(bytemuck::bytes_of(&[self.least, self.turned]));
         hash.update(&[self.water.is_some().into()]);
         self.stops.identify(hash);
+        self.surface.limits().identify(hash);
     }
 
     /// Metres on the map of a column and row of the DEM.

@@ -17,9 +17,11 @@ pub(super) const CASES: &[Make] = &[
     cliff_10000,
     terraces,
     needle,
+    needle_limited,
     saw_tooth,
     cells_1_to_1000,
     folds,
+    folds_limited,
 ];
 
 fn stiff(name: &'static str, about: &'static str, dem: Dem) -> Case {
@@ -86,15 +88,26 @@ fn terraces() -> Case {
 }
 
 /// One sample 10 km high on gentle land.
-fn needle() -> Case {
+fn spike(name: &'static str, about: &'static str) -> Case {
     let dem = grid([65, 65], CELL, |c, r| {
         let needle = if c == 32.0 && r == 32.0 { 10_000.0 } else { 0.0 };
         needle + CELL * rolling(4, c, r) / 8.0
     });
-    stiff("needle", "one sample 10 km high", dem)
-        .seen("foot", [32.0, 62.0, 200.0], [32.0, 32.0, -8_500.0])
-        .seen("above", [20.0, 160.0, 9_000.0], [32.0, 32.0, -6_000.0])
-        .in_short()
+    stiff(name, about, dem).seen("foot", [32.0, 62.0, 200.0], [32.0, 32.0, -8_500.0]).seen(
+        "above",
+        [20.0, 160.0, 9_000.0],
+        [32.0, 32.0, -6_000.0],
+    )
+}
+
+/// Patches about it fold over.
+fn needle() -> Case {
+    spike("needle", "one sample 10 km high").in_short()
+}
+
+/// The same land with tangents limited: none folds.
+fn needle_limited() -> Case {
+    spike("needle-limited", "one sample 10 km high, tangents limited: no patch folds").limited()
 }
 
 /// Every other column 16 m high.
@@ -115,12 +128,18 @@ fn cells_1_to_1000() -> Case {
         .truth_to(Level::SIXTEEN)
 }
 
-/// White noise ten cells high: patches fold over.
-fn folds() -> Case {
+/// White noise ten cells high.
+fn noise(name: &'static str, about: &'static str) -> Case {
     let dem = grid([33, 33], CELL, |c, r| sixteenths(10.0 * CELL * hashed(7, c, r)));
-    stiff("folds", "white noise 10 cells high: patches fold over", dem).seen(
-        "above",
-        [16.0, 50.0, 900.0],
-        [16.0, 16.0, 0.0],
-    )
+    stiff(name, about, dem).seen("above", [16.0, 50.0, 900.0], [16.0, 16.0, 0.0])
+}
+
+/// Patches fold over.
+fn folds() -> Case {
+    noise("folds", "white noise 10 cells high: patches fold over")
+}
+
+/// The same land with tangents limited: none folds.
+fn folds_limited() -> Case {
+    noise("folds-limited", "white noise 10 cells high, tangents limited: no patch folds").limited()
 }

@@ -1,4 +1,5 @@
-//! The pyramid of a surface, kept as it is drawn: a file is named by the stamp of the DEM and its exaggeration.
+//! The pyramid of a surface, kept as it is drawn: a file is named by the stamp of the DEM, its exaggeration, and which tangents are
+//! limited.
 //!
 //! ```text
 //! squares, layer by layer | hash of them
@@ -7,8 +8,9 @@
 use std::io::{self, BufReader, ErrorKind, Read};
 use std::ops::Range;
 
-use xxhash_rust::xxh3::{Xxh3, xxh3_128};
+use xxhash_rust::xxh3::Xxh3;
 
+use super::super::limits::Limits;
 use super::super::{PyramidBuilder, SurfaceBand};
 use super::{Pyramid, Surface, WORDS};
 use crate::cache::{CacheKey, CacheKind, KeptEntry, NewEntry, not_kept};
@@ -19,12 +21,15 @@ use crate::error::{Message, Result};
 const FORMAT: u32 = 1;
 const KIND: CacheKind = CacheKind { name: "bounds", format: FORMAT, words: WORDS };
 
-/// What the pyramid of a DEM with this stamp depends on.
-pub(super) fn key(dem: &Dem, stamp: u128, exaggeration: f64) -> CacheKey {
+/// What the pyramid of a DEM with this stamp and such limits depends on.
+pub(super) fn key(dem: &Dem, stamp: u128, exaggeration: f64, limits: &Limits) -> CacheKey {
     let of = dem.label();
     let of = if exaggeration == 1.0 { of } else { format!("{of}, exaggerated {exaggeration} times") };
-    let bytes = [&stamp.to_le_bytes()[..], &exaggeration.to_bits().to_le_bytes()].concat();
-    CacheKey { kind: KIND, hash: xxh3_128(&bytes), of }
+    let mut hash = Xxh3::new();
+    hash.update(&stamp.to_le_bytes());
+    hash.update(&exaggeration.to_bits().to_le_bytes());
+    limits.identify(&mut hash);
+    CacheKey { kind: KIND, hash: hash.digest128(), of }
 }
 
 /// Makes the pyramid in a look at every sample; `beside` takes them too, as they are drawn, band by band.
