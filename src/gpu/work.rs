@@ -3,17 +3,21 @@
 use super::clock::{CLEAR, Timer};
 use super::device::Gpu;
 use super::on_device::OnDevice;
+use super::pace::Work;
 use super::sizes::LIST_HEADER;
 use crate::error::Result;
 use crate::plan::{Frame, PagePiece, PassName};
 
-/// Commands for a piece of a frame, recorded and not yet submitted.
+/// Commands for a piece of a frame, recorded and not yet submitted. What the device is expected to work at for long is cut into
+/// parts, each waited for before the next is recorded.
 pub(crate) struct FrameWork<'a> {
     on_device: OnDevice<'a>,
     frame: &'a Frame,
     piece: PagePiece,
     timer: Option<&'a mut Timer>,
     encoder: wgpu::CommandEncoder,
+    /// Since the device was last waited for.
+    part: Work,
 }
 
 impl<'a> FrameWork<'a> {
@@ -25,7 +29,7 @@ impl<'a> FrameWork<'a> {
         timer: Option<&'a mut Timer>,
     ) -> Self {
         let encoder = on_device.gpu.device.create_command_encoder(&Default::default());
-        let mut work = Self { on_device, frame, piece, timer, encoder };
+        let mut work = Self { on_device, frame, piece, timer, encoder, part: Work::NONE };
         if work.timer.is_some() {
             // A pass without work marks the beginning: clears, which come first, cannot be stamped themselves.
             work.begin(CLEAR);
@@ -63,6 +67,11 @@ impl<'a> FrameWork<'a> {
         let Some(dispatch) = self.on_device.dispatch(self.frame, self.piece, planned, [batch, round])? else {
             return Ok(());
         };
+        let part = self.part.and(dispatch.work());
+        if self.part > Work::NONE && self.on_device.gpu.pace.is_too_long(part) {
+            self.wait()?;
+        }
+        self.part = self.part.and(dispatch.work());
         dispatch.record(&mut self.begin(name.name()));
         self.timed(name.name())
     }
@@ -80,8 +89,13 @@ impl<'a> FrameWork<'a> {
     /// # Errors
     /// Whatever the driver reports.
     pub(crate) fn finish(mut self) -> Result<()> {
+        self.wait()
+    }
+
+    /// Submits a part and waits until it is done.
+    fn wait(&mut self) -> Result<()> {
         self.submit()?;
-        self.on_device.gpu.wait()
+        self.on_device.gpu.wait_for(std::mem::take(&mut self.part))
     }
 
     fn begin(&mut self, name: &'static str) -> wgpu::ComputePass<'_> {
@@ -93,7 +107,10 @@ impl<'a> FrameWork<'a> {
     fn timed(&mut self, name: &'static str) -> Result<()> {
         let gpu = self.on_device.gpu;
         let Some(timer) = &mut self.timer else { return Ok(()) };
-        timer.wait(gpu, name, || submit(gpu, &mut self.encoder))
+        timer.wait(name, || {
+            submit(gpu, &mut self.encoder)?;
+            gpu.wait_for(std::mem::take(&mut self.part))
+        })
     }
 }
 
