@@ -130,7 +130,7 @@ pub mod gpu {
         pub use crate::gpu::curves::*;
     }
     pub mod device {
-        pub use crate::gpu::device::OPENED;
+        pub use crate::gpu::device::WAITED;
     }
     pub mod pace {
         pub use crate::gpu::pace::{Limits, Pace, Watch, Work};

@@ -17,8 +17,8 @@ use crate::error::{Error, Result};
 /// Storage buffers the largest pass binds.
 const STORAGE_BUFFERS: u32 = 16;
 
-/// What tests do to each device that is opened.
-pub static OPENED: OnceLock<fn(&Gpu)> = OnceLock::new();
+/// What tests do to a device before each wait for it.
+pub static WAITED: OnceLock<fn(&Gpu)> = OnceLock::new();
 
 /// What 64-bit atomics take.
 const INT64: wgpu::Features = wgpu::Features::SHADER_INT64.union(wgpu::Features::SHADER_INT64_ATOMIC_MIN_MAX);
@@ -83,9 +83,7 @@ impl Gpu {
             ..Default::default()
         }))
         .map_err(|e| memory::failure(one_line(&e)))?;
-        let gpu = Self::from_parts(device, queue)?;
-        OPENED.get().into_iter().for_each(|opened| opened(&gpu));
-        Ok(gpu)
+        Self::from_parts(device, queue)
     }
 
     /// What a device must grant, at least.
@@ -222,7 +220,9 @@ impl Gpu {
         Ok(())
     }
 
+    /// Seconds that the driver had for it.
     fn wait_through(&self, mut watch: Watch) -> Result<f64> {
+        WAITED.get().into_iter().for_each(|waited| waited(self));
         loop {
             let wait = wgpu::PollType::Wait { submission_index: None, timeout: Some(watch.look()) };
             let outcome = self.device.poll(wait);

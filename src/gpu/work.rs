@@ -76,25 +76,13 @@ impl<'a> FrameWork<'a> {
         self.timed(name.name())
     }
 
-    /// Submits what is recorded, and goes on.
+    /// Submits what is recorded and waits until it is done: drivers may let nobody submit more behind a part that hangs, and do
+    /// not come back then.
     ///
     /// # Errors
     /// Whatever the driver reports.
-    pub(crate) fn submit(&mut self) -> Result<()> {
-        submit(self.on_device.gpu, &mut self.encoder)
-    }
-
-    /// Submits and waits until all is done.
-    ///
-    /// # Errors
-    /// Whatever the driver reports.
-    pub(crate) fn finish(mut self) -> Result<()> {
-        self.wait()
-    }
-
-    /// Submits a part and waits until it is done.
-    fn wait(&mut self) -> Result<()> {
-        self.submit()?;
+    pub(crate) fn wait(&mut self) -> Result<()> {
+        submit(self.on_device.gpu, &mut self.encoder)?;
         self.on_device.gpu.wait_for(std::mem::take(&mut self.part))
     }
 

@@ -1,23 +1,26 @@
 //! Devices that are lost or hang while they draw.
 
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 use std::sync::Arc;
-use std::time::Duration;
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::time::{Duration, Instant};
 
 use clap::Parser;
 use hachure::door::cli::words::{exit_code, line};
 use hachure::door::cli::{Arguments, threads};
-use hachure::door::gpu::device::OPENED;
+use hachure::door::gpu::device::WAITED;
 use hachure::door::gpu::pace::{Limits, Work};
 use hachure::error::Error;
 use hachure::gpu::{AdapterChoice, Gpu, Int64};
 
 use super::{DRAW, ended, files, undisturbed};
 use crate::cli::Place;
-use crate::fly::{bytes, fly, frames};
+use crate::fly::{bytes, fly, frames, half_made};
 use crate::frames::Planned;
-use crate::scenes::{Random, aimed, noisy, over};
+use crate::scenes::{aimed, noisy, over};
 
+/// Whatever happens, a child ends sooner.
+const PATIENCE: Duration = Duration::from_secs(60);
 /// What is done to the device of a child, and the words between its arguments.
 const FAULT: &str = "HACHURE_TEST_FAULT";
 const RUN: &str = "HACHURE_TEST_RUN";
@@ -71,7 +74,7 @@ fn work_that_is_slow_is_waited_for_and_work_that_hangs_is_not() {
     gpu.wait_for(Work::NONE).expect("slow is not hanging");
     // and not for what is not: some seconds of work, since whoever ends the process waits for it.
     gpu.pace.set_limits(hasty(0.05));
-    busy(&gpu, [65_535, 1]);
+    busy(&gpu, [20_000, 1]);
     let Err(error) = gpu.wait_for(Work::NONE) else { panic!("it hangs") };
     assert!(matches!(error, Error::DeviceLost { .. }) && exit_code(&error) == 75);
     let line = line(&error);
@@ -101,22 +104,33 @@ fn faulty(place: &Place, fault: &str, arguments: &[&str]) -> Output {
     let mut child = Command::new(std::env::current_exe().expect("this program"));
     child.args(["--exact", "faults::devices::child_has_a_fault", "--ignored", "--nocapture"]);
     child.current_dir(place.path("")).env(FAULT, fault).env(RUN, arguments.join("\n"));
-    child.output().expect("a child")
+    let mut child = child.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().expect("a child");
+    let began = Instant::now();
+    while child.try_wait().expect("a status").is_none() {
+        if began.elapsed() > PATIENCE {
+            let _ = child.kill();
+            panic!("{fault}: {arguments:?} does not end");
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    child.wait_with_output().expect("a status")
 }
 
-/// The fault as an environment tells it: `hang`, or after how many milliseconds the device is lost.
+/// The fault as an environment tells it: that the device hangs, or is lost, and at which of the waits for it.
 fn afflict(gpu: &Gpu) {
-    let fault = std::env::var(FAULT).unwrap_or_default();
-    if fault == "hang" {
-        busy(gpu, ENDLESS);
-        gpu.pace.set_limits(hasty(0.5));
+    static WAITS: AtomicU32 = AtomicU32::new(0);
+    let fault = std::env::var(FAULT).expect("a fault");
+    let (what, at) = fault.split_once(' ').expect("what and when");
+    if WAITS.fetch_add(1, Ordering::SeqCst) != at.parse().expect("a number") {
         return;
     }
-    let (device, after) = (gpu.device.clone(), fault.parse().expect("milliseconds"));
-    std::thread::spawn(move || {
-        std::thread::sleep(Duration::from_millis(after));
-        device.destroy();
-    });
+    match what {
+        "hangs" => {
+            gpu.pace.set_limits(hasty(0.5));
+            busy(gpu, ENDLESS);
+        }
+        _ => gpu.device.destroy(),
+    }
 }
 
 #[test]
@@ -125,60 +139,63 @@ fn child_has_a_fault() {
     threads::prepare();
     let run = std::env::var(RUN).expect("arguments");
     let arguments = Arguments::parse_from(["hachure"].into_iter().chain(run.lines()));
-    assert!(OPENED.set(afflict).is_ok());
+    assert!(WAITED.set(afflict).is_ok());
     let code = arguments.run_to_end(&arguments.talk());
     // Nothing of the harness is said after the program's own words.
     std::process::exit(if code == std::process::ExitCode::SUCCESS { 0 } else { 1 });
 }
 
-#[test]
-fn a_driver_that_hangs_ends_the_process_with_75() {
-    let place = Place::new();
-    let words = ["error: the GPU was lost: it hangs: ", "; try again, or use `--adapter cpu`"];
-    for run in [&[&DRAW[..], &["--hachures", "none"]].concat(), &fly("out/%05d.png", &["-q"])[..]] {
-        std::fs::create_dir_all(place.path("out")).expect("a folder");
-        let output = faulty(&place, "hang", run);
-        ended(&output, 75, &words, run[0]);
-        let [whole, half] = files(&place.path("out"));
-        let pictures = whole.iter().filter(|(name, _)| !name.ends_with(".json")).count();
-        assert_eq!((pictures, half.len()), (0, 0), "{}", run[0]);
-    }
-}
+/// The waits at which something happens: all that a drawing has are about 40.
+const STAGES: [u32; 6] = [0, 2, 5, 11, 23, 1000];
 
-#[test]
-fn a_device_lost_at_any_moment_ends_with_75_and_the_next_run_goes_on() {
+/// What is said of it, from the beginning and at the end.
+const WORDS: [&str; 2] = ["error: the GPU was lost: ", "; try again, or use `--adapter cpu`"];
+
+/// Draws with a fault at every stage: what is drawn is whole, else nothing is there. Says how often it was drawn.
+fn drawn_with(fault: &str) -> usize {
     let place = Place::new();
     let draw = [&DRAW[..], &["--hachures", "none"]].concat();
     std::fs::create_dir_all(place.path("out")).expect("a folder");
     let whole = undisturbed(&place, &draw);
-    let (mut random, mut lost) = (Random::new(11), 0);
-    for i in 0..6 {
+    let ends = STAGES.map(|stage| {
+        let about = format!("{fault} {stage}");
         std::fs::create_dir_all(place.path("out")).expect("a folder");
-        // At once, and at any moment of a run of about 600 ms.
-        let after = if i == 0 { 0 } else { random.below(100) * i };
-        let output = faulty(&place, &after.to_string(), &draw);
-        let about = format!("lost after {after} ms");
+        let output = faulty(&place, &about, &draw);
         let [made, half] = files(&place.path("out"));
         assert!(half.is_empty(), "{about}");
-        match output.status.code() {
-            Some(0) => assert!(made == whole, "{about}: another picture"),
-            _ => {
-                ended(&output, 75, &["error: the GPU was lost: ", "; try again, or use `--adapter cpu`"], &about);
-                assert!(made.is_empty(), "{about}: {}", made.len());
-                lost += 1;
-            }
+        if output.status.code() == Some(0) {
+            assert!(made == whole, "{about}: another picture");
+            return true;
         }
-    }
-    assert!(lost >= 2, "only {lost} of 6 were lost");
+        ended(&output, 75, &WORDS, &about);
+        assert!(made.is_empty(), "{about}: {} files", made.len());
+        false
+    });
+    ends.into_iter().filter(|drawn| *drawn).count()
+}
+
+#[test]
+fn a_driver_that_hangs_at_any_stage_ends_the_process_with_75() {
+    assert_eq!(drawn_with("hangs"), 1, "what comes after the end alone changes nothing");
+}
+
+#[test]
+fn a_device_that_is_lost_at_any_stage_ends_the_process_with_75() {
+    assert_eq!(drawn_with("lost"), 1, "what comes after the end alone changes nothing");
+}
+
+#[test]
+fn a_flight_goes_on_where_its_device_was_lost() {
+    let (place, whole) = (Place::new(), crate::fly::undisturbed());
     let flight = fly("flown/%05d.png", &["--hachures", "none"]);
-    let output = faulty(&place, "700", &flight);
-    let made = frames(&place.path("flown"));
-    let whole = crate::fly::undisturbed();
-    if output.status.code() != Some(0) {
-        ended(&output, 75, &["error: the GPU was lost: "], "a flight");
-        assert!(made.len() < whole.len());
+    for fault in ["lost 60", "hangs 90"] {
+        ended(&faulty(&place, fault, &flight), 75, &WORDS[..1], fault);
+        let made = frames(&place.path("flown"));
+        assert!(made.len() < whole.len(), "{fault}");
+        made.iter().for_each(|(name, (bytes, _))| assert_eq!(*bytes, whole[name].0, "{name}"));
+        assert_eq!(half_made(&place.path("flown")), Vec::<String>::new(), "{fault}");
     }
-    made.iter().for_each(|(name, (bytes, _))| assert_eq!(*bytes, whole[name].0, "{name}"));
-    assert_eq!(place.run(&flight).status.code(), Some(0));
+    let output = place.run(&flight);
+    assert_eq!(output.status.code(), Some(0), "{}", crate::cli::stderr(&output));
     assert_eq!(bytes(&frames(&place.path("flown"))), bytes(whole));
 }
