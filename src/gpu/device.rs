@@ -9,7 +9,7 @@ use super::adapter::{self, AdapterChoice};
 use super::clock::Clock;
 use super::compiled::Compiled;
 use super::memory;
-use super::pace::{Pace, Watch, Work};
+use super::pace::{Pace, Work};
 use super::pass::Pass;
 use super::sizes::LARGEST_BINDING;
 use crate::error::{Error, Result};
@@ -207,7 +207,7 @@ impl Gpu {
     /// # Errors
     /// Whatever the driver reported since the last call; [`Error::DeviceLost`] when it hangs.
     pub fn wait(&self) -> Result<()> {
-        self.wait_through(self.pace.watch(None)).map(drop)
+        self.wait_through(None).map(drop)
     }
 
     /// Waits until all submitted work is done, and learns from the time it takes.
@@ -215,14 +215,15 @@ impl Gpu {
     /// # Errors
     /// As [`Self::wait`].
     pub fn wait_for(&self, work: Work) -> Result<()> {
-        let seconds = self.wait_through(self.pace.watch(Some(work)))?;
+        let seconds = self.wait_through(Some(work))?;
         self.pace.took(work, seconds);
         Ok(())
     }
 
     /// Seconds that the driver had for it.
-    fn wait_through(&self, mut watch: Watch) -> Result<f64> {
+    fn wait_through(&self, work: Option<Work>) -> Result<f64> {
         WAITED.get().into_iter().for_each(|waited| waited(self));
+        let mut watch = self.pace.watch(work);
         loop {
             let wait = wgpu::PollType::Wait { submission_index: None, timeout: Some(watch.look()) };
             let outcome = self.device.poll(wait);
