@@ -79,6 +79,40 @@ pub mod files {
     }
 }
 
+/// Readers of what this crate parses itself, for tests that ask what becomes of a file, whatever it holds.
+pub mod formats {
+    use std::path::Path;
+
+    use crate::cli::batch::entry;
+    use crate::cli::viewpoint::{FOV, SIZE};
+    use crate::cli::{flight_keys, views};
+    use crate::error::Result;
+    use crate::ink::Seal;
+
+    /// A file of views.
+    ///
+    /// # Errors
+    /// As all of these: [`Error::Input`](crate::error::Error::Input) for a file that is none.
+    pub fn views(path: &Path) -> Result<()> {
+        views::read(path, FOV, SIZE).map(drop)
+    }
+
+    /// A file of keys of a flight.
+    pub fn flight(path: &Path) -> Result<()> {
+        flight_keys::read(path).map(drop)
+    }
+
+    /// A file of drawings.
+    pub fn batch(path: &Path) -> Result<()> {
+        entry::read(path).and_then(|entries| entry::each_output_once(path, &entries))
+    }
+
+    /// The seal of a picture.
+    pub fn seal(path: &Path) -> std::io::Result<Option<u128>> {
+        Seal::job_of(path)
+    }
+}
+
 pub mod geo {
     #[cfg(feature = "gdal")]
     pub use crate::geo::gdal::Reading;
@@ -94,6 +128,12 @@ pub mod gpu {
     }
     pub mod curves {
         pub use crate::gpu::curves::*;
+    }
+    pub mod device {
+        pub use crate::gpu::device::WAITED;
+    }
+    pub mod pace {
+        pub use crate::gpu::pace::{Limits, Pace, Watch, Work};
     }
     pub mod pass {
         pub use crate::gpu::pass::{parse, reflect};

@@ -18,11 +18,5 @@ fn main() -> ExitCode {
     if let Err(error) = signals::end_when_asked(words::TRY_AGAIN.into()) {
         talk.warn(&format!("a signal may leave temporary files behind ({error})"));
     }
-    match arguments.run(&talk) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            talk.error(&error);
-            ExitCode::from(words::exit_code(&error))
-        }
-    }
+    arguments.run_to_end(&talk)
 }

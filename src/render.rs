@@ -133,14 +133,14 @@ impl Renderer {
                     work.run(pass, [batch, round])?;
                 }
                 if frame.batches.len() > 1 {
-                    work.submit()?;
+                    work.wait()?;
                 }
             }
         }
         for pass in frame.of_piece() {
             work.run(pass, [0, 0])?;
         }
-        work.finish()?;
+        work.wait()?;
         self.scene.made_vertices(frame);
         // What could not be read has passed for a void.
         self.surface.dem().check()?;
@@ -178,7 +178,7 @@ impl Renderer {
         let on_device = self.on_device();
         let mut work = FrameWork::new(on_device, frame, piece, None);
         work.run(Compose, [0, 0])?;
-        work.finish()?;
+        work.wait()?;
         let pixels = self.gpu.read(on_device.buffer("page")?, width as usize * height as usize)?;
         let counts: Vec<Counts> = self.gpu.read(on_device.buffer("counts")?, 1)?;
         let longest_walk = checked(&counts)?;

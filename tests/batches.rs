@@ -140,6 +140,7 @@ scale = "1:2000"
         (["--grid", "EPSG:4326", "--sheet", "1km"], "counts degrees"),
         (["--grid", "EPSG:32611", "--sheet", "0m"], "a sheet of no length"),
         (["--grid", "EPSG:32611", "--sheet", "0.5m"], "makes over 100000 sheets"),
+        (["--grid", "EPSG:32611", "--sheet", "1e-200m"], "makes over 100000 sheets"),
     ] {
         let (code, _, errors) = batch(&place, text, &more);
         assert!(code == 2 && errors.contains(words), "{errors}");

@@ -6,6 +6,7 @@
 
 mod caches;
 mod flags;
+mod formats;
 mod mutants;
 mod signals;
 

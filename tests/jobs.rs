@@ -246,3 +246,39 @@ fn a_manifest_keeps_what_an_older_one_of_the_same_jobs_told() {
     assert_eq!(times(manifest(2).after(folder)), [None; 3], "of another look nothing is known");
     assert_eq!(Merged::all(folder).expect("a manifest")[0].failed, [], "what failed once and is there is whole");
 }
+
+#[test]
+fn manifests_that_no_process_writes_are_refused_at_once() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    let manifest = Manifest::new(&sequence(4, 1), Shard::WHOLE, None, &[], folder);
+    manifest.write(folder).expect("a manifest");
+    let path = folder.join(manifest.file_name());
+    let text = fs::read_to_string(&path).expect("a manifest");
+    assert!(Merged::all(folder).is_ok());
+    let job = r#""jobs":[{"n":4,"files":[]}]"#;
+    for (is, becomes, why) in [
+        (r#""count":4"#, r#""count":4294967295"#, "4294967295 jobs are more than 10000000"),
+        (r#""shard":[0,1]"#, r#""shard":[0,4000000000]"#, "4000000000 shards are too many"),
+        (r#""shard":[0,1]"#, r#""shard":[3,3]"#, "there is no shard 3 of 3"),
+        (r#""shard":[0,1]"#, r#""shard":[0,0]"#, "there are no shards"),
+        (r#""part":null"#, r#""part":"x""#, "want numbers and ranges"),
+        (r#""jobs":[]"#, job, "a job of 4 has a higher number"),
+    ] {
+        assert!(text.contains(is), "{is} in {text}");
+        fs::write(&path, text.replace(is, becomes)).expect("a manifest");
+        let said = Merged::all(folder).expect_err(becomes).to_string();
+        assert!(said.contains("it is no manifest (") && said.contains(why), "{said}");
+        assert!(said.ends_with("; remove it, or give another folder"), "{said}");
+    }
+    #[cfg(unix)]
+    {
+        // Nobody writes to it: it would be waited for.
+        fs::remove_file(&path).expect("it is there");
+        assert!(std::process::Command::new("mkfifo").arg(&path).status().expect("mkfifo runs").success());
+        let said = Merged::all(folder).expect_err("a pipe").to_string();
+        assert!(said.contains("it cannot be read (it is no regular file)"), "{said}");
+        let said = hachure::door::formats::views(&path).expect_err("a pipe").to_string();
+        assert!(said.contains("it is no regular file; name a file of JSON"), "{said}");
+    }
+}

@@ -25,6 +25,7 @@ mod economy;
 mod examples;
 mod facets;
 mod farm;
+mod faults;
 mod films;
 mod flight_paths;
 mod flights;

@@ -1,6 +1,6 @@
 //! `hachure batch`: many drawings, as a file lists them.
 
-mod entry;
+pub(crate) mod entry;
 mod sheets;
 
 use std::fs;

@@ -31,7 +31,7 @@ const SEE: &str = "see the keys in `hachure fly --help`";
 
 /// The keys of a flight.
 #[derive(Debug, Clone)]
-pub(super) struct Keys {
+pub(crate) struct Keys {
     /// The number of the system of places.
     pub crs: Option<u32>,
     /// What azimuths are counted from.
@@ -42,7 +42,7 @@ pub(super) struct Keys {
 
 /// A place on the way.
 #[derive(Debug, Clone)]
-pub(super) struct Key {
+pub(crate) struct Key {
     /// Where the eye is.
     pub place: Standpoint,
     /// Whether that, and what is looked at, are degrees of longitude and latitude.
@@ -92,8 +92,8 @@ enum Coordinate {
 ///
 /// # Errors
 /// [`Error::Input`] where it cannot be read, or is none: where in it, what, and what was meant.
-pub(super) fn read(path: &Path) -> Result<Keys> {
-    let text = typed::text(path)?;
+pub(crate) fn read(path: &Path) -> Result<Keys> {
+    let text = typed::text(path, "TOML")?;
     let file: File = toml::from_str(&text).map_err(|e| typed::mistake(&text, path, &e, SEE))?;
     let wrong = |span: std::ops::Range<usize>, what: String, remedy: &str| {
         Error::input(path, format!("{}{what}", typed::place(&text, &span)), remedy.to_owned())

@@ -15,7 +15,7 @@ pub(crate) mod drawing;
 pub(crate) mod film;
 pub(crate) mod flat_earth;
 pub(crate) mod flight;
-mod flight_keys;
+pub(crate) mod flight_keys;
 mod flight_plan;
 pub(crate) mod fly;
 pub(crate) mod folds;
@@ -55,9 +55,12 @@ pub(crate) mod views;
 pub(crate) mod words;
 pub(crate) mod work;
 
+use std::process::ExitCode;
+
 use clap::{Parser, Subcommand};
 
-use crate::error::Result;
+use crate::error::{Error, Result};
+use crate::files::signals;
 use talk::{LinesTo, Talk, TalkArguments};
 
 /// The end of `hachure --help`.
@@ -118,6 +121,18 @@ impl Arguments {
             _ => LinesTo::Stdout,
         };
         Talk::new(&self.talk, lines)
+    }
+
+    /// Does what was asked, and says why not where it cannot be done.
+    pub fn run_to_end(&self, talk: &Talk) -> ExitCode {
+        let Err(error) = self.run(talk) else { return ExitCode::SUCCESS };
+        talk.error(&error);
+        let code = words::exit_code(&error);
+        if let Error::DeviceLost { .. } = error {
+            // The driver may be at work for ever, and would be waited for.
+            signals::end_now(code.into());
+        }
+        ExitCode::from(code)
     }
 
     /// Does what was asked.

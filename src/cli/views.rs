@@ -4,7 +4,7 @@
 //! metres, or "+H" above the ground. `azimuth` is counted from `north`, "true" or "grid"; from grid north where it is absent.
 //! Other keys beside `views` are remarks.
 
-use std::fs;
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
@@ -13,6 +13,7 @@ use super::values::{self, Size, Standpoint};
 use super::viewpoint::ViewArguments;
 use crate::dem::North;
 use crate::error::{Error, Result};
+use crate::files::typed;
 
 /// A view of the file, with the flags that give it.
 #[derive(Debug)]
@@ -58,16 +59,16 @@ enum Coordinate {
 /// [`Error::Input`] where the file is missing or no such file, or a view in it is none.
 pub(crate) fn read(path: &Path, fov: f64, size: Size) -> Result<Vec<NamedView>> {
     let wrong = |what: String| Error::input(path, what, "see `hachure compare --help` for what a file of views holds");
-    let text = fs::read_to_string(path).map_err(|e| wrong(e.to_string()))?;
+    let text = typed::text(path, "JSON")?;
     let file: File = serde_json::from_str(&text).map_err(|e| wrong(e.to_string()))?;
     let views = file.views.into_iter().map(|entry| {
         let name = entry.name.clone();
         entry.view(fov, size).map_err(|what| wrong(format!("view `{name}`: {what}")))
     });
     let views: Vec<NamedView> = views.collect::<Result<_>>()?;
-    let twice = |i: usize| views[..i].iter().any(|view| view.name == views[i].name);
-    match (0..views.len()).find(|i| twice(*i)) {
-        Some(i) => Err(wrong(format!("two views are named `{}`", views[i].name))),
+    let mut names = HashSet::new();
+    match views.iter().find(|view| !names.insert(&view.name)) {
+        Some(twice) => Err(wrong(format!("two views are named `{}`", twice.name))),
         None => Ok(views),
     }
 }

@@ -1,10 +1,10 @@
-//! TOML that people write: its text, and what is said of a mistake in it, with its place and what was meant.
+//! TOML and JSON that people write: the text, and what is said of a mistake in it, with its place and what was meant.
 
-use std::fs::{self, File};
-use std::io::{self, Read};
+use std::io::Read;
 use std::ops::Range;
 use std::path::Path;
 
+use super::regular;
 use crate::error::{Error, Result};
 
 /// Largest file, bytes: nobody writes more.
@@ -13,19 +13,15 @@ const LARGEST: u64 = 1 << 20;
 /// How much of a name must agree for another to be meant (Jaro, Winkler 1990).
 const ALIKE: f64 = 0.75;
 
-/// The text of a file.
+/// The text of a file of `language`.
 ///
 /// # Errors
 /// [`Error::Input`] where it cannot be read, is no regular file, or is larger than a mebibyte.
-pub(crate) fn text(path: &Path) -> Result<String> {
-    let unreadable = |e: io::Error| Error::input(path, e.to_string(), "name a file of TOML that can be read");
-    let wrong = |what: String| Error::input(path, what, "name a file of TOML");
-    // A pipe would be waited for.
-    if !fs::metadata(path).map_err(unreadable)?.is_file() {
-        return Err(wrong("it is no regular file".to_owned()));
-    }
+pub(crate) fn text(path: &Path, language: &str) -> Result<String> {
+    let wrong = |what: String| Error::input(path, what, format!("name a file of {language} that can be read"));
     let mut text = String::new();
-    File::open(path).and_then(|file| file.take(LARGEST + 1).read_to_string(&mut text)).map_err(unreadable)?;
+    let read = regular::open(path).and_then(|file| file.take(LARGEST + 1).read_to_string(&mut text));
+    read.map_err(|e| wrong(e.to_string()))?;
     if text.len() as u64 > LARGEST {
         return Err(wrong(format!("over {LARGEST} bytes are more than anybody writes")));
     }

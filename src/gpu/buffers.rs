@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use super::device::Gpu;
+use super::pace::Work;
 use super::sizes::fits;
 use crate::error::{Error, Result};
 
@@ -43,7 +44,7 @@ impl Buffers {
         self.0.insert(name, upload(gpu, name, bytes, wgpu::BufferUsages::STORAGE));
         // Sent at once: until then the driver holds a second copy.
         gpu.queue.submit([]);
-        gpu.wait()
+        gpu.wait_for(Work::bytes(bytes.len() as u64))
     }
 
     /// Makes a storage buffer of zeros, unless there is one of this size; gives back the one in whose place it is.

@@ -124,15 +124,14 @@ impl Timer {
         }
     }
 
-    /// Submits and waits where that is how passes are timed.
+    /// Does a pass, which submits and waits, where that is how passes are timed.
     ///
     /// # Errors
-    /// Whatever `submit` or the driver reports.
-    pub(crate) fn wait(&mut self, gpu: &Gpu, name: &'static str, submit: impl FnOnce() -> Result<()>) -> Result<()> {
+    /// Those of `pass`.
+    pub(crate) fn wait(&mut self, name: &'static str, pass: impl FnOnce() -> Result<()>) -> Result<()> {
         if let Self::Waits(time) = self {
             let start = Instant::now();
-            submit()?;
-            gpu.wait()?;
+            pass()?;
             time.add(name, start.elapsed().as_secs_f64() * 1e3);
         }
         Ok(())

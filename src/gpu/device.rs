@@ -1,8 +1,7 @@
 //! Opens an adapter and turns the driver's ways of failing into errors.
 
 use std::borrow::Cow;
-use std::sync::{Arc, Mutex};
-use std::time::Duration;
+use std::sync::{Arc, Mutex, OnceLock};
 
 use bytemuck::Pod;
 
@@ -10,14 +9,16 @@ use super::adapter::{self, AdapterChoice};
 use super::clock::Clock;
 use super::compiled::Compiled;
 use super::memory;
+use super::pace::{Pace, Work};
 use super::pass::Pass;
 use super::sizes::LARGEST_BINDING;
 use crate::error::{Error, Result};
 
-/// Waiting longer than this for one submission means the device hangs.
-const PATIENCE: Duration = Duration::from_secs(900);
 /// Storage buffers the largest pass binds.
 const STORAGE_BUFFERS: u32 = 16;
+
+/// What tests do to a device before each wait for it.
+pub static WAITED: OnceLock<fn(&Gpu)> = OnceLock::new();
 
 /// What 64-bit atomics take.
 const INT64: wgpu::Features = wgpu::Features::SHADER_INT64.union(wgpu::Features::SHADER_INT64_ATOMIC_MIN_MAX);
@@ -44,6 +45,9 @@ pub struct Gpu {
     pub int64: bool,
     /// What measures the time of frames: timestamps on a GPU that has them.
     pub clock: Clock,
+    /// How fast it is, by which it is known to hang.
+    #[doc(hidden)]
+    pub pace: Pace,
     compiled: Compiled,
     failure: Arc<Mutex<Option<String>>>,
     lost: Arc<Mutex<Option<String>>>,
@@ -103,7 +107,8 @@ impl Gpu {
         let slot = lost.clone();
         device.set_device_lost_callback(move |_, message| note(&slot, message));
         let info = device.adapter_info();
-        Ok(Self { device, queue, info, int64, clock, compiled: Compiled::default(), failure, lost })
+        let pace = Pace::new(info.device_type == wgpu::DeviceType::Cpu);
+        Ok(Self { device, queue, info, int64, clock, pace, compiled: Compiled::default(), failure, lost })
     }
 
     /// Adapter and driver in words.
@@ -115,7 +120,7 @@ impl Gpu {
     /// thread.
     ///
     /// # Errors
-    /// [`Error::Gpu`] with the driver's words.
+    /// [`Error::Gpu`] with the driver's words, [`Error::DeviceLost`].
     pub(super) fn checked<T>(&self, work: impl FnOnce() -> T) -> Result<T> {
         use wgpu::ErrorFilter::{Internal, OutOfMemory, Validation};
         let scopes = [Validation, Internal, OutOfMemory].map(|filter| self.device.push_error_scope(filter));
@@ -125,7 +130,11 @@ impl Gpu {
             let failure = pollster::block_on(scope.pop());
             first.or(failure)
         });
-        failure.map_or(Ok(done), |e| Err(memory::failure(one_line(&e))))
+        match failure {
+            Some(e) => Err(self.failed(one_line(&e))),
+            // What is asked of a lost device fails in silence.
+            None => self.lost().map_or(Ok(done), Err),
+        }
     }
 
     /// Copies the first `count` values of a buffer to the CPU.
@@ -153,11 +162,11 @@ impl Gpu {
                 note(&slot, one_line(&e));
             }
         });
-        self.wait()?;
+        self.wait_for(Work::bytes(size))?;
         if let Some(what) = take(&mapped) {
-            return Err(memory::failure(what));
+            return Err(self.failed(what));
         }
-        let view = staging.slice(..).get_mapped_range().map_err(|e| memory::failure(one_line(&e)))?;
+        let view = staging.slice(..).get_mapped_range().map_err(|e| self.failed(one_line(&e)))?;
         let mut values = bytemuck::zeroed_vec(count);
         bytemuck::cast_slice_mut(&mut values).copy_from_slice(&view);
         Ok(values)
@@ -193,28 +202,68 @@ impl Gpu {
         self.compiled.forget();
     }
 
-    /// Waits until all submitted work is done.
+    /// Waits until all submitted work is done, of which nothing is known.
     ///
     /// # Errors
-    /// Whatever the driver reported since the last call.
+    /// Whatever the driver reported since the last call; [`Error::DeviceLost`] when it hangs.
     pub fn wait(&self) -> Result<()> {
-        let wait = wgpu::PollType::Wait { submission_index: None, timeout: Some(PATIENCE) };
-        let outcome = self.device.poll(wait);
-        if let Some(what) = take(&self.lost) {
-            return Err(Error::DeviceLost { what });
+        self.wait_through(None).map(drop)
+    }
+
+    /// Waits until all submitted work is done, and learns from the time it takes.
+    ///
+    /// # Errors
+    /// As [`Self::wait`].
+    pub fn wait_for(&self, work: Work) -> Result<()> {
+        let seconds = self.wait_through(Some(work))?;
+        self.pace.took(work, seconds);
+        Ok(())
+    }
+
+    /// Seconds that the driver had for it.
+    fn wait_through(&self, work: Option<Work>) -> Result<f64> {
+        WAITED.get().into_iter().for_each(|waited| waited(self));
+        let mut watch = self.pace.watch(work);
+        loop {
+            let wait = wgpu::PollType::Wait { submission_index: None, timeout: Some(watch.look()) };
+            let outcome = self.device.poll(wait);
+            let seconds = watch.tick();
+            self.check()?;
+            match outcome {
+                Ok(_) => return Ok(seconds),
+                Err(wgpu::PollError::Timeout) => {}
+                Err(e) => return Err(Error::DeviceLost { what: one_line(&e) }),
+            }
+            if let Some(what) = watch.hangs() {
+                // Whoever drops a device waits for its work.
+                std::mem::forget((self.device.clone(), self.queue.clone()));
+                return Err(Error::DeviceLost { what });
+            }
         }
-        if let Err(e) = outcome {
-            return Err(Error::DeviceLost { what: one_line(&e) });
-        }
-        self.check()
     }
 
     /// The first error the driver reported to no one else since the last call, of whatever thread, if any.
     ///
     /// # Errors
-    /// [`Error::Gpu`] with the driver's words.
+    /// [`Error::Gpu`] with the driver's words, [`Error::DeviceLost`].
     pub fn check(&self) -> Result<()> {
-        take(&self.failure).map_or(Ok(()), |what| Err(memory::failure(what)))
+        match (self.lost(), take(&self.failure)) {
+            (None, None) => Ok(()),
+            (Some(lost), _) => Err(lost),
+            (None, Some(what)) => Err(self.failed(what)),
+        }
+    }
+
+    /// That the device is lost, which it stays.
+    fn lost(&self) -> Option<Error> {
+        let what = self.lost.lock().ok()?.clone()?;
+        Some(Error::DeviceLost { what })
+    }
+
+    /// The driver's failure in its `words`, which may only follow from the loss of the device: that is told by the next look.
+    fn failed(&self, words: String) -> Error {
+        let _ = self.device.poll(wgpu::PollType::Poll);
+        self.lost().unwrap_or_else(|| memory::failure(words))
     }
 }
 

@@ -9,6 +9,7 @@ pub(crate) mod curves;
 pub(crate) mod device;
 pub(crate) mod memory;
 pub(crate) mod on_device;
+pub(crate) mod pace;
 pub(crate) mod page;
 pub(crate) mod pass;
 pub(crate) mod scene;

@@ -3,6 +3,7 @@
 use super::buffers::Buffers;
 use super::curves::CurveBuffers;
 use super::device::Gpu;
+use super::pace::Work;
 use super::page::PageBuffers;
 use super::pass::Pass;
 use super::scene::Scene;
@@ -11,6 +12,7 @@ use super::stages::Stages;
 use crate::error::Result;
 use crate::plan::passes::{Over, PlannedPass};
 use crate::plan::{Batch, Frame, PagePiece};
+use crate::surface::lattice::CHUNK_FACETS;
 
 /// Scene, page and passes on a device.
 #[derive(Clone, Copy)]
@@ -32,6 +34,7 @@ pub struct Dispatch<'a> {
     pass: &'a Pass,
     group: &'a wgpu::BindGroup,
     extent: Extent<'a>,
+    work: Work,
 }
 
 /// How far a pass reaches.
@@ -43,6 +46,11 @@ enum Extent<'a> {
 }
 
 impl Dispatch<'_> {
+    /// What it takes, as far as that is known before.
+    pub(super) fn work(&self) -> Work {
+        self.work
+    }
+
     /// Records it.
     pub fn record(&self, pass: &mut wgpu::ComputePass<'_>) {
         match self.extent {
@@ -105,6 +113,16 @@ impl<'a> OnDevice<'a> {
             Over::List(list) => Extent::List(self.buffer(list)?),
             _ => Extent::Invocations(shaders::invocations(planned.name, &stage.pass, amounts)?),
         };
-        Ok(Some(Dispatch { pass: &stage.pass, group, extent }))
+        let pixels = u64::from(amounts.size[0]) * u64::from(amounts.size[1]);
+        let work = match planned.over {
+            Over::FreshChunks | Over::SeenChunks | Over::AllChunks | Over::Chunks => {
+                Work::facets(u64::from(chunks) * u64::from(CHUNK_FACETS))
+            }
+            // The device alone knows how long a list is: of pixels, or of facets that are large on the page.
+            Over::Pixels | Over::List(_) => Work::items(pixels),
+            Over::RimEdges => Work::items(amounts.rim_edges),
+            Over::Found => Work::items(amounts.laid + amounts.crossed + amounts.segments),
+        };
+        Ok(Some(Dispatch { pass: &stage.pass, group, extent, work }))
     }
 }

@@ -12,6 +12,7 @@ use bytemuck::Zeroable;
 use super::buffers::{Buffers, Creation};
 use super::capacity::{Capacity, Moves};
 use super::device::Gpu;
+use super::pace::Work;
 use super::shaders::{EMPTY_QUEUE, NO_PIXELS};
 use super::sizes::{self, TILE_BYTES, rim_fits, valid_fits};
 use super::slot_cache::{Placed, SlotCache};
@@ -215,7 +216,7 @@ impl Scene {
             // Sent at once: until then the driver holds a second copy.
             gpu.queue.submit([]);
             if missing.len() > TILES_AT_ONCE {
-                gpu.wait()?;
+                gpu.wait_for(Work::bytes(TILES_AT_ONCE as u64 * TILE_BYTES))?;
             }
         }
         Ok(places)

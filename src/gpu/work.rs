@@ -3,17 +3,21 @@
 use super::clock::{CLEAR, Timer};
 use super::device::Gpu;
 use super::on_device::OnDevice;
+use super::pace::Work;
 use super::sizes::LIST_HEADER;
 use crate::error::Result;
 use crate::plan::{Frame, PagePiece, PassName};
 
-/// Commands for a piece of a frame, recorded and not yet submitted.
+/// Commands for a piece of a frame, recorded and not yet submitted. What the device is expected to work at for long is cut into
+/// parts, each waited for before the next is recorded.
 pub(crate) struct FrameWork<'a> {
     on_device: OnDevice<'a>,
     frame: &'a Frame,
     piece: PagePiece,
     timer: Option<&'a mut Timer>,
     encoder: wgpu::CommandEncoder,
+    /// Since the device was last waited for.
+    part: Work,
 }
 
 impl<'a> FrameWork<'a> {
@@ -25,7 +29,7 @@ impl<'a> FrameWork<'a> {
         timer: Option<&'a mut Timer>,
     ) -> Self {
         let encoder = on_device.gpu.device.create_command_encoder(&Default::default());
-        let mut work = Self { on_device, frame, piece, timer, encoder };
+        let mut work = Self { on_device, frame, piece, timer, encoder, part: Work::NONE };
         if work.timer.is_some() {
             // A pass without work marks the beginning: clears, which come first, cannot be stamped themselves.
             work.begin(CLEAR);
@@ -63,25 +67,23 @@ impl<'a> FrameWork<'a> {
         let Some(dispatch) = self.on_device.dispatch(self.frame, self.piece, planned, [batch, round])? else {
             return Ok(());
         };
+        let part = self.part.and(dispatch.work());
+        if self.part > Work::NONE && self.on_device.gpu.pace.is_too_long(part) {
+            self.wait()?;
+        }
+        self.part = self.part.and(dispatch.work());
         dispatch.record(&mut self.begin(name.name()));
         self.timed(name.name())
     }
 
-    /// Submits what is recorded, and goes on.
+    /// Submits what is recorded and waits until it is done: drivers may let nobody submit more behind a part that hangs, and do
+    /// not come back then.
     ///
     /// # Errors
     /// Whatever the driver reports.
-    pub(crate) fn submit(&mut self) -> Result<()> {
-        submit(self.on_device.gpu, &mut self.encoder)
-    }
-
-    /// Submits and waits until all is done.
-    ///
-    /// # Errors
-    /// Whatever the driver reports.
-    pub(crate) fn finish(mut self) -> Result<()> {
-        self.submit()?;
-        self.on_device.gpu.wait()
+    pub(crate) fn wait(&mut self) -> Result<()> {
+        submit(self.on_device.gpu, &mut self.encoder)?;
+        self.on_device.gpu.wait_for(std::mem::take(&mut self.part))
     }
 
     fn begin(&mut self, name: &'static str) -> wgpu::ComputePass<'_> {
@@ -93,7 +95,10 @@ impl<'a> FrameWork<'a> {
     fn timed(&mut self, name: &'static str) -> Result<()> {
         let gpu = self.on_device.gpu;
         let Some(timer) = &mut self.timer else { return Ok(()) };
-        timer.wait(gpu, name, || submit(gpu, &mut self.encoder))
+        timer.wait(name, || {
+            submit(gpu, &mut self.encoder)?;
+            gpu.wait_for(std::mem::take(&mut self.part))
+        })
     }
 }
 

@@ -78,7 +78,7 @@ pub fn find(name: &str) -> Result<Style> {
     }
     let path = Path::new(name);
     if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")) {
-        return parse(&typed::text(path)?, path);
+        return parse(&typed::text(path, "TOML")?, path);
     }
     let names = BuiltIn::ALL.map(|known| known.to_string());
     let what = format!("there is no style `{}`", shown(path));

@@ -5,13 +5,14 @@
 //! missing. It is written when the work begins, every so often, and when it ends.
 
 use std::fs;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::{Content, Frames, Inks, Job, Shard, name};
+use super::{Content, Frames, Inks, Job, Shard, frames, name};
 use crate::error::{Error, Result};
-use crate::files::{Output, relative};
+use crate::files::{Output, regular, relative};
 
 /// Number of what a manifest holds: raised when that changes.
 const FORMAT: u32 = 1;
@@ -181,12 +182,29 @@ impl Manifest {
 
     fn read(path: &Path) -> Result<Self> {
         let failed = |why: String| Error::input(path, why, "remove it, or give another folder");
-        let text = fs::read(path).map_err(|error| failed(format!("it cannot be read ({error})")))?;
+        let mut text = Vec::new();
+        let read = regular::open(path).and_then(|mut file| file.read_to_end(&mut text));
+        read.map_err(|error| failed(format!("it cannot be read ({error})")))?;
         let manifest: Self =
             serde_json::from_slice(&text).map_err(|error| failed(format!("it is no manifest ({error})")))?;
-        match manifest.format {
-            FORMAT => Ok(manifest),
-            other => Err(failed(format!("it is a manifest of format {other}, this program knows {FORMAT}"))),
+        if manifest.format != FORMAT {
+            let format = manifest.format;
+            return Err(failed(format!("it is a manifest of format {format}, this program knows {FORMAT}")));
+        }
+        manifest.check().map_err(|why| failed(format!("it is no manifest ({why})")))?;
+        Ok(manifest)
+    }
+
+    /// Says what no process writes: there are no more jobs and shards than may be asked for.
+    fn check(&self) -> std::result::Result<(), String> {
+        let [index, count] = self.shard;
+        Shard::new(index, count)?;
+        self.part.as_deref().map_or(Ok(()), |part| part.parse::<Frames>().map(drop))?;
+        let last = self.jobs.iter().map(|entry| entry.n).max();
+        match self.count {
+            count if count > frames::MOST => Err(format!("{count} jobs are more than {}", frames::MOST)),
+            count if last.is_some_and(|last| last >= count) => Err(format!("a job of {count} has a higher number")),
+            _ => Ok(()),
         }
     }
 

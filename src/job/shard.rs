@@ -33,7 +33,11 @@ impl Shard {
         numbers[end(self.index)..end(self.index + 1)].iter().copied().collect()
     }
 
-    fn new(index: u32, count: u32) -> Result<Self, String> {
+    /// One that there is; says in words why there is none.
+    ///
+    /// # Errors
+    /// The words.
+    pub(super) fn new(index: u32, count: u32) -> Result<Self, String> {
         match (index < count, count <= MOST) {
             (true, true) => Ok(Self { index, count }),
             (_, false) => Err(format!("{count} shards are too many; want at most {MOST}")),

@@ -74,7 +74,7 @@ impl Renderer {
         let mut work = FrameWork::new(self.on_device(), frame, piece, timer);
         work.clear(&["turning", "tally"])?;
         frame.of_curves().into_iter().try_for_each(|(pass, batch)| work.run(pass, [batch, 0]))?;
-        work.finish()
+        work.wait()
     }
 }
 

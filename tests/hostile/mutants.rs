@@ -63,7 +63,7 @@ fn gzip(from: &Path, to: &Path) -> PathBuf {
 }
 
 /// Changes bytes, near the head as often as anywhere.
-fn mutate(bytes: &mut Vec<u8>, random: &mut Random) {
+pub(super) fn mutate(bytes: &mut Vec<u8>, random: &mut Random) {
     for _ in 0..=random.below(6) {
         let end = if random.below(2) == 0 { bytes.len().min(600) } else { bytes.len() } as u32;
         if end == 0 {

@@ -29,7 +29,7 @@ const NONE: [&str; 9] =
 const AS_DRAWN: &str = "see `hachure draw --help`";
 
 /// A drawing of the file.
-pub(super) struct BatchEntry {
+pub(crate) struct BatchEntry {
     /// In words, for lines about it.
     pub called: String,
     /// As if typed.
@@ -82,8 +82,8 @@ struct Source<'a> {
 ///
 /// # Errors
 /// [`Error::Input`] where it cannot be read, or what stands in it is no drawing: where, what, and what was meant.
-pub(super) fn read(path: &Path) -> Result<Vec<BatchEntry>> {
-    let text = typed::text(path)?;
+pub(crate) fn read(path: &Path) -> Result<Vec<BatchEntry>> {
+    let text = typed::text(path, "TOML")?;
     let source = Source { path, text: &text, known: known() };
     let table = DeTable::parse(&text)
         .map_err(|e| typed::mistake(&text, path, &e, "write it as `hachure batch --help` shows"))?;
@@ -238,7 +238,7 @@ impl Source<'_> {
 ///
 /// # Errors
 /// [`Error::Input`].
-pub(super) fn each_output_once(file: &Path, entries: &[BatchEntry]) -> Result<()> {
+pub(crate) fn each_output_once(file: &Path, entries: &[BatchEntry]) -> Result<()> {
     let read = entries.iter().flat_map(|entry| &entry.draw.terrain.dems).map(PathBuf::as_path);
     let mut taken = Taken::inputs(read.chain([file]));
     // Of folders that are not there yet nothing is known but their names.

@@ -14,7 +14,7 @@ use crate::error::{Error, Result, Setting, shown};
 use crate::message;
 
 /// Most sheets of a map.
-const MOST: u64 = 100_000;
+const MOST: f64 = 1e5;
 /// Places along a side of a rectangle at which is looked where it runs in another system.
 const LOOKS: u32 = 16;
 /// Samples across and down that are looked at together.
@@ -124,9 +124,9 @@ impl SheetGrid {
         };
         let low = places.iter().fold(*first, |low, place| low.min(*place)) / self.side;
         let high = places.iter().fold(*first, |high, place| high.max(*place)) / self.side;
-        let span = |low: f64, high: f64| (low.floor() as i64, (high.ceil() as i64).max(low.floor() as i64 + 1));
-        let ((left, right), (bottom, top)) = (span(low.x, high.x), span(low.y, high.y));
-        if (right - left) as u64 * (top - bottom) as u64 > MOST {
+        // Of sides next to nothing there may be more than integers count.
+        let [across, up] = (high.ceil() - low.floor()).max(DVec2::ONE).to_array();
+        if !(across * up).is_finite() || across * up > MOST {
             let what = format!("makes over {MOST} sheets");
             return Err(Error::setting(Setting::Sheet, what, message!["use a larger ", Setting::Sheet]));
         }
