@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::cause::{FINEST, LineAnswer, Rule};
-use super::remedy;
+use super::remedy::{self, DRAWN};
 use super::station::Station;
 use crate::cli::words::short;
 use crate::error::Result;
@@ -66,9 +66,12 @@ pub(super) fn lines(page: &PickedPage, station: &Station) -> Result<Vec<Found>> 
     for near in &near_lines {
         let chain = &lines.chains[near.chain];
         let lowered = merit(near).and_then(|merit| page.lowered(near, merit));
-        let rule = match (stroke_of(&inks, chain.id, near.px + stray), lowered) {
-            // What is faded so far that nobody sees it is left out.
-            (Some(ink), Some(rule)) if ink.width < FINEST => Some((rule, false)),
+        let ink = stroke_of(&inks, chain.id, near.px + stray);
+        // Hachures are many, and those without width are told by none.
+        let ink = ink.filter(|ink| ink.width > 0.0 || near.point.line != Line::Hachure);
+        let rule = match (ink, lowered) {
+            // What is faded so far that nobody sees it is left out; where ends taper, it is drawn all the same.
+            (Some(ink), Some(rule)) if ink.width < FINEST && near.point.weight < DRAWN => Some((rule, false)),
             (Some(ink), faded) => Some((drawn(ink, faded, near.point.weight), covers(ink))),
             (None, Some(rule)) => Some((rule, false)),
             (None, None) => page.unstroked(near).map(|rule| (rule, false)),
@@ -95,7 +98,7 @@ pub(super) fn lines(page: &PickedPage, station: &Station) -> Result<Vec<Found>> 
 
 /// The nearest stroke of a chain that far off.
 fn stroke_of<'a, 'd>(inks: &'a [InkedNear<'d>], chain: Option<Id>, px: f64) -> Option<&'a InkedNear<'d>> {
-    let of_chain = inks.iter().filter(|ink| ink.chain == chain && ink.px <= px && ink.width > 0.0);
+    let of_chain = inks.iter().filter(|ink| ink.chain == chain && ink.px <= px);
     of_chain.min_by(|a, b| a.px.total_cmp(&b.px))
 }
 
@@ -124,7 +127,7 @@ impl PickedPage<'_> {
         let illustration = Illustration { economy, ..self.illustration.clone() };
         let (_, drawn) = illustration.drawing(self.page)?;
         let inks = drawn.inked_near(illustration.frame, place, self.stray());
-        Ok(stroke_of(&inks, chain, self.stray()).is_some_and(|ink| ink.width >= FINEST))
+        Ok(stroke_of(&inks, chain, self.stray()).is_some())
     }
 
     /// Which rule lowers the weight of a line most, if one does.
@@ -151,7 +154,6 @@ impl PickedPage<'_> {
     /// Why no stroke draws a line that has weight.
     fn unstroked(&self, near: &Near) -> Option<Rule> {
         let ChainPoint { place, weight, line, .. } = near.point;
-        // Hachures are many, and those without width are told by none.
         if weight <= 0.0 || line == Line::Hachure {
             return None;
         }

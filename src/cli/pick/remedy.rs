@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::line::{Chain, Economy, Near, economised, near};
 
 /// A line that has these shares of its weight is drawn, and drawn whole.
-const DRAWN: f32 = 0.1;
+pub(super) const DRAWN: f32 = 0.1;
 const WHOLE: f32 = 0.99;
 /// How far a line may lie from where it was seen, px: it has more points or fewer.
 pub(super) const SAME: f64 = 1.0;
