@@ -310,6 +310,9 @@ fn what_cannot_be_meant_is_refused_and_leaves_nothing() {
     let output = place.run(&[&draw[..], &["out.gpkg"]].concat());
     assert!(output.status.success(), "{}", stderr(&output));
     assert_eq!(place.written(), ["out.gpkg", "out.png"]);
+    let file = Dataset::open(place.path("out.gpkg")).expect("a file");
+    let crs = file.layer(0).expect("a layer").spatial_ref().expect("a system");
+    assert!(!crs.is_geographic() && crs.name().is_some_and(|name| name == "Undefined Cartesian SRS"));
     let points = lines(&place.path("out.gpkg"));
     let inside = |at: &DVec3| (500_000.0..500_400.0).contains(&at.x) && (4_000_000.0..4_000_400.0).contains(&at.y);
     assert!(points.iter().flat_map(|line| &line.points).all(inside));

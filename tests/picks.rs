@@ -1,6 +1,8 @@
 //! Picks: what a pixel shows and where a place stands, on land whose answers are known in closed form; which rule drew a line or
 //! left it out; and what is said where there is no answer.
 
+mod advised;
+
 use std::fs;
 use std::path::Path;
 use std::process::Output;
@@ -137,6 +139,11 @@ fn a_pixel_tells_where_its_land_is_how_high_how_far_and_how_steep() {
             assert!(convergence > 0.5, "worth a test");
             assert!(turned(number(&told["true_bearing"]), bearing + convergence) < 1e-3, "{convergence}: {told}");
             assert!(pair(&told["lonlat"]).distance(DVec2::new(lon[1], lat[1])) < 1e-9, "{told}");
+            let normal = DVec3::new(-0.2, 0.1, 1.0).normalize();
+            let off_sight = normal.dot(way.normalize()).abs().asin().to_degrees();
+            let facing = told["lines"].as_array().expect("lines").iter().find(|line| line["rule"] == "facing");
+            let facing = number(&facing.expect("no silhouette")["numbers"]["off_sight_degrees"]);
+            assert!((facing - off_sight).abs() < 1e-2, "{facing} and {off_sight}");
             assert!((number(&told["slope"]) - 0.05_f64.sqrt().atan().to_degrees()).abs() < 1e-3, "{told}");
             // Down to the north-west: .2 to the west for .1 to the north.
             assert!(
@@ -263,7 +270,6 @@ fn places_beside_the_page_behind_the_eye_and_without_land_are_told() {
         (&["--at", "4"], "want X,Y: the pixel's column and row, whole numbers from 0,0 at the top left"),
         (&["--of", "x,4"], "`x` is no number"),
         (&["--at", "1,1", "--of", "2,2"], "cannot be used with"),
-        (&[], "--at <X,Y>"),
         (&["--at", "1,1", "--json", "land.tif"], "which is read as input; give each file a name of its own"),
     ] {
         let output = place.run(&[&["pick", "land.tif"], flags].concat());

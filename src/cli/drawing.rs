@@ -101,7 +101,9 @@ impl DrawingArguments {
         pictures: bool,
         allow_remote: bool,
     ) -> Result<Illustration> {
-        let (plan, style) = (self.plan(wanted)?, self.style.style()?);
+        let (plan, mut style) = (self.plan(wanted)?, self.style.style()?);
+        // The corners of the rules do as well.
+        style.plot.registration &= !self.furniture.is_framed();
         let land = self.wanted(&style, &plan, allow_remote)?;
         let layout = self.layout(size, &style, pictures)?;
         let frame = [layout.frame.width, layout.frame.height];

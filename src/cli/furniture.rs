@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use glam::DVec2;
 
 use super::viewpoint::View;
-use crate::dem::Dem;
+use super::words::short;
+use crate::dem::{Crs, Dem, FileSamples};
 use crate::error::{Error, Result, Setting, shown};
 use crate::ink::furniture::{Credits, Furniture, Texts};
 
@@ -28,7 +29,7 @@ pub(crate) struct FurnitureArguments {
     /// sheet's name.
     #[arg(long, value_name = "TEXT", value_parser = text)]
     title: Option<String>,
-    /// Frame the picture with two rules, a thin one along its edge and a thick one around that
+    /// Frame the picture with two rules, a thin one along its edge and a thick one around that, in the place of registration marks
     #[arg(long)]
     neatline: bool,
     /// Write below it from where the land is seen, in which direction, how wide, and by how much heights are exaggerated; of a plan
@@ -60,6 +61,11 @@ impl FurnitureArguments {
         }
     }
 
+    /// Whether rules frame the picture.
+    pub(crate) fn is_framed(&self) -> bool {
+        self.neatline
+    }
+
     /// A sheet of a map is called so.
     pub(crate) fn on_sheet(&mut self, mark: &str, name: &str) {
         let own = self.credits.iter_mut().flatten();
@@ -87,15 +93,15 @@ impl FurnitureArguments {
 pub(crate) fn of_view(view: &View, exaggeration: f64, dems: &[PathBuf], dem: &Dem) -> Texts {
     let camera = &view.camera;
     let place = view.lonlat.map_or_else(|| in_file(view.file), in_degrees);
-    let tilt = match camera.altitude {
-        altitude if altitude.abs() < 0.5 => "level".to_owned(),
-        altitude => format!("{:.0}° {}", altitude.abs(), if altitude < 0.0 { "down" } else { "up" }),
-    };
     let parts = [
         format!("From {place} at {}", metres(camera.eye.z / exaggeration)),
-        format!("looking {}° from {} north, {tilt}", tenths(view.azimuth), view.norths.north),
+        format!("looking {}° from {} north, {}", bearing(view.azimuth), view.norths.north, tilt(camera.altitude)),
         format!("field of view {}°", tenths(camera.fov)),
-        if exaggeration == 1.0 { "heights not exaggerated".to_owned() } else { format!("heights × {exaggeration}") },
+        if exaggeration == 1.0 {
+            "heights not exaggerated".to_owned()
+        } else {
+            format!("heights × {}", short(exaggeration))
+        },
     ];
     Texts { view_line: line(parts), credits: credits(dems, dem, "") }
 }
@@ -141,19 +147,43 @@ fn credits(dems: &[PathBuf], dem: &Dem, told: &str) -> String {
         [first] => name(first),
         [first, others @ ..] => format!("{} and {} more", name(first), others.len()),
     };
-    let cell = dem.cell();
-    let cell = match (cell.x - cell.y).abs() < 1e-3 * cell.x {
-        true => tenths(cell.x),
-        false => format!("{} × {}", tenths(cell.x), tenths(cell.y)),
-    };
-    let samples = format!("{} × {} samples {cell} m apart", dem.columns(), dem.rows()).replace(' ', SPACE);
-    let label = dem.georeference().file().label();
+    let of_files = dem.history().samples();
+    let label = of_files.and_then(|samples| samples.crs.as_ref()).map(Crs::label);
     let parts = [
         Some(format!("Terrain: {name}")),
-        Some(samples),
-        (label != told).then_some(label).filter(|label| !label.is_empty()),
+        of_files.and_then(|of_files| samples(of_files, dems.len() > 1)),
+        label.filter(|label| label != told && !label.is_empty()),
     ];
     parts.into_iter().flatten().collect::<Vec<_>>().join(BETWEEN)
+}
+
+/// How many samples a file has, or each of several, and how far apart; `None` where several have neither in common.
+fn samples(FileSamples { size, cell, crs }: &FileSamples, is_of_each: bool) -> Option<String> {
+    let each = if is_of_each { " each," } else { "" };
+    let size = size.map(|[columns, rows]| format!("{columns} × {rows} samples{each}"));
+    let apart = cell.zip(crs.as_ref()).map(|(cell, crs)| format!(" {} apart", spacing(cell, crs)));
+    match (size, apart) {
+        (None, None) => None,
+        (size, None) => size.map(|size| size.trim_end_matches(',').to_owned()),
+        (size, Some(apart)) => Some(size.unwrap_or_else(|| "samples".to_owned()) + &apart),
+    }
+    .map(|words| words.replace(' ', SPACE))
+}
+
+/// The sides of a cell in the unit of its system, arc seconds for a small one in degrees.
+fn spacing(cell: DVec2, crs: &Crs) -> String {
+    let (sides, unit) = match (crs.turn(), crs.metres_per_unit()) {
+        (Some(turn), _) => match cell * 360.0 / turn {
+            degrees if degrees.max_element() < 0.1 => (degrees * 3600.0, "″".to_owned()),
+            degrees => (degrees, "°".to_owned()),
+        },
+        (None, Some(1.0)) => (cell, " m".to_owned()),
+        (None, _) => (cell, format!(" × {}", crs.units())),
+    };
+    match sides.to_array().map(short) {
+        [across, down] if across == down => across + &unit,
+        [across, down] => format!("{across} × {down}{unit}"),
+    }
 }
 
 /// Longitude and latitude, to some ten metres.
@@ -178,6 +208,20 @@ fn distance(metres: f64) -> String {
         metres if metres >= 1000.0 => format!("{} km", hundredths(metres / 1000.0)),
         metres => format!("{} m", hundredths(metres)),
     }
+}
+
+/// An altitude with one decimal at most.
+fn tilt(degrees: f64) -> String {
+    match tenths(degrees.abs()).as_str() {
+        "0" => "level".to_owned(),
+        off => format!("{off}° {}", if degrees < 0.0 { "down" } else { "up" }),
+    }
+}
+
+/// A bearing with one decimal at most, below 360.
+fn bearing(degrees: f64) -> String {
+    let text = tenths(degrees);
+    if text == "360" { "0".to_owned() } else { text }
 }
 
 /// With one decimal at most.
@@ -214,6 +258,8 @@ mod tests {
         assert_eq!([grouped(25_000.0), grouped(4_183_300.4)], ["25\u{202f}000", "4\u{202f}183\u{202f}300"]);
         assert_eq!([distance(250.0), distance(2500.0), distance(0.5)], ["250 m", "2.5 km", "0.5 m"]);
         assert_eq!([tenths(318.04), tenths(-0.01), tenths(50.0)], ["318", "0", "50"]);
+        assert_eq!([bearing(318.04), bearing(359.94), bearing(359.96)], ["318", "359.9", "0"]);
+        assert_eq!([tilt(-89.6), tilt(0.04), tilt(12.0)], ["89.6° down", "level", "12° up"]);
         assert_eq!(in_degrees(DVec2::new(-122.478_13, 37.0)), "37.0000°\u{202f}N, 122.4781°\u{202f}W");
     }
 

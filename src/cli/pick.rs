@@ -8,6 +8,7 @@ mod of;
 mod place;
 mod remedy;
 mod station;
+mod trial;
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -29,7 +30,8 @@ use crate::geo::Reading;
 /// The end of `hachure pick --help`.
 const EXAMPLES: &str = "\
 Pixels are those of the frame (--size), as in the mask; a picture with --dpi has others. Heights, distances, angles and slopes are
-the land's own, whatever the exaggeration. Give the flags of the drawing that is asked about.
+the land's own, whatever the exaggeration. Give the flags of the drawing that is asked about. There is no pick
+for plans (--plan): their scale tells what lies where.
 
 Examples:
   What lies there, and why no line is drawn:
@@ -40,15 +42,12 @@ Examples:
 
 /// Flags of `hachure pick`, as typed.
 #[derive(Debug, Clone, clap::Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = EXAMPLES, group(clap::ArgGroup::new("asked").args(["at", "of"]).required(true)))]
 pub(crate) struct PickArguments {
     #[command(flatten)]
     terrain: TerrainArguments,
     /// The pixel that is asked about: its column and row in the frame, counted from 0,0 at the top left
-    #[arg(
-        long, value_name = "X,Y", value_parser = values::pixel, allow_hyphen_values = true,
-        required_unless_present = "of", conflicts_with = "of"
-    )]
+    #[arg(long, value_name = "X,Y", value_parser = values::pixel, allow_hyphen_values = true)]
     at: Option<[u32; 2]>,
     /// The place that is asked about: easting, northing in the CRS of the DEM, or of --crs; where the DEM is not there, longitude,
     /// latitude in degrees

@@ -100,12 +100,31 @@ pub fn flag(setting: Setting) -> &'static str {
 
 /// A value of the user's own for a setting, as the help has it.
 fn placeholder(setting: Setting) -> String {
-    let command = Arguments::command();
-    let typed = flag(setting);
+    let known = argument(setting);
+    let values = known.as_ref().and_then(clap::Arg::get_value_names);
+    values.and_then(<[_]>::first).map_or_else(|| flag(setting).to_owned(), ToString::to_string)
+}
+
+/// What stands between a flag and its value.
+fn sign(setting: Setting) -> char {
+    if argument(setting).is_some_and(|known| known.is_require_equals_set()) { '=' } else { ' ' }
+}
+
+/// The argument by which a setting is typed; `None` for one without a flag.
+fn argument(setting: Setting) -> Option<clap::Arg> {
+    let (command, long) = (Arguments::command(), flag(setting).strip_prefix("--")?);
     let mut flags = command.get_subcommands().flat_map(clap::Command::get_arguments);
-    let known = flags.find(|known| known.get_long().is_some_and(|long| typed.strip_prefix("--") == Some(long)));
-    let values = known.and_then(clap::Arg::get_value_names);
-    values.and_then(<[_]>::first).map_or_else(|| typed.to_owned(), ToString::to_string)
+    flags.find(|known| known.get_long() == Some(long)).cloned()
+}
+
+/// A number by its first three digits.
+pub(crate) fn short(number: f64) -> String {
+    if number == 0.0 || !number.is_finite() {
+        return if number.is_finite() { "0".to_owned() } else { "endlessly much".to_owned() };
+    }
+    let decimals = (2.0 - number.abs().log10().floor()).clamp(0.0, 12.0) as usize;
+    let text = format!("{number:.decimals$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
 /// A message with flags.
@@ -113,7 +132,7 @@ pub fn told(message: &Message) -> String {
     message.told(|setting, form| match form {
         SettingForm::Name => flag(setting).to_owned(),
         SettingForm::At(value) => format!("{} {value}", flag(setting)),
-        SettingForm::WithValue => format!("{} {}", flag(setting), placeholder(setting)),
+        SettingForm::WithValue => format!("{}{}{}", flag(setting), sign(setting), placeholder(setting)),
         SettingForm::Value => placeholder(setting),
     })
 }
@@ -166,6 +185,7 @@ mod tests {
             settings.map(|setting| told(&setting.with_value().into())),
             ["--band N", "--cell M", "--resample M", "--cache DIR", "--crop E0,N0,E1,N1"]
         );
+        assert_eq!(told(&Setting::Credits.with_value().into()), "--credits=TEXT", "a flag that stands alone too");
         let within = message!["give ", Setting::Crop.value(), " within 1,2,3,4 m"];
         assert_eq!(told(&within), "give E0,N0,E1,N1 within 1,2,3,4 m");
         assert_eq!(placeholder(Setting::Dem), "DEM");

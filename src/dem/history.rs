@@ -2,6 +2,9 @@
 
 use std::path::Path;
 
+use glam::DVec2;
+
+use super::Crs;
 use crate::error::{Message, shown};
 use crate::message;
 
@@ -13,6 +16,31 @@ pub struct History {
     usual: Vec<Message>,
     steps: Vec<f64>,
     credits: Vec<String>,
+    samples: Option<FileSamples>,
+}
+
+/// Samples as files have them, before any crop and warp: what is true of each of the files.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct FileSamples {
+    /// Columns and rows.
+    pub size: Option<[usize; 2]>,
+    /// Between columns and between rows, in units of that system.
+    pub cell: Option<DVec2>,
+    /// What they are placed in.
+    pub crs: Option<Crs>,
+}
+
+/// Cells whose sides differ by a smaller share are as large: files round them.
+const ALIKE: f64 = 1e-6;
+
+impl FileSamples {
+    /// What is true of other files too.
+    fn and(self, others: &Self) -> Self {
+        let crs = self.crs.filter(|crs| others.crs.as_ref() == Some(crs));
+        let is_alike = |a: DVec2, b: DVec2| (a - b).abs().cmple(ALIKE * a).all();
+        let cell = self.cell.filter(|cell| crs.is_some() && others.cell.is_some_and(|other| is_alike(*cell, other)));
+        Self { size: self.size.filter(|size| others.size == Some(*size)), cell, crs }
+    }
 }
 
 impl History {
@@ -35,6 +63,19 @@ impl History {
     /// What the files say of what they are and who made them, each once, in the order of the files: one line each.
     pub fn credits(&self) -> &[String] {
         &self.credits
+    }
+
+    /// The files' samples; `None` where there are no files.
+    pub(crate) fn samples(&self) -> Option<&FileSamples> {
+        self.samples.as_ref()
+    }
+
+    /// A file has these samples.
+    pub(crate) fn sample(&mut self, of_file: FileSamples) {
+        self.samples = Some(match self.samples.take() {
+            Some(samples) => samples.and(&of_file),
+            None => of_file,
+        });
     }
 
     /// One thing more that a file says of itself; white space is one space, and what moves a line is left out.
@@ -79,6 +120,7 @@ impl History {
         add(&mut self.assumed, of_file.assumed);
         add(&mut self.usual, of_file.usual);
         of_file.credits.iter().for_each(|text| self.credit(text));
+        of_file.samples.into_iter().for_each(|samples| self.sample(samples));
     }
 }
 

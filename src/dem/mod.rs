@@ -36,6 +36,7 @@ use filed::Filed;
 pub(crate) use bands::Band;
 pub use georeference::Georeference;
 pub(crate) use held::{LARGEST_SIDE, MAX_SAMPLES, held_bytes, mebibytes, not_held};
+pub(crate) use history::FileSamples;
 pub use history::History;
 pub(crate) use north::convergence_in_words;
 pub use north::{Bearings, North};

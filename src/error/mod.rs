@@ -185,7 +185,7 @@ pub(crate) fn plain(text: String) -> String {
 }
 
 /// Control characters (C0, DEL, C1), separators of lines and paragraphs, and marks that turn the direction of writing.
-fn is_unprintable(c: char) -> bool {
+pub(crate) fn is_unprintable(c: char) -> bool {
     let turns = matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     c.is_control() || turns || matches!(c, '\u{2028}' | '\u{2029}')
 }

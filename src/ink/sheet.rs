@@ -119,7 +119,7 @@ impl Sheet {
         if (f64::from(height) - down).abs() < 1.0 {
             return Ok(());
         }
-        let DVec2 { x, y } = self.inner();
+        let [x, y] = self.inner().to_array().map(|mm| (mm * 10.0).round() / 10.0);
         let what = format!("{width}x{height} is not as the page less its margins, {x} x {y} mm");
         let fits = format!("{}x{}", fitting[0], fitting[1]);
         Err(Error::setting(Setting::Size, what, message!["use ", Setting::Size.at(fits), ", or leave it out"]))

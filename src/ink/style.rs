@@ -156,7 +156,7 @@ pub struct Plot {
     #[serde(deserialize_with = "widths")]
     #[schemars(length(max = MOST_WIDTHS), inner(range(min = WIDTH[0], max = WIDTH[1])))]
     pub widths: Vec<f64>,
-    /// Whether every layer has marks in the corners, to lay the next one over it.
+    /// Whether every layer has marks in the corners, to lay the next one over it; not with a neatline, nor on plans.
     pub registration: bool,
     /// Speed of the pen on paper, mm/s.
     #[serde(deserialize_with = "speed")]

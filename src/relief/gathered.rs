@@ -1,4 +1,4 @@
-//! How much water gathers at a place, beside how much makes a channel.
+//! How much water gathers at a place, beside how much makes a channel; or that the sea lies there.
 //!
 //! Cost: that of finding all channels of the DEM. Of a DEM that stays in its file the land is taken in the blocks that its channels
 //! are found on.
@@ -11,13 +11,13 @@ use super::whole::{ChannelArea, Relief};
 use crate::dem::Dem;
 use crate::error::Result;
 
-/// Land from which water comes, square metres.
+/// What water comes to a place.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Gathered {
-    /// To a place, or one of the samples about it: the most.
-    pub here: f64,
-    /// To where channels begin.
-    pub channels: f64,
+pub(crate) enum Gathered {
+    /// All that comes: the place is of the sea.
+    Sea,
+    /// That of so much land, square metres: to the place, or one of the samples about it, the most; and to where channels begin.
+    Land { here: f64, channels: f64 },
 }
 
 impl Gathered {
@@ -40,10 +40,13 @@ impl Gathered {
             return Ok(None);
         }
         let sample = frame.index(nearest.to_array().map(|at| at as usize));
+        if relief.sea().has(sample) {
+            return Ok(Some(Self::Sea));
+        }
         let steps = AROUND.map(|[c, r]| r * frame.stride() as isize + c);
         let about = steps.into_iter().chain([0]).map(|step| relief.area().cells[sample.wrapping_add_signed(step)]);
         let cells = [about.max().unwrap_or(0), relief.channel_cells(channels)];
         let [here, channels] = cells.map(|cells| f64::from(cells) * frame.area());
-        Ok(Some(Self { here, channels }))
+        Ok(Some(Self::Land { here, channels }))
     }
 }

@@ -27,7 +27,8 @@ pub struct Camera {
 pub fn direction(towards: DVec3) -> Option<(f64, f64)> {
     let round = |degrees: f64| (degrees * 1e4).round() / 1e4;
     let level = towards.truncate().length();
-    let azimuth = round(towards.x.atan2(towards.y).to_degrees()).rem_euclid(360.0);
+    // Rounded last, so that it prints short.
+    let azimuth = round(towards.x.atan2(towards.y).to_degrees().rem_euclid(360.0)).rem_euclid(360.0);
     (towards.length() > 0.0).then(|| (azimuth, round(towards.z.atan2(level).to_degrees())))
 }
 
@@ -100,5 +101,21 @@ impl Camera {
     /// The page's map projection as two inward normals: see [`Self::frustum_of`].
     pub fn frustum(&self) -> Option<[DVec2; 2]> {
         self.frustum_of(DVec2::ZERO, DVec2::new(f64::from(self.width), f64::from(self.height)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn directions_print_short() {
+        for degrees in (0..3600).map(|tenth| f64::from(tenth) / 10.0 + 0.020_91) {
+            let (sin, cos) = degrees.to_radians().sin_cos();
+            let (azimuth, altitude) = direction(DVec3::new(sin, cos, 0.0)).expect("a direction");
+            assert!(azimuth.to_string().len() <= 8 && altitude == 0.0, "{azimuth}");
+            assert!((azimuth - degrees).abs() <= 0.5001e-4, "{azimuth} for {degrees}");
+        }
+        assert_eq!(direction(DVec3::new(-1e-9, 1.0, 0.0)), Some((0.0, 0.0)), "a full turn is none");
     }
 }

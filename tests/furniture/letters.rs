@@ -62,7 +62,7 @@ fn what_a_face_lacks_is_named() {
     assert_eq!(Face::Outlines.lacking("Όλυμπος, Эльбрус").expect("a font"), None);
     assert_eq!(Face::SingleStroke.lacking("Όλυμπος").expect("letters"), Some('Ό'));
     // All that texts of our own are made of.
-    let own = "From 0123456789.° N S E W, at −12 345 m looking from true grid north level up down · field of view heights × : ()";
+    let own = "From 0123456789.° N S E W, at −12 345 m looking from true grid north level up down · field of view heights × : () ″";
     let own = own.replace("12 345", "12\u{202f}345\u{a0}");
     assert!(FACES.iter().all(|face| face.lacking(&own).expect("a font").is_none()));
 }

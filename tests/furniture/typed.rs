@@ -89,6 +89,29 @@ fn on_a_page_margins_stay_blank_and_the_picture_makes_room() {
     // A size that went with the page no longer does, and the error says which does.
     let output = place.run(&[&page[..], &["--title", "HILL", "--size", "712x1056"]].concat());
     assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    let lengths =
+        |text: &str| text.split([' ', ';', ',']).filter_map(|word| word.parse::<f64>().ok()).collect::<Vec<_>>();
+    let said = stderr(&output);
+    let said = lengths(said.lines().last().expect("an error"));
+    assert!(said.len() == 2 && said.iter().all(|mm| mm.to_string().len() <= 5), "{said:?}");
+}
+
+#[test]
+fn a_neatline_takes_the_place_of_registration_marks() {
+    let place = Place::new();
+    let plotter = String::from_utf8(place.run(&["styles", "plotter"]).stdout).expect("text");
+    let unmarked = plotter.replace("registration = true", "registration = false");
+    assert!(unmarked != plotter, "{plotter}");
+    fs::write(place.path("marked.toml"), plotter).expect("a file");
+    fs::write(place.path("unmarked.toml"), unmarked).expect("a file");
+    let draw = |style: &str, more: &[&str]| {
+        let flags = ["draw", "hill.asc", "-o", "out.svg", "--size", "160x90", "--style", style];
+        let output = place.run(&[&flags[..], more].concat());
+        assert!(output.status.success(), "{}", stderr(&output));
+        places(&text(&place, "out.svg"), |_| true)
+    };
+    assert!(draw("marked.toml", &[]) != draw("unmarked.toml", &[]));
+    assert!(draw("marked.toml", &["--neatline"]) == draw("unmarked.toml", &["--neatline"]), "no mark beside a rule");
 }
 
 #[test]
@@ -100,6 +123,7 @@ fn what_cannot_be_set_is_refused_before_anything_is_drawn() {
     draw(&["--title", &long], "shorten it, or use a larger --page");
     draw(&["--title", "富士山"], "--title: the font of furniture has no `富` (U+5BCC); write it otherwise");
     draw(&["--title", "a\u{7}b"], "has no U+0007");
+    draw(&["--title", "\u{202e}RTL"], "has no U+202E;");
     draw(&["--title", "Όλυμπος", "--style", "plotter"], "pens write with have no `Ό`");
     draw(&["--credits=富", "--page", "A4"], "--credits: the font of furniture has no `富`");
     draw(&["--title", " "], "want some words");
@@ -159,12 +183,69 @@ fn credits_are_what_the_files_say() {
     assert!(said != draw("--credits=A hill · © Nobody 2021"), "and another letter is seen");
     thanked(&place, "");
     assert!(credits().is_empty());
-    assert!(draw("--credits") != said, "else name, samples and system");
+    let plain = draw("--credits");
+    assert!(
+        plain == draw("--credits=Terrain: hill.vrt · 40\u{a0}×\u{a0}40\u{a0}samples\u{a0}10\u{a0}m\u{a0}apart"),
+        "else of samples"
+    );
+    assert!(
+        plain != draw("--credits=Terrain: hill.vrt · 40\u{a0}×\u{a0}40\u{a0}samples\u{a0}11\u{a0}m\u{a0}apart"),
+        "which are told"
+    );
     thanked(&place, &item("TIFFTAG_COPYRIGHT", "富士"));
     let plan = ["draw", "hill.vrt", "-o", "q.svg", "--plan", "--scale", "1:5000", "--credits"];
     let output = place.run(&plan);
     let said = stderr(&output);
-    assert!(output.status.code() == Some(2) && said.contains("own words, --credits TEXT"), "{said}");
+    assert!(output.status.code() == Some(2) && said.contains("own words, --credits=TEXT"), "{said}");
+}
+
+/// Whether letters stand in one place, to a rounding of the sheet's size.
+fn are_alike(a: &[[f64; 2]], b: &[[f64; 2]]) -> bool {
+    let off = |(a, b): (&[f64; 2], &[f64; 2])| (a[0] - b[0]).abs().max((a[1] - b[1]).abs());
+    a.len() == b.len() && a.iter().zip(b).map(off).fold(0.0, f64::max) < 0.002
+}
+
+#[test]
+fn credits_count_the_samples_of_the_files() {
+    let place = Place::new();
+    thanked(&place, "");
+    let metres = text(&place, "hill.vrt");
+    let east = metres.replace("500000, 10, 0, 4000400, 0, -10", "500400, 10, 0, 4000400, 0, -10");
+    let degrees = metres.replace("500000, 10, 0, 4000400, 0, -10", "-113, .0001, 0, 37, 0, -.0001");
+    let degrees = degrees.replace("<GeoTransform>", "<SRS>EPSG:4326</SRS><GeoTransform>");
+    for (name, vrt) in [("east.vrt", east), ("degrees.vrt", degrees)] {
+        fs::write(place.path(name), vrt).expect("a file");
+    }
+    let draw = |dems: &[&str], credits: &str| {
+        let plan = ["-o", "p.svg", "--plan", "--scale", "1:5000", credits];
+        let output = place.run(&[&["draw"], dems, &plan].concat());
+        assert!(output.status.success(), "{}", stderr(&output));
+        places(&text(&place, "p.svg"), |group| group.contains("furniture"))
+    };
+    for (dems, wanted) in [
+        // Warped and cut, it is drawn with others.
+        (&["degrees.vrt"][..], "Terrain: degrees.vrt · 40 × 40 samples 0.36″ apart · WGS 84 (EPSG:4326)"),
+        (&["hill.vrt", "--crop", "500100,4000100,500300,4000300"], "Terrain: hill.vrt · 40 × 40 samples 10 m apart"),
+        (
+            &["hill.vrt", "east.vrt", "--crop", "500100,4000100,500600,4000300"],
+            "Terrain: hill.vrt and 1 more · 40 × 40 samples each, 10 m apart",
+        ),
+    ] {
+        let own = |text: &str| {
+            // Lines break between parts alone.
+            let parts: Vec<String> = text
+                .split(" · ")
+                .map(|part| match part.contains("samples") {
+                    true => part.replace(' ', "\u{a0}"),
+                    false => part.to_owned(),
+                })
+                .collect();
+            draw(dems, &format!("--credits={}", parts.join(" · ")))
+        };
+        let told = draw(dems, "--credits");
+        assert!(are_alike(&told, &own(wanted)), "{wanted}");
+        assert!(!are_alike(&told, &own(&wanted.replace("40 × 40", "40 × 41"))), "and another number is seen");
+    }
 }
 
 /// Drawings with furniture, a plan with other words, and one without.

@@ -9,6 +9,7 @@ use super::cause::LineAnswer;
 use super::found::{self, PickedPage};
 use super::place::{Located, Sighting, Slope, above_horizon, bearing};
 use super::station::Station;
+use super::trial::Trials;
 use super::{Answer, PickArguments, left_out};
 use crate::cache::Cache;
 use crate::cli::device::DeviceArguments;
@@ -105,7 +106,17 @@ pub(super) fn answer(
     let shown =
         PickedPage { illustration: &illustration, page: &page, lines: &lines, hidden: &hidden, drawn: &drawn, middle };
     let mut found = found::lines(&shown, &station)?;
-    found.extend(left_out::lines(arguments, &shown, &station, met.as_ref(), &surface, cache, talk)?);
+    let mut trials = Trials {
+        arguments,
+        illustration: &illustration,
+        renderer,
+        station: &station,
+        surface: &surface,
+        cache,
+        talk,
+        middle,
+    };
+    found.extend(left_out::lines(&shown, &station, met.as_ref(), &mut trials)?);
     surface.dem().check()?;
     talk.progress("drawing", 1.0);
     let toward = met.filter(|met| met.is_toward);

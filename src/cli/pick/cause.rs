@@ -3,7 +3,12 @@
 use serde::Serialize;
 
 use super::place::{HiddenBy, Located};
+use crate::cli::words::short;
 use crate::line::{Lack, Little};
+use crate::relief::Crease;
+
+/// What is finer shows as nothing, mm.
+pub(super) const FINEST: f64 = 0.005;
 
 /// A rule as it applied to a line.
 pub(super) enum Rule {
@@ -22,11 +27,15 @@ pub(super) enum Rule {
     /// It is a stream or a ridge under flat water.
     FlatWater,
     /// Nobody asked for its kind.
-    Creases(&'static str),
+    Creases(Crease),
     /// The border is not drawn.
     Border,
     /// So much land gathers water there, square metres, and channels begin with so much.
     ChannelArea { here: f64, channels: f64 },
+    /// So much land gathers water there, and that makes a channel, which was left out as too short or for lying in no valley.
+    Pruned { here: f64, channels: f64 },
+    /// The sea lies there, in which all water ends.
+    Sea,
     /// It is finer than the pens draw, or a dot that the style leaves out.
     Pens { weight: f64 },
     /// A pen would leave the margins.
@@ -62,10 +71,11 @@ impl Rule {
             Self::Length { .. } | Self::MinGap { .. } => "min-gap",
             Self::Hidden(_) => "hidden",
             Self::Detail(_) => "crease-detail",
-            Self::FlatWater => "flat-water",
+            Self::FlatWater | Self::Sea => "flat-water",
             Self::Creases(_) => "creases",
             Self::Border => "border",
             Self::ChannelArea { .. } => "channel-area",
+            Self::Pruned { .. } => "pruned",
             Self::Pens { .. } => "pens",
             Self::Margin => "margin",
             Self::Facing { .. } => "facing",
@@ -76,12 +86,20 @@ impl Rule {
         matches!(self, Self::Drawn { .. })
     }
 
+    /// Whether it is of a line, not of the land at the pixel.
+    pub(super) fn has_line(&self) -> bool {
+        !matches!(self, Self::ChannelArea { .. } | Self::Pruned { .. } | Self::Sea)
+    }
+
     /// What it says, numbers and all.
     pub(super) fn words(&self) -> String {
         match self {
-            Self::Drawn { layer, width_mm, faded: None, .. } => format!("drawn {width_mm:.2} mm wide in layer {layer}"),
+            Self::Drawn { layer, width_mm, faded: None, .. } => {
+                format!("drawn {} wide in layer {layer}", wide(*width_mm))
+            }
             Self::Drawn { layer, width_mm, faded: Some(rule), weight } => format!(
-                "drawn {width_mm:.2} mm wide in layer {layer}, faded to {:.0} %{}",
+                "drawn {} wide in layer {layer}, faded to {:.0} %{}",
+                wide(*width_mm),
                 weight * 100.0,
                 rule.words().trim_start_matches("left out")
             ),
@@ -107,13 +125,19 @@ impl Rule {
             Self::Hidden(None) => "hidden by nearer land".to_owned(),
             Self::Detail(lack) => format!("left out as too little for the page: {}", words_of(lack)),
             Self::FlatWater => "left out: it runs under flat water".to_owned(),
-            Self::Creases(name) => format!("left out: {name} are not among --creases"),
+            Self::Creases(crease) => format!("left out: {} are not among --creases", crease.name()),
             Self::Border => "left out by --border off".to_owned(),
             Self::ChannelArea { here, channels } => format!(
                 "no stream: water of {} gathers here, and by --channel-area channels begin with {}",
                 area(*here),
                 area(*channels)
             ),
+            Self::Pruned { here, channels } => format!(
+                "no stream: water of {} gathers here, and channels begin with {}, but this one is too short for a line, or lies in no valley",
+                area(*here),
+                area(*channels)
+            ),
+            Self::Sea => "no stream: the sea lies here, flat water at 0 m, in which all water ends".to_owned(),
             Self::Pens { weight } => {
                 format!("left out: at {:.0} % of its width it is finer than the pens of the style draw", weight * 100.0)
             }
@@ -146,13 +170,17 @@ impl Rule {
             Self::Detail(Lack { is, asked: [least, whole], .. }) => {
                 vec![("is", *is), ("least", *least), ("whole", *whole)]
             }
-            Self::ChannelArea { here, channels } => vec![("gathers_m2", *here), ("channel_area_m2", *channels)],
+            Self::ChannelArea { here, channels } | Self::Pruned { here, channels } => {
+                vec![("gathers_m2", *here), ("channel_area_m2", *channels)]
+            }
             Self::Pens { weight } => vec![("weight", *weight)],
             Self::Facing { degrees, nearest } => {
                 let off = nearest.as_ref().map(|(_, px)| ("nearest_px", *px));
                 degrees.map(|degrees| ("off_sight_degrees", degrees)).into_iter().chain(off).collect()
             }
-            Self::Hidden(None) | Self::FlatWater | Self::Creases(_) | Self::Border | Self::Margin => Vec::new(),
+            Self::Hidden(None) | Self::FlatWater | Self::Sea | Self::Creases(_) | Self::Border | Self::Margin => {
+                Vec::new()
+            }
         }
     }
 
@@ -164,7 +192,6 @@ impl Rule {
                 Some("a larger --size or a smaller --fov".to_owned())
             }
             Self::Border => Some("--border on".to_owned()),
-            Self::ChannelArea { here, .. } => Some(format!("--channel-area {:.0}m2", here.floor().max(1.0))),
             Self::Pens { .. } => Some("a --style with finer pens".to_owned()),
             Self::Margin => Some("a smaller --margin".to_owned()),
             _ => None,
@@ -184,14 +211,9 @@ fn words_of(Lack { what, is, asked: [least, whole] }: &Lack) -> String {
     format!("{begin} {is}{unit}; lines begin at {least} and are whole from {whole} on")
 }
 
-/// A number by its first three digits.
-pub(super) fn short(number: f64) -> String {
-    if number == 0.0 || !number.is_finite() {
-        return if number.is_finite() { "0".to_owned() } else { "endlessly much".to_owned() };
-    }
-    let decimals = (2.0 - number.abs().log10().floor()).clamp(0.0, 12.0) as usize;
-    let text = format!("{number:.decimals$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+/// A width in hundredths of a millimetre.
+fn wide(mm: f64) -> String {
+    if mm < FINEST { "under 0.01 mm".to_owned() } else { format!("{mm:.2} mm") }
 }
 
 fn area(square_metres: f64) -> String {

@@ -2,12 +2,13 @@
 
 use glam::{DVec2, DVec3};
 
-use super::cause::{LineAnswer, Rule, short};
-use super::remedy;
+use super::cause::{FINEST, LineAnswer, Rule};
+use super::remedy::{self, DRAWN};
 use super::station::Station;
+use crate::cli::words::short;
 use crate::error::Result;
 use crate::ink::{Drawing, InkedNear};
-use crate::line::{Chain, ChainPoint, Id, Line, Lines, Merit, Near, merits, near};
+use crate::line::{Chain, ChainPoint, Economy, Id, Line, Lines, Merit, Near, merits, near};
 use crate::render::{self, Illustration};
 use crate::surface::Met;
 
@@ -47,11 +48,10 @@ pub(super) struct Found {
 /// The lines that were found, drawn and left out.
 ///
 /// # Errors
-/// As [`Station::hides`].
+/// As [`Station::hides`] and [`Illustration::drawing`].
 pub(super) fn lines(page: &PickedPage, station: &Station) -> Result<Vec<Found>> {
     let PickedPage { illustration, lines, hidden, middle, .. } = page;
-    let px_per_mm = page.drawn.sheet.placement(illustration.frame).px_per_mm;
-    let stray = OFF_CHAIN + (illustration.style.wobble.reach + illustration.style.tolerance) * px_per_mm;
+    let stray = page.stray();
     let inks = page.drawn.inked_near(illustration.frame, *middle, REACH + stray);
     let near_lines = near(&lines.chains, *middle, REACH);
     let competing = match page.page.frame.plan.has_curves() {
@@ -66,13 +66,18 @@ pub(super) fn lines(page: &PickedPage, station: &Station) -> Result<Vec<Found>> 
     for near in &near_lines {
         let chain = &lines.chains[near.chain];
         let lowered = merit(near).and_then(|merit| page.lowered(near, merit));
-        let rule = match (stroke_of(&inks, chain.id, near.px + stray), lowered) {
+        let ink = stroke_of(&inks, chain.id, near.px + stray);
+        // Hachures are many, and those without width are told by none.
+        let ink = ink.filter(|ink| ink.width > 0.0 || near.point.line != Line::Hachure);
+        let rule = match (ink, lowered) {
+            // What is faded so far that nobody sees it is left out; where ends taper, it is drawn all the same.
+            (Some(ink), Some(rule)) if ink.width < FINEST && near.point.weight < DRAWN => Some((rule, false)),
             (Some(ink), faded) => Some((drawn(ink, faded, near.point.weight), covers(ink))),
             (None, Some(rule)) => Some((rule, false)),
             (None, None) => page.unstroked(near).map(|rule| (rule, false)),
         };
         let Some((rule, covers)) = rule else { continue };
-        let flags = remedy::flags(&rule, &competing, &illustration.economy, near.chain, near.point.place);
+        let flags = remedy::flags(&rule, page, &competing, near)?;
         found.push(Found::of(near, chain.id, covers, rule, flags));
     }
     for near in near(hidden, *middle, REACH) {
@@ -93,7 +98,7 @@ pub(super) fn lines(page: &PickedPage, station: &Station) -> Result<Vec<Found>> 
 
 /// The nearest stroke of a chain that far off.
 fn stroke_of<'a, 'd>(inks: &'a [InkedNear<'d>], chain: Option<Id>, px: f64) -> Option<&'a InkedNear<'d>> {
-    let of_chain = inks.iter().filter(|ink| ink.chain == chain && ink.px <= px && ink.width > 0.0);
+    let of_chain = inks.iter().filter(|ink| ink.chain == chain && ink.px <= px);
     of_chain.min_by(|a, b| a.px.total_cmp(&b.px))
 }
 
@@ -107,6 +112,24 @@ fn drawn(ink: &InkedNear, faded: Option<Rule>, weight: f32) -> Rule {
 }
 
 impl PickedPage<'_> {
+    /// How far off its chain a stroke may lie, px.
+    fn stray(&self) -> f64 {
+        let Illustration { style, frame, .. } = self.illustration;
+        let px_per_mm = self.drawn.sheet.placement(*frame).px_per_mm;
+        OFF_CHAIN + (style.wobble.reach + style.tolerance) * px_per_mm
+    }
+
+    /// Whether a stroke draws a chain at a place of the page, were economy another.
+    ///
+    /// # Errors
+    /// As [`Illustration::drawing`].
+    pub(super) fn draws(&self, economy: Economy, chain: Option<Id>, place: DVec2) -> Result<bool> {
+        let illustration = Illustration { economy, ..self.illustration.clone() };
+        let (_, drawn) = illustration.drawing(self.page)?;
+        let inks = drawn.inked_near(illustration.frame, place, self.stray());
+        Ok(stroke_of(&inks, chain, self.stray()).is_some())
+    }
+
     /// Which rule lowers the weight of a line most, if one does.
     fn lowered(&self, near: &Near, merit: &Merit) -> Option<Rule> {
         let economy = &self.illustration.economy;
@@ -131,7 +154,6 @@ impl PickedPage<'_> {
     /// Why no stroke draws a line that has weight.
     fn unstroked(&self, near: &Near) -> Option<Rule> {
         let ChainPoint { place, weight, line, .. } = near.point;
-        // Hachures are many, and those without width are told by none.
         if weight <= 0.0 || line == Line::Hachure {
             return None;
         }
@@ -153,7 +175,7 @@ impl Found {
         match &self.rule {
             _ if self.covers => (0, self.px),
             Rule::Hidden(_) => (2, self.px),
-            Rule::ChannelArea { .. } => (4, 0.0),
+            rule if !rule.has_line() => (4, 0.0),
             _ => (1, self.px),
         }
     }
@@ -182,18 +204,18 @@ pub(super) fn told(
     let mut says_facing = !found.iter().any(|found| found.rank().0 < 2 && !found.line.is_of_land());
     for (found, _) in found.iter().zip(firsts).filter(|(_, is_first)| *is_first) {
         if says_facing && found.rank().0 >= 2 {
-            answers.push(facing(page, land));
+            answers.push(facing(page, station, land));
             says_facing = false;
         }
         answers.push(answer(found, page, station)?);
     }
-    answers.extend(says_facing.then(|| facing(page, land)));
+    answers.extend(says_facing.then(|| facing(page, station, land)));
     Ok(answers)
 }
 
 fn answer(found: &Found, page: &PickedPage, station: &Station) -> Result<LineAnswer> {
     let Found { line, id, px, world, rule, flags, .. } = found;
-    let has_place = !matches!(rule, Rule::ChannelArea { .. });
+    let has_place = rule.has_line();
     let kind = kind(*line, &page.lines.own);
     let called = called(*line, *id, &page.lines.own);
     let remedy = match (rule.is_drawn(), flags) {
@@ -203,7 +225,7 @@ fn answer(found: &Found, page: &PickedPage, station: &Station) -> Result<LineAns
     };
     let words = match has_place {
         true => format!("{called}, {} px off: {}{remedy}", short((px * 100.0).round() / 100.0), rule.words()),
-        false => format!("{kind}: {}{}", rule.words(), remedy.replace("draws it", "begins one here")),
+        false => format!("{kind}: {}{}", rule.words(), remedy.replace("draws it", "draws one here")),
     };
     Ok(LineAnswer {
         kind: Some(kind),
@@ -220,9 +242,8 @@ fn answer(found: &Found, page: &PickedPage, station: &Station) -> Result<LineAns
 }
 
 /// That no silhouette is there, and why.
-fn facing(page: &PickedPage, land: Option<&Met>) -> LineAnswer {
-    let ray = page.page.perspective.unproject(page.middle, page.page.perspective.near()) - page.page.perspective.eye();
-    let degrees = land.map(|met| met.normal.dot(ray.normalize()).abs().min(1.0).asin().to_degrees());
+fn facing(page: &PickedPage, station: &Station, land: Option<&Met>) -> LineAnswer {
+    let degrees = land.map(|met| station.off_sight(met));
     let bounds = near(&page.lines.chains, page.middle, f64::INFINITY);
     let bounds = bounds.into_iter().filter(|near| !near.point.line.is_of_land() && near.point.weight > 0.0);
     let nearest = bounds.min_by(|a, b| a.px.total_cmp(&b.px));

@@ -1,39 +1,36 @@
 //! Lines that were never found for a drawing, since a rule left them out before: creases that the page does not show or nobody asked
 //! for, the border, streams of too little land.
 
-use std::sync::Arc;
-
 use glam::{DVec2, DVec3};
 
-use super::PickArguments;
 use super::cause::Rule;
 use super::found::{Found, PickedPage, REACH};
 use super::place::HiddenBy;
 use super::station::Station;
-use crate::cache::Cache;
-use crate::cli::talk::Talk;
+use super::trial::Trials;
 use crate::error::Result;
 use crate::line::detail::From;
 use crate::line::near::share_nearest;
 use crate::line::{Land, Line};
 use crate::plan::Border;
-use crate::relief::{Crease, Gathered, LandWanted, LineKind};
+use crate::relief::{Crease, Gathered, LandWanted, LineKind, spacing};
+use crate::surface::Met;
 use crate::surface::rim::rim;
-use crate::surface::{Met, Surface};
 use crate::view::Perspective;
+
+/// A line of the land that runs within so many samples of a place may be that of the water there.
+const BESIDE: f64 = 2.0;
 
 /// The lines of an answer, beside those that were found.
 ///
 /// # Errors
-/// As [`LandArguments::land`](crate::cli::land::LandArguments::land), [`rim`] and [`Gathered::at`].
+/// As [`LandArguments::land`](crate::cli::land::LandArguments::land), [`rim`],
+/// [`Gathered::at`] and [`Trials::with_crease`].
 pub(super) fn lines(
-    arguments: &PickArguments,
     page: &PickedPage,
     station: &Station,
     met: Option<&Met>,
-    surface: &Arc<Surface>,
-    cache: &Cache,
-    talk: &Talk,
+    trials: &mut Trials,
 ) -> Result<Vec<Found>> {
     let plan = &page.page.frame.plan;
     let mut found = border(page, station).unwrap_or_else(|| Ok(Vec::new()))?;
@@ -41,22 +38,46 @@ pub(super) fn lines(
         return Ok(found);
     }
     let asked = &page.illustration.land;
-    let exaggeration = arguments.drawing.exaggeration;
+    let (drawing, surface) = (&trials.arguments.drawing, trials.surface);
     // Shores are looked for among samples in memory.
     let known = Crease::ALL.into_iter().filter(|crease| *crease != Crease::Shores || !surface.dem().is_filed());
     let all = LandWanted { creases: known.collect(), slopes: None, ..asked.clone() };
-    let remote = arguments.terrain.allows_remote();
-    let land = arguments.drawing.land.land(&all, surface, exaggeration, remote, cache, &talk.hushed())?;
+    let remote = trials.arguments.terrain.allows_remote();
+    let land = drawing.land.land(&all, surface, drawing.exaggeration, remote, trials.cache, &trials.talk.hushed())?;
     found.extend(creases(&land, page, station)?);
-    let is_asked = asked.creases.contains(&Crease::Drainage);
-    if let Some(met) = met.filter(|_| is_asked && !found.iter().any(|found| found.line == Line::Drainage)) {
-        let at = surface.dem().grid_place(met.place.truncate());
-        let gathered = Gathered::at(surface.dem(), exaggeration, asked.channel_area, at)?;
-        if let Some(Gathered { here, channels }) = gathered.filter(|gathered| gathered.here < gathered.channels) {
-            found.push(of(Line::Drainage, 0.0, met.place, Rule::ChannelArea { here, channels }));
+    for crease in Crease::ALL {
+        let of_kind =
+            found.iter_mut().filter(|found| matches!(found.rule, Rule::Creases(unasked) if unasked == crease));
+        // Of each kind the nearest is told.
+        if let Some(nearest) = of_kind.min_by(|a, b| a.px.total_cmp(&b.px)) {
+            nearest.flags = trials.with_crease(crease, nearest.line, nearest.px)?;
         }
     }
+    let is_asked = asked.creases.contains(&Crease::Drainage);
+    if let Some(met) = met.filter(|_| is_asked && !found.iter().any(|found| found.line == Line::Drainage)) {
+        found.extend(no_stream(&land, page, trials, met)?);
+    }
     Ok(found)
+}
+
+/// Why no stream runs where land was met; `None` where one runs beside.
+fn no_stream(land: &Land, page: &PickedPage, trials: &mut Trials, met: &Met) -> Result<Option<Found>> {
+    let (dem, exaggeration) = (trials.surface.dem(), trials.arguments.drawing.exaggeration);
+    let at = dem.grid_place(met.place.truncate());
+    let is_beside = || {
+        let mut streams = land.iter().filter(|(line, _)| line.kind == LineKind::Drainage);
+        streams.any(|(line, _)| line.points.iter().any(|point| point.at.distance(at) < BESIDE * spacing(dem) as f64))
+    };
+    let gathered = Gathered::at(dem, exaggeration, page.illustration.land.channel_area, at)?;
+    let (rule, flags) = match gathered {
+        Some(Gathered::Sea) => (Rule::Sea, None),
+        Some(Gathered::Land { here, channels }) if here < channels => {
+            (Rule::ChannelArea { here, channels }, trials.with_channels(here, channels)?)
+        }
+        Some(Gathered::Land { here, channels }) if !is_beside() => (Rule::Pruned { here, channels }, None),
+        Some(Gathered::Land { .. }) | None => return Ok(None),
+    };
+    Ok(Some(Found { flags, ..of(Line::Drainage, 0.0, met.place, rule) }))
 }
 
 /// A line that has no chain.
@@ -88,7 +109,8 @@ fn border(page: &PickedPage, station: &Station) -> Option<Result<Vec<Found>>> {
     })
 }
 
-/// Lines of the land about the pixel that were left out before anybody looked whether the eye sees them, and those that it does not.
+/// Lines of the land about the pixel that were left out before anybody looked whether the eye sees them, and those that it does not;
+/// those that nobody asked for without flags.
 fn creases(land: &Land, page: &PickedPage, station: &Station) -> Result<Vec<Found>> {
     let perspective = &page.page.perspective;
     let from = From::Eye(perspective.eye(), perspective.focal());
@@ -101,26 +123,19 @@ fn creases(land: &Land, page: &PickedPage, station: &Station) -> Result<Vec<Foun
         let nearest = pairs.filter_map(near).min_by(|a, b| a.0.0.total_cmp(&b.0.0));
         let Some(((px, place), pair)) = nearest else { continue };
         let (kind, asked_for) = named(line.kind);
-        let is_asked = asked_for.is_none_or(|crease| page.illustration.land.creases.contains(&crease));
+        let unasked = asked_for.filter(|crease| !page.illustration.land.creases.contains(crease));
         let is_shown = pair.iter().any(|i| shown[number].get(*i).is_some_and(|weight| *weight > 0.0));
         let is_seen = is_seen(station, place)?;
         let lack = || land.lack(number, pair[0], from);
-        let rule = match (is_asked, is_shown, is_seen) {
-            (true, true, false) => Rule::Hidden(hidden_by(station, place)?),
-            (true, false, true) => lack().map_or(Rule::FlatWater, Rule::Detail),
-            (false, true, true) => Rule::Creases(asked_for.map_or("", Crease::name)),
+        let rule = match (unasked, is_shown, is_seen) {
+            (None, true, false) => Rule::Hidden(hidden_by(station, place)?),
+            (None, false, true) => lack().map_or(Rule::FlatWater, Rule::Detail),
+            (Some(crease), true, true) => Rule::Creases(crease),
             // What is shown and seen was found; what no page shows is not worth a word.
-            (true, true, true) | (true, false, false) | (false, ..) => continue,
+            (None, true, true) | (None, false, false) | (Some(_), ..) => continue,
         };
-        let flags = match rule {
-            // Of what lies on the land nothing is drawn that is hidden.
-            Rule::Hidden(_) => None,
-            Rule::Creases(name) => {
-                let drawn = page.illustration.land.creases.iter().map(|crease| crease.name());
-                Some(format!("--creases {}", drawn.chain([name]).collect::<Vec<_>>().join(",")))
-            }
-            _ => rule.flags(),
-        };
+        // Of what lies on the land nothing is drawn that is hidden.
+        let flags = if let Rule::Hidden(_) = rule { None } else { rule.flags() };
         found.push(Found { flags, ..of(kind, px, place, rule) });
     }
     Ok(found)

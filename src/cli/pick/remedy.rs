@@ -1,18 +1,23 @@
 //! Flags under which economy draws a line that it left out: tried before they are told.
 
-use glam::DVec2;
-
-use super::cause::{Rule, short};
-use crate::line::{Chain, Economy, economised, near};
+use super::cause::Rule;
+use super::found::PickedPage;
+use crate::cli::words::short;
+use crate::error::Result;
+use crate::line::{Chain, Economy, Near, economised, near};
 
 /// A line that has these shares of its weight is drawn, and drawn whole.
-const DRAWN: f32 = 0.1;
+pub(super) const DRAWN: f32 = 0.1;
 const WHOLE: f32 = 0.99;
 /// How far a line may lie from where it was seen, px: it has more points or fewer.
-const SAME: f64 = 1.0;
+pub(super) const SAME: f64 = 1.0;
 
-/// The flags, by the rule that left the line out or faded it: the least change first, none of the two rules last.
-pub(super) fn flags(rule: &Rule, chains: &[Chain], economy: &Economy, number: usize, place: DVec2) -> Option<String> {
+/// The flags, by the rule that left a line of those that compete out or faded it: the least change first, none of the two rules last.
+///
+/// # Errors
+/// As [`PickedPage::draws`].
+pub(super) fn flags(rule: &Rule, page: &PickedPage, chains: &[Chain], line: &Near) -> Result<Option<String>> {
+    let economy = &page.illustration.economy;
     let (rule, enough) = match rule {
         Rule::Drawn { faded: Some(rule), .. } => (&**rule, WHOLE),
         rule => (rule, DRAWN),
@@ -24,15 +29,22 @@ pub(super) fn flags(rule: &Rule, chains: &[Chain], economy: &Economy, number: us
         }
         Rule::Length { length, .. } => vec![of_gap(down(length / 4.0)), of_gap(0.0)],
         Rule::MinGap { apart, .. } => vec![of_gap(down(apart / 2.5)), of_gap(0.0)],
-        _ => return None,
+        _ => return Ok(None),
     };
     let both = Economy { min_jump: 0.0, min_gap: 0.0 };
-    let draws = |economy: &Economy| {
+    let (number, place) = (line.chain, line.point.place);
+    let leaves_enough = |economy: &Economy| {
         let weighed = economised(chains, economy);
         let there = near(&weighed[number..=number], place, SAME);
         there.iter().any(|near| near.point.weight >= enough)
     };
-    tries.into_iter().chain([both]).find(draws).map(|draws| typed(&draws, economy))
+    for new in tries.into_iter().chain([both]).filter(leaves_enough) {
+        // Pens may be too broad all the same.
+        if page.draws(new, chains[number].id, place)? {
+            return Ok(Some(typed(&new, economy)));
+        }
+    }
+    Ok(None)
 }
 
 /// What of one economy is to be typed to come from another.
@@ -46,7 +58,7 @@ fn typed(new: &Economy, old: &Economy) -> String {
 }
 
 /// A number rounded down to two digits: as it is typed.
-fn down(number: f64) -> f64 {
+pub(super) fn down(number: f64) -> f64 {
     let scale = 10_f64.powf(1.0 - number.max(f64::MIN_POSITIVE).log10().floor());
     let rounded = (number * scale).floor() / scale;
     if rounded.is_finite() { rounded } else { 0.0 }

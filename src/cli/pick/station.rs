@@ -153,6 +153,14 @@ impl<'a> Station<'a> {
         })
     }
 
+    /// Degrees between the land where a ray met it and the line of sight to there.
+    pub(super) fn off_sight(&self, met: &Met) -> f64 {
+        // As in `sighting` and in `slope`.
+        let way = (met.place - self.perspective.eye()) * DVec3::new(1.0, 1.0, self.exaggeration.recip());
+        let normal = met.normal * DVec3::new(1.0, 1.0, self.exaggeration);
+        normal.normalize().dot(way.normalize()).abs().min(1.0).asin().to_degrees()
+    }
+
     /// The view that it is of.
     pub(super) fn view_report(&self) -> ViewReport {
         ViewReport::of(self.view, self.surface.dem().georeference(), self.exaggeration)

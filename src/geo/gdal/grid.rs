@@ -7,7 +7,7 @@ use glam::{DAffine2, DMat2, DVec2};
 
 use super::source::{Source, heard};
 use super::{crs, labels};
-use crate::dem::{Crs, History, Window};
+use crate::dem::{Crs, FileSamples, History, Window};
 use crate::error::{Error, Result, Setting, shown};
 use crate::message;
 
@@ -104,6 +104,11 @@ impl GeoGrid {
     pub(super) fn is_north_up(&self) -> bool {
         let m = self.to_crs.matrix2;
         m.x_axis.y == 0.0 && m.y_axis.x == 0.0 && m.x_axis.x > 0.0 && m.y_axis.y < 0.0
+    }
+
+    /// What the file has.
+    pub(super) fn samples(&self) -> FileSamples {
+        FileSamples { size: Some([self.columns, self.rows]), cell: Some(self.cell()), crs: Some(self.crs.clone()) }
     }
 
     /// Lengths of the steps along a row and down a column, in units of the CRS.

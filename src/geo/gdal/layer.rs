@@ -229,7 +229,9 @@ impl Placed {
         if let Some(member) = &source.member {
             history.convert(format!("{member} is taken of the archive, its only raster"));
         }
-        let grid = upright(GeoGrid::of(&source, options.cell, alone, history)?, like, history);
+        let grid = GeoGrid::of(&source, options.cell, alone, history)?;
+        history.sample(grid.samples());
+        let grid = upright(grid, like, history);
         let (grid, transposed) = grid.transposed().map_or((grid, false), |grid| (grid, true));
         if transposed {
             history.convert("rows are read for columns, north up");

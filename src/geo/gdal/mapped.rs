@@ -9,6 +9,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use gdal::errors::Result as GdalResult;
 use gdal::raster::RasterCreationOptions;
+use gdal::spatial_ref::SpatialRef;
 use gdal::vector::{Feature, Geometry, LayerAccess, LayerOptions, OGRFieldType, OGRwkbGeometryType};
 use gdal::{Dataset, DriverManager, config, vsi};
 
@@ -28,6 +29,8 @@ const FIELDS: [(&str, OGRFieldType::Type); 6] = [
     ("depth", OGRFieldType::OFTReal),
     ("length", OGRFieldType::OFTReal),
 ];
+/// Of a map that nobody names: as GeoPackage calls it, by which GDAL knows it.
+const UNKNOWN: &str = r#"LOCAL_CS["Undefined Cartesian SRS",UNIT["metre",1]]"#;
 /// GDAL's option for the time that a GeoPackage holds, and that time.
 const TIME: [&str; 2] = ["OGR_CURRENT_DATE", "2000-01-01T00:00:00.000Z"];
 
@@ -71,10 +74,10 @@ fn make(path: &Path, format: MapFormat, crs: &Crs, lines: &[MapLine]) -> GdalRes
 }
 
 fn fill(file: &mut Dataset, crs: &Crs, of_layer: &[&str], lines: &[MapLine]) -> GdalResult<()> {
-    let reference = crs.reference();
+    // Without a word GDAL takes coordinates for degrees.
+    let reference = crs.reference().map_or_else(|| SpatialRef::from_wkt(UNKNOWN), Ok)?;
     let ty = OGRwkbGeometryType::wkbLineString25D;
-    let layer =
-        file.create_layer(LayerOptions { name: LAYER, srs: reference.as_ref(), ty, options: Some(of_layer) })?;
+    let layer = file.create_layer(LayerOptions { name: LAYER, srs: Some(&reference), ty, options: Some(of_layer) })?;
     layer.create_defn_fields(&FIELDS)?;
     let fields = FIELDS.iter().map(|(name, _)| layer.defn().field_index(name)).collect::<GdalResult<Vec<_>>>()?;
     for line in lines {

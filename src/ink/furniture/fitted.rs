@@ -1,6 +1,6 @@
 //! A text set so that it fits a width.
 
-use crate::error::{Error, Message, Result, Setting};
+use crate::error::{Error, Message, Result, Setting, is_unprintable};
 use crate::ink::letters::{Face, Lettering};
 use crate::message;
 
@@ -88,7 +88,7 @@ fn too_long(setting: Setting, text: &str, long: f64, least: f64, width: f64, lin
 /// The error for a letter that is not in the face, named so that it is known even where a terminal does not show it.
 fn lacks(setting: Setting, letter: char, face: Face) -> Error {
     let code = format!("U+{:04X}", u32::from(letter));
-    let named = if letter.is_control() || letter.is_whitespace() { code } else { format!("`{letter}` ({code})") };
+    let named = if is_unprintable(letter) || letter.is_whitespace() { code } else { format!("`{letter}` ({code})") };
     let which = match face {
         Face::Outlines => "the font of furniture has no",
         Face::SingleStroke => "the single strokes that pens write with have no",

@@ -36,7 +36,7 @@ use sizes::Sizes;
 /// Lines that a view line or credits may take.
 const LINES: usize = 2;
 /// A view line as long as most are, by which room is made for it before there is one.
-const LONG: &str = "From 00.0000° N, 000.0000° W at 0000 m, looking 000.0° from true north, 00° down · field of view 00.0° · heights × 00";
+const LONG: &str = "From 00.0000° N, 000.0000° W at 0000 m, looking 000.0° from true north, 00.0° down · field of view 00.0° · heights × 00";
 
 /// What is wanted.
 #[derive(Debug, Clone, PartialEq, Default)]
