@@ -121,7 +121,7 @@ fn afflict(gpu: &Gpu) {
     static WAITS: AtomicU32 = AtomicU32::new(0);
     let fault = std::env::var(FAULT).expect("a fault");
     let (what, at) = fault.split_once(' ').expect("what and when");
-    if WAITS.fetch_add(1, Ordering::SeqCst) != at.parse().expect("a number") {
+    if WAITS.fetch_add(1, Ordering::SeqCst) != at.parse::<u32>().expect("a number") {
         return;
     }
     match what {
