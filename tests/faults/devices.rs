@@ -145,14 +145,14 @@ fn child_has_a_fault() {
     std::process::exit(if code == std::process::ExitCode::SUCCESS { 0 } else { 1 });
 }
 
-/// The waits at which something happens: all that a drawing has are about 40.
+/// The waits at which something happens: of a drawing there are some 15 to 40, by the pace of the device, and never the last.
 const STAGES: [u32; 6] = [0, 2, 5, 11, 23, 1000];
 
 /// What is said of it, from the beginning and at the end.
 const WORDS: [&str; 2] = ["error: the GPU was lost: ", "; try again, or use `--adapter cpu`"];
 
-/// Draws with a fault at every stage: what is drawn is whole, else nothing is there. Says how often it was drawn.
-fn drawn_with(fault: &str) -> usize {
+/// Draws with a fault at every stage: what is drawn is whole, else nothing is there.
+fn draws_with(fault: &str) {
     let place = Place::new();
     let draw = [&DRAW[..], &["--hachures", "none"]].concat();
     std::fs::create_dir_all(place.path("out")).expect("a folder");
@@ -171,24 +171,24 @@ fn drawn_with(fault: &str) -> usize {
         assert!(made.is_empty(), "{about}: {} files", made.len());
         false
     });
-    ends.into_iter().filter(|drawn| *drawn).count()
+    assert!(!ends[0] && ends[5] && ends.is_sorted(), "what comes after the end alone changes nothing: {ends:?}");
 }
 
 #[test]
 fn a_driver_that_hangs_at_any_stage_ends_the_process_with_75() {
-    assert_eq!(drawn_with("hangs"), 1, "what comes after the end alone changes nothing");
+    draws_with("hangs");
 }
 
 #[test]
 fn a_device_that_is_lost_at_any_stage_ends_the_process_with_75() {
-    assert_eq!(drawn_with("lost"), 1, "what comes after the end alone changes nothing");
+    draws_with("lost");
 }
 
 #[test]
 fn a_flight_goes_on_where_its_device_was_lost() {
     let (place, whole) = (Place::new(), crate::fly::undisturbed());
     let flight = fly("flown/%05d.png", &["--hachures", "none"]);
-    for fault in ["lost 60", "hangs 90"] {
+    for fault in ["lost 20", "hangs 40"] {
         ended(&faulty(&place, fault, &flight), 75, &WORDS[..1], fault);
         let made = frames(&place.path("flown"));
         assert!(made.len() < whole.len(), "{fault}");

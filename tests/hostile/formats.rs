@@ -83,7 +83,7 @@ fn mutate(bytes: &mut Vec<u8>, others: &[Vec<u8>], random: &mut Random) {
                 let pieces: Vec<Vec<u8>> = bytes.split_inclusive(|byte| *byte == mark).map(<[u8]>::to_vec).collect();
                 let Some(piece) = pieces.get(random.below(pieces.len().max(1) as u32) as usize) else { continue };
                 let to = random.below(pieces.len() as u32 + 1) as usize;
-                *bytes = [&pieces[..to], &[piece.clone()], &pieces[to..]].concat().concat();
+                *bytes = [&pieces[..to], std::slice::from_ref(piece), &pieces[to..]].concat().concat();
             }
             6 => {
                 let other = &others[random.below(others.len() as u32) as usize];

@@ -87,7 +87,7 @@ pub(super) fn answer(
     let remote = arguments.terrain.allows_remote();
     let illustration = drawing.illustration(arguments.view.typed_size(), Wanted::Drawing, false, remote)?;
     check_pixel(pixel, illustration.frame)?;
-    let surface = Arc::new(scene::surface(&arguments.terrain, reading, &cache, talk)?);
+    let surface = Arc::new(scene::surface(&arguments.terrain, reading, cache, talk)?);
     let gpu = scene::prepare_and_open(&surface, cache, &arguments.device, talk)?;
     let view = scene::look(&arguments.view, drawing, &surface, illustration.frame, talk)?;
     let land = scene::land(drawing, &illustration.land, &arguments.terrain, &surface, cache, talk)?;

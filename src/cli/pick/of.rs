@@ -67,7 +67,7 @@ pub(super) fn answer(
     let drawing = &arguments.drawing;
     let remote = arguments.terrain.allows_remote();
     let illustration = drawing.illustration(arguments.view.typed_size(), Wanted::Drawing, false, remote)?;
-    let surface = scene::surface(&arguments.terrain, reading, &cache, talk)?;
+    let surface = scene::surface(&arguments.terrain, reading, cache, talk)?;
     scene::prepare(&surface, cache, talk)?;
     let view = scene::look(&arguments.view, drawing, &surface, illustration.frame, talk)?;
     let station = Station::new(&surface, &view, drawing.exaggeration, drawing.level.told());
