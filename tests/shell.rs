@@ -161,8 +161,8 @@ fn completions_and_man_pages_hold_every_flag() {
             .chain(["hachure.1".to_owned()])
             .collect::<Vec<_>>()
     );
-    let names =
-        ["draw", "fly", "batch", "merge", "compare", "pick", "cache", "styles", "info"].map(|name| format!("-{name}"));
+    let names = ["draw", "fly", "batch", "merge", "compare", "stress", "pick", "cache", "styles", "info"]
+        .map(|name| format!("-{name}"));
     let files = [""].into_iter().chain(names.iter().map(String::as_str)).map(|name| format!("hachure{name}.1"));
     let files = files.map(|name| fs::read_to_string(place.path(&name)).expect("a page")).collect::<String>();
     assert_eq!(files.replace("\\-", "-"), pages);
