@@ -105,7 +105,10 @@ impl Gpu {
         let slot = failure.clone();
         device.on_uncaptured_error(Arc::new(move |e: wgpu::Error| note(&slot, one_line(&e))));
         let slot = lost.clone();
-        device.set_device_lost_callback(move |_, message| note(&slot, message));
+        device.set_device_lost_callback(move |_, message| {
+            let words = one_line(&message);
+            note(&slot, if words.is_empty() { "its driver does not say why".to_owned() } else { words });
+        });
         let info = device.adapter_info();
         let pace = Pace::new(info.device_type == wgpu::DeviceType::Cpu);
         Ok(Self { device, queue, info, int64, clock, pace, compiled: Compiled::default(), failure, lost })

@@ -14,7 +14,7 @@ use super::{DRAW, files, undisturbed};
 use crate::cli::{Place, stderr};
 
 /// Moments of a run at which it is ended.
-const MOMENTS: u32 = 3;
+const MOMENTS: u32 = 2;
 
 /// Files by their paths.
 type Files = Vec<(String, Vec<u8>)>;

@@ -9,6 +9,8 @@
 //!
 //! libFuzzer, which looks for what has not been reached yet, goes the same ways: see `tests/fuzz/README.md`.
 
+#![cfg(unix)]
+
 #[path = "../fuzz/formats.rs"]
 mod ways;
 
@@ -132,9 +134,10 @@ impl Began {
 
 /// What this process had of the cores.
 fn work() -> Duration {
-    // SAFETY: it reads a clock.
-    let ticks = unsafe { libc::clock() };
-    Duration::from_secs_f64(ticks as f64 / 1e6)
+    let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
+    // SAFETY: it writes the two numbers of a time.
+    assert_eq!(unsafe { libc::clock_gettime(libc::CLOCK_PROCESS_CPUTIME_ID, &mut time) }, 0);
+    Duration::new(time.tv_sec as u64, time.tv_nsec as u32)
 }
 
 /// Ends the process where a file takes too long.
