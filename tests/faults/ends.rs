@@ -57,7 +57,7 @@ fn list(place: &Place) {
         format!("[[drawing]]\ndem = \"hill.asc\"\noutput = [\"out/{name}.png\", \"out/{name}.pdf\"]\n{look}\n\n")
     };
     let small = "size = \"160x90\"\nhachures = \"none\"";
-    let list = [drawing("a", small), drawing("b", "plan = true\nscale = \"1:5000\""), drawing("c", small)].concat();
+    let list = [drawing("a", small), drawing("b", "plan = true\nscale = \"1:5000\"")].concat();
     fs::write(place.path("list.toml"), list).expect("a list");
 }
 
