@@ -234,9 +234,10 @@ fn info_says_how_many_patches_fold_and_where() {
         let lines = text.lines().filter(|line| line.starts_with("folds ") || line.starts_with("limited "));
         lines.map(str::to_owned).collect::<Vec<_>>()
     };
-    let gentle = told(&[]);
+    assert_eq!(told(&[]), Vec::<String>::new(), "it takes a look at the whole DEM, for which nobody asked");
+    let gentle = told(&["--folds"]);
     assert!(gentle.len() == 1 && gentle[0].ends_with(": none"), "{gentle:?}");
-    let stiff = told(&["--exaggeration", "5", "--limit-folds"]);
+    let stiff = told(&["--folds", "--exaggeration", "5", "--limit-folds"]);
     assert!(stiff.len() == 2 && stiff[0].contains("the worst in the cell at column"), "{stiff:?}");
     assert!(stiff[1].contains(" m at most") && stiff[1].ends_with("; 0 folds are left"), "{stiff:?}");
 }

@@ -7,7 +7,7 @@ use hachure::geo::{ReadOptions, read};
 use hachure::ink::{Sheet, Style};
 use hachure::line::{Chain, ChainPoint, Land};
 use hachure::plan::{Curves, LandLines, Plan};
-use hachure::relief::{ChannelArea, LineKind, Relief, SurfaceLine, SurfacePoint};
+use hachure::relief::{ChannelArea, LineKind, Relief, SurfaceLine, SurfacePoint, append};
 use hachure::render::Renderer;
 use hachure::surface::Surface;
 use hachure::view::{Camera, Fixed, Perspective, choose};
@@ -103,11 +103,7 @@ fn lines_on_the_land_do_not_pop() {
     let camera = choose(surface.dem(), Fixed::default(), 60.0, 640, 360).expect("a view");
     let relief = Relief::of(surface.dem(), 1.0).expect("flow");
     let mut lines = relief.drainage(ChannelArea::Auto);
-    let before = lines.len() as u32;
-    lines.extend(relief.ridges().expect("ridges").into_iter().map(|line| {
-        let joins = line.joins.map(|[onto, at]| [onto + before, at]);
-        SurfaceLine { joins, ..line }
-    }));
+    append(&mut lines, relief.ridges().expect("ridges"));
     let renderer = |lines: Vec<SurfaceLine>| {
         let mut renderer = Renderer::new(gpu().clone(), surface.clone()).expect("a renderer");
         renderer.set_land(Some(Arc::new(Land::new(surface.dem(), 1.0, lines).expect("lines"))));

@@ -177,7 +177,7 @@ fn samples_that_stay_in_their_files_are_the_held_ones() {
     let surfaces = [held, filed].map(|dem| Arc::new(Surface::new(dem)));
     let [west, south, east, north] = surfaces[0].dem().extent();
     let eye = DVec3::new((west + east) / 2.0, south + 300.0, 480.0);
-    let camera = look(eye, DVec3::new(west + 0.4 * (east - west), north, 380.0), 60.0, [160, 90]);
+    let camera = look(eye, DVec3::new(west + 0.4 * (east - west), north, 380.0), 60.0, [640, 360]);
     let plan = Plan::new(Detail::Adaptive { error_px: 1.0 }, Method::Walk, Border::On);
     let pages = surfaces.each_ref().map(|surface| Planned::new(gpu(), surface, plan).bytes(&camera));
     assert!(pages[0] == pages[1], "another picture");

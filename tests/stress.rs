@@ -2,4 +2,5 @@
 
 mod broken;
 mod registry;
+mod rims;
 mod runs;

@@ -11,6 +11,7 @@ use std::sync::Arc;
 use super::cache::CacheArguments;
 use super::device::DeviceArguments;
 use super::draw::DrawArguments;
+use super::folds::FoldsInView;
 use super::jobs::JobArguments;
 use super::listing;
 use super::plan::{self, Planned};
@@ -222,7 +223,8 @@ impl Studio<'_> {
         };
         renderer.set_land(land);
         let page = renderer.page(&illustration.plan, &view.camera, |_| ())?;
-        entry.draw.warn_of_page(renderer, &view, &page, talk);
+        let folds = FoldsInView::of(&surface, &page)?;
+        entry.draw.warn_of_page(renderer, &view, &page, folds, talk);
         let inputs = inputs(scene, &entry.draw);
         Ok(BatchDrawing { entry, inputs, what: What::View(Box::new(page), illustration, furniture, adapter) })
     }

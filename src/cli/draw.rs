@@ -140,7 +140,8 @@ pub(crate) fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     let is_bare = drawing.layers.is_empty();
     furniture.onto(&mut drawing, &illustration.style);
     let stroked = Stroked { illustration: &illustration, lines: &lines, drawing: &drawing };
-    let report = outputs.want_report().then(|| arguments.report(&mut drawn, stroked, talk)).transpose()?;
+    let folds = FoldsInView::of(&surface, &drawn.page)?;
+    let report = outputs.want_report().then(|| arguments.report(&mut drawn, stroked, folds, talk)).transpose()?;
     if arguments.explain || talk.is_verbose() {
         explain(talk, &drawn.page.frame, &surface, report.as_ref())?;
     }
@@ -155,13 +156,12 @@ pub(crate) fn run(arguments: &DrawArguments, talk: &Talk) -> Result<()> {
     talk.progress("writing", 1.0);
     outputs.publish()?;
     journey::tell(&drawing, &illustration.style.plot, talk)?;
-    arguments.folds(&drawn.page, &surface)?.warning().into_iter().for_each(|words| talk.warn(&words));
     arguments.tell(&drawn, started, talk)?;
     let DrawnPage { page, .. } = drawn;
     if is_bare && page.marks.inked() > 0 {
         talk.warn("nothing is drawn: the style leaves no stroke of the lines; give it finer pens, or --min-gap 0 --min-jump 0");
     }
-    arguments.warn_of_page(&mut renderer, &view, &page, talk);
+    arguments.warn_of_page(&mut renderer, &view, &page, folds, talk);
     Ok(())
 }
 
@@ -248,13 +248,16 @@ impl DrawArguments {
         self.drawing.furniture.furniture().set(&illustration.sheet, &illustration.style, &texts)
     }
 
-    /// How much of a page folds over.
-    fn folds(&self, page: &Page, surface: &Surface) -> Result<FoldsInView> {
-        FoldsInView::of(surface, &page.frame.lattice, page.frame.facets(surface))
-    }
-
-    /// Warns where a page of it, or land that is to be hatched, is blank.
-    pub(crate) fn warn_of_page(&self, renderer: &mut Renderer, view: &View, page: &Page, talk: &Talk) {
+    /// Warns where a page of it, or land that is to be hatched, is blank, and where much folds over.
+    pub(crate) fn warn_of_page(
+        &self,
+        renderer: &mut Renderer,
+        view: &View,
+        page: &Page,
+        folds: FoldsInView,
+        talk: &Talk,
+    ) {
+        folds.warning().into_iter().for_each(|words| talk.warn(&words));
         page.bare.into_iter().for_each(|bare| talk.warn(&bare::of_view(bare)));
         blank::warn(renderer, view, self.drawing.level, page, talk);
     }
@@ -283,7 +286,7 @@ impl DrawArguments {
     }
 
     /// Times more frames and says what was done.
-    fn report(&self, drawn: &mut DrawnPage, stroked: Stroked, talk: &Talk) -> Result<Report> {
+    fn report(&self, drawn: &mut DrawnPage, stroked: Stroked, folds: FoldsInView, talk: &Talk) -> Result<Report> {
         talk.progress("timing more frames", 0.6);
         let Stroked { illustration, lines, drawing } = stroked;
         let flat_earth = drawn.flat_earth();
@@ -300,7 +303,7 @@ impl DrawArguments {
             method: plan.method.entry().family,
             level: plan.detail.into(),
             facets: page.frame.facets(&surface),
-            folds: FoldsReport::of(&surface, self.folds(page, &surface)?, self.drawing.exaggeration)?,
+            folds: FoldsReport::of(&surface, folds, self.drawing.exaggeration)?,
             inked: page.marks.inked(),
             chains: plan.has_curves().then(|| ChainsReport::of(page)),
             without_stroke: ink::unstroked(&page.marks, lines, drawing),

@@ -2,7 +2,7 @@
 
 use std::io::{stdin, stdout};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::cache::CacheArguments;
@@ -11,6 +11,7 @@ use super::device::DeviceArguments;
 use super::drawing::{DrawingArguments, Wanted};
 use super::film;
 use super::flight::{FlightArguments, FlightPlan};
+use super::folds::FoldsInView;
 use super::frames::{FrameArguments, FrameFiles};
 use super::jobs::{JobArguments, JobShare};
 use super::listing;
@@ -156,6 +157,7 @@ fn fly(aloft: &mut Option<Aloft>, asked: &Asked, work: &JobWork, progress: &Prog
     let Asked { files, illustration, .. } = asked;
     let adapter = aloft.as_ref().map(|aloft| aloft.adapter.clone()).unwrap_or_default();
     progress.on(&adapter);
+    let surface = aloft.as_ref().map(|aloft| aloft.renderer.surface().clone());
     let draw = |job: &Job| {
         let Some(Aloft { renderer, flight, .. }) = aloft else {
             return Err(Error::mistake("a frame went missing as it was looked at"));
@@ -165,10 +167,15 @@ fn fly(aloft: &mut Option<Aloft>, asked: &Asked, work: &JobWork, progress: &Prog
         renderer.find(&plan, &flight.camera(job.number), |_| ())
     };
     let [blank, bare] = [0, 0].map(AtomicUsize::new);
+    // A look at every facet: at those of one frame, which stands for the rest.
+    let folds = OnceLock::new();
     let finish = |job: &Job, found: PageFindings| {
         let page = found.page();
         blank.fetch_add(usize::from(page.marks.inked() == 0), Ordering::Relaxed);
         bare.fetch_add(usize::from(page.bare.is_some()), Ordering::Relaxed);
+        if let Some(surface) = &surface {
+            folds.get_or_init(|| FoldsInView::of(surface, &page));
+        }
         files.write(job, &page, illustration, &adapter)
     };
     work.run(talk, progress, draw, finish)?;
@@ -179,6 +186,9 @@ fn fly(aloft: &mut Option<Aloft>, asked: &Asked, work: &JobWork, progress: &Prog
     match bare.into_inner() {
         0 => {}
         count => talk.warn(&bare::of_frames(count)),
+    }
+    if let Some(folds) = folds.into_inner().transpose()? {
+        folds.warning().into_iter().for_each(|words| talk.warn(&format!("a frame was looked at: {words}")));
     }
     Ok(())
 }

@@ -5,7 +5,8 @@ use serde::Serialize;
 use super::peaks;
 use crate::dem::Dem;
 use crate::error::Result;
-use crate::surface::{Fold, Lattice, Moved, Surface};
+use crate::render::Page;
+use crate::surface::{Fold, Moved, Surface};
 
 /// Share of the facets of a frame from which on folds are warned of.
 const MANY: f64 = 0.001;
@@ -37,13 +38,13 @@ pub(crate) struct LimitedReport {
 }
 
 impl FoldsInView {
-    /// Of the lattice of a frame of so many facets.
+    /// Of a page.
     ///
     /// # Errors
     /// As [`Surface::folding_facets`].
-    pub(crate) fn of(surface: &Surface, lattice: &Lattice, facets: u64) -> Result<Self> {
-        let folding = surface.folding_facets(lattice)?;
-        Ok(Self { facets: folding, share: folding as f64 / facets.max(1) as f64 })
+    pub(crate) fn of(surface: &Surface, page: &Page) -> Result<Self> {
+        let facets = surface.folding_facets(&page.frame.lattice)?;
+        Ok(Self { facets, share: facets as f64 / page.frame.facets(surface).max(1) as f64 })
     }
 
     /// What is warned of where there are many.

@@ -42,8 +42,14 @@ pub struct InfoArguments {
         help = peaks_help(), long_help = format!("{}\n\n{PROMINENCE}", peaks_help())
     )]
     peaks: Option<usize>,
-    /// Factor on every elevation, for folds of the surface: those of a drawing with as much
-    #[arg(long, value_name = "X", value_parser = values::exaggeration, allow_hyphen_values = true, default_value = "1")]
+    /// Also count patches of the surface that fold over, and with --limit-folds tell what that moves: a look at the whole DEM
+    #[arg(long)]
+    folds: bool,
+    /// Factor on every elevation, for --folds: those of a drawing with as much
+    #[arg(
+        long, value_name = "X", value_parser = values::exaggeration, allow_hyphen_values = true, default_value = "1",
+        requires = "folds"
+    )]
     exaggeration: f64,
     /// Also list from how much land on water was tried to run in channels, how streams fall with each, and which --channel-area
     /// auto takes; DEMs that stay in their files need a --crop
@@ -75,10 +81,8 @@ pub fn run(arguments: &InfoArguments, talk: &Talk) -> Result<()> {
     // These first: where they cannot be told, nothing is.
     let peaks = arguments.peaks.map(|count| peaks::told(&dem, count)).transpose()?;
     let channels = arguments.channels.then(|| channels::told(&dem)).transpose()?;
-    let folds = folds(arguments, dem, talk)?;
-    talk.answer(
-        &[Some(info.told(told)), Some(folds), peaks, channels].into_iter().flatten().collect::<Vec<_>>().join("\n"),
-    )
+    let folds = arguments.folds.then(|| folds(arguments, dem, talk)).transpose()?;
+    talk.answer(&[Some(info.told(told)), folds, peaks, channels].into_iter().flatten().collect::<Vec<_>>().join("\n"))
 }
 
 /// What is told of folds of the surface of `dem`, read anew where heights are exaggerated.

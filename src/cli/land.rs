@@ -11,7 +11,7 @@ use crate::cache::{Cache, CacheObserver};
 use crate::error::{Error, Message, Result, Setting};
 use crate::ink::Style;
 use crate::line::Land;
-use crate::relief::{ChannelArea, Crease, FlatWater, FlowLines, LandWanted, Shores, Slopes, SurfaceLine};
+use crate::relief::{ChannelArea, Crease, FlatWater, FlowLines, LandWanted, Shores, Slopes, SurfaceLine, append};
 use crate::surface::Surface;
 
 /// The flags, as typed.
@@ -146,15 +146,6 @@ impl LandArguments {
             None => land,
         })
     }
-}
-
-/// Puts lines behind others: what they join moves along.
-fn append(lines: &mut Vec<SurfaceLine>, more: Vec<SurfaceLine>) {
-    let before = lines.len() as u32;
-    lines.extend(more.into_iter().map(|line| {
-        let joins = line.joins.map(|[onto, at]| [onto + before, at]);
-        SurfaceLine { joins, ..line }
-    }));
 }
 
 /// Kinds of lines of the land, with commas between, or `none`.

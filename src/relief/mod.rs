@@ -80,6 +80,15 @@ pub struct SurfaceLine {
     pub joins: Option<[u32; 2]>,
 }
 
+/// Puts lines behind others, each of which joins lines of its own list: what they join moves along.
+pub fn append(lines: &mut Vec<SurfaceLine>, more: Vec<SurfaceLine>) {
+    let before = lines.len() as u32;
+    lines.extend(more.into_iter().map(|line| {
+        let joins = line.joins.map(|[onto, at]| [onto + before, at]);
+        SurfaceLine { joins, ..line }
+    }));
+}
+
 /// A point of a line on the land.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SurfacePoint {

@@ -29,6 +29,12 @@ const FOOT_LINE: f64 = 19.0;
 const TEXT_PX: f64 = 13.0;
 /// Half the side of the square that a marker takes, px.
 pub(super) const MARKER: f64 = 7.0;
+/// Radius of the ring around a marker, px.
+pub(super) const RING: f64 = 9.0;
+/// Least 1 - F that is told from 0: truth is some thousand pixels long.
+pub(super) const FLOOR: f64 = 1e-4;
+/// Least time that is told from 0, ms.
+const LEAST_MS: f64 = 1e-3;
 /// Distance from a label to its point from which on a thin line joins them, px.
 const FAR: f64 = 13.0;
 /// Ends of an axis that are fewer times apart have all whole digits for marks.
@@ -57,6 +63,27 @@ pub(super) struct Axis<'a> {
     pub to: f64,
     pub bold: Vec<f64>,
     pub light: Vec<f64>,
+}
+
+/// The axis of times of frames, as [`millis`] has them.
+pub(super) fn time_axis(times: impl Iterator<Item = f64>) -> Axis<'static> {
+    Axis::new("time of a frame, camera to mask, ms (median; left is faster)", f64::to_string, times, None)
+}
+
+/// The axis of errors, as [`error_of`] has them.
+pub(super) fn error_axis(errors: impl Iterator<Item = f64>) -> Axis<'static> {
+    let number = |error: &f64| if *error <= FLOOR { format!("≤ {FLOOR}") } else { error.to_string() };
+    Axis::new("1 − F (lower is better)", number, errors, Some(FLOOR))
+}
+
+/// The time of a frame as far as it is told from 0.
+pub(super) fn millis(frame_ms: f64) -> f64 {
+    frame_ms.max(LEAST_MS)
+}
+
+/// 1 - F as far as it is told from 0.
+pub(super) fn error_of(f: f64) -> f64 {
+    (1.0 - f).max(FLOOR)
 }
 
 /// A plot as a file of its own, which may also stand inside a page: a panel for each of `panels` below the title, lines

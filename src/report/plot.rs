@@ -11,7 +11,8 @@ use plotters::prelude::*;
 
 use super::Results;
 use super::chart::{
-    Area, Axis, Drawn, INK, MARKER, axes, draw_curve, draw_label, label_page, place, plot, rgb, segments, whole,
+    Area, Drawn, INK, MARKER, RING, axes, draw_curve, draw_label, error_axis, error_of, label_page, millis, place,
+    plot, rgb, segments, time_axis, whole,
 };
 use super::labels::{self, Choice, Obstacles, Rect};
 use super::results::ComparedScene;
@@ -19,13 +20,6 @@ use crate::error::{Error, Result};
 use crate::measure::figures::Run;
 use crate::plan::Method;
 use crate::plan::registry::PlotLook;
-
-/// Least 1 - F that is told from 0: truth is some thousand pixels long.
-const FLOOR: f64 = 1e-4;
-/// Least time that is told from 0, ms.
-const LEAST_MS: f64 = 1e-3;
-/// Radius of the ring around a marker of the front, px.
-const RING: f64 = 9.0;
 
 const TITLE: &str = "Error against time";
 /// The lines below all panels.
@@ -84,17 +78,11 @@ fn description(results: &Results) -> String {
 /// The axes of a scene, its curves, and what stands beside them.
 fn draw_panel(root: &Area, panel: &Area, shown: &Panel) -> Drawn {
     let Panel { scene, runs, curves } = shown;
-    let x = Axis::new(
-        "time of a frame, camera to mask, ms (median; left is faster)",
-        f64::to_string,
-        runs.iter().map(|run| millis(run)),
-        None,
-    );
-    let number = |error: &f64| if *error <= FLOOR { format!("≤ {FLOOR}") } else { error.to_string() };
-    let y = Axis::new("1 − F (lower is better)", number, runs.iter().map(|run| error(run)), Some(FLOOR));
+    let x = time_axis(runs.iter().map(|run| millis(run.frame_ms)));
+    let y = error_axis(runs.iter().map(|run| error_of(run.f)));
     let caption = format!("{}, {} × {} px", shorten(&scene.name, 60), scene.width, scene.height);
     let chart = axes(panel, &caption, &x, &y)?;
-    let place = |run: &Run| place(&chart, [millis(run), error(run)]);
+    let place = |run: &Run| place(&chart, [millis(run.frame_ms), error_of(run.f)]);
     let front = front(runs, &place);
     root.draw(&PathElement::new(front.iter().map(|at| whole(*at)).collect::<Vec<_>>(), FRONT.stroke_width(5)))?;
     let mut page = label_page(&chart, segments(&front));
@@ -156,14 +144,6 @@ fn shorten(text: &str, letters: usize) -> String {
         Some((end, _)) => format!("{}…", &text[..end]),
         None => text.to_owned(),
     }
-}
-
-fn millis(run: &Run) -> f64 {
-    run.frame_ms.max(LEAST_MS)
-}
-
-fn error(run: &Run) -> f64 {
-    (1.0 - run.f).max(FLOOR)
 }
 
 /// How the curve of a method looks.

@@ -23,7 +23,7 @@ use crate::ink::{self, Sheet, Style};
 use crate::line::Land;
 use crate::measure::figures::DrawnLevel;
 use crate::plan::{Curves, LandLines, Method, Plan};
-use crate::relief::{ChannelArea, Relief, Slopes};
+use crate::relief::{ChannelArea, Relief, Slopes, append};
 use crate::surface::{Lattice, Level, Surface};
 use crate::truth::{Mask, Terrain, Truth};
 use crate::view::Camera;
@@ -122,7 +122,8 @@ pub(crate) fn run(gpu: &Arc<Gpu>, case: &Case, stage: &dyn Fn(&str)) -> Result<O
 /// Drainage, ridges and slope lines, as the default style's hachures have them.
 fn land_of(surface: &Arc<Surface>) -> Result<Land> {
     let relief = Relief::of(surface.dem(), 1.0)?;
-    let lines = [relief.drainage(ChannelArea::Auto), relief.ridges()?].concat();
+    let mut lines = relief.drainage(ChannelArea::Auto);
+    append(&mut lines, relief.ridges()?);
     let slopes = Style::default().hachures.rules().map(|rules| Slopes::new(surface.clone(), 1.0, rules, &lines, None));
     let land = Land::new(surface.dem(), 1.0, lines)?;
     Ok(match slopes.transpose()? {

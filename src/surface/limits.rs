@@ -23,7 +23,7 @@ use crate::error::{Error, Result, Setting};
 use crate::message;
 
 /// What a round leaves of a gradient.
-const LEFT: f32 = 0.75;
+const PER_ROUND: f32 = 0.75;
 /// A share that is less is none.
 const LEAST: f32 = 1.0 / 64.0;
 /// Samples that may be changed: 320 MiB.
@@ -96,7 +96,7 @@ impl Limits {
 
     fn lower(&mut self, sample: [u32; 2]) {
         let share = self.0.entry(sample).or_insert(1.0);
-        *share = if *share * LEFT < LEAST { 0.0 } else { *share * LEFT };
+        *share = if *share * PER_ROUND < LEAST { 0.0 } else { *share * PER_ROUND };
     }
 
     /// The gradient of a sample of a surface without limits, limited as gradients in memory are.

@@ -9,7 +9,8 @@ use plotters::prelude::*;
 use crate::error::Result;
 use crate::plan::registry::{Marker, PlotLook};
 use crate::report::chart::{
-    Area, Axis, Drawn, INK, MARKER, axes, draw_label, draw_marker, label_page, place, plot, rgb, whole, write,
+    Area, Drawn, FLOOR, INK, MARKER, RING, axes, draw_label, draw_marker, error_axis, error_of, label_page, millis,
+    place, plot, rgb, time_axis, whole, write,
 };
 use crate::report::labels::{self, Choice, Rect};
 use crate::stress::figures::RunFigures;
@@ -17,12 +18,6 @@ use crate::stress::limits::{F, LEAST_TRUTH_PX};
 use crate::stress::{Check, Group, Outcome, Promise};
 
 const TITLE: &str = "Error against time, ordinary land and hard cases";
-/// Least 1 - F that is told from 0.
-const FLOOR: f64 = 1e-4;
-/// Least time that is told from 0, ms.
-const LEAST_MS: f64 = 1e-3;
-/// Radius of the rings about ordinary land, px.
-const RING: f64 = 9.0;
 /// How many of the worst points have their names beside them.
 const NAMED: usize = 8;
 /// Methods with a panel.
@@ -88,19 +83,13 @@ fn description(panels: &[Panel]) -> String {
 
 fn draw_panel(root: &Area, panel: &Area, shown: &Panel) -> Drawn {
     let Panel { method, runs } = shown;
-    let x = Axis::new(
-        "time of a frame, camera to mask, ms (median; left is faster)",
-        f64::to_string,
-        runs.iter().map(|run| millis(run)),
-        None,
-    );
-    let number = |error: &f64| if *error <= FLOOR { format!("≤ {FLOOR}") } else { error.to_string() };
+    let x = time_axis(runs.iter().map(|run| millis(run.frame_ms)));
     let errors = runs.iter().map(|run| error(run)).chain([1.0 - F]);
-    let y = Axis::new("1 − F (lower is better)", number, errors, Some(FLOOR));
+    let y = error_axis(errors);
     let chart = axes(panel, method, &x, &y)?;
     let promised = [x.from, x.to].map(|at| whole(place(&chart, [at, 1.0 - F])));
     root.draw(&PathElement::new(promised.to_vec(), RGBColor(190, 190, 190).stroke_width(2)))?;
-    let at = |run: &RunFigures| place(&chart, [millis(run), error(run)]);
+    let at = |run: &RunFigures| place(&chart, [millis(run.frame_ms), error(run)]);
     let mut page = label_page(&chart, Vec::new());
     for run in runs {
         draw_marker(root, whole(at(run)), &look(run.group))?;
@@ -112,7 +101,7 @@ fn draw_panel(root: &Area, panel: &Area, shown: &Panel) -> Drawn {
     let mut named: Vec<&&RunFigures> = runs.iter().collect();
     named.sort_by(|a, b| error(b).total_cmp(&error(a)));
     let worst = named.iter().take(NAMED).filter(|run| error(run) > FLOOR);
-    let slowest = runs.iter().max_by(|a, b| millis(a).total_cmp(&millis(b)));
+    let slowest = runs.iter().max_by(|a, b| a.frame_ms.total_cmp(&b.frame_ms));
     let mut labelled: Vec<&RunFigures> = worst.map(|run| **run).collect();
     labelled.extend(slowest.copied().filter(|run| !labelled.iter().any(|other| std::ptr::eq(*other, *run))));
     let choice = |run: &&RunFigures| vec![Choice { point: at(run), text: format!("{}, {}", run.case, run.view) }];
@@ -138,10 +127,6 @@ fn legend(root: &Area, panel: &Area) -> Drawn {
     Ok(())
 }
 
-fn millis(run: &RunFigures) -> f64 {
-    run.frame_ms.max(LEAST_MS)
-}
-
 fn error(run: &RunFigures) -> f64 {
-    (1.0 - run.f.unwrap_or_default()).max(FLOOR)
+    error_of(run.f.unwrap_or_default())
 }

@@ -7,7 +7,7 @@ mod sizes;
 mod stiff;
 mod views;
 
-use super::lands::{grid, rolling};
+use super::lands::{grid, hashed, rolling, sixteenths};
 use super::{Case, Group};
 use crate::dem::Dem;
 use crate::error::{Error, Result, Setting};
@@ -33,10 +33,11 @@ pub fn short() -> Vec<Case> {
     all().into_iter().filter(|case| case.short).collect()
 }
 
-/// The case that must break: facets of level 1, held to truth of a fine level. It shows that broken promises are noticed, is found by
-/// its name alone, and stands on no list.
+/// The case that must break: noise in facets of level 1, held to truth of a fine level. It shows that broken promises are noticed, is
+/// found by its name alone, and stands on no list.
 fn control() -> Case {
-    Case::new(Group::Ordinary, "control", "a case that must break", hills(9, 17, 1.0))
+    let noise = grid([9, 9], CELL, |c, r| sixteenths(2.0 * CELL * hashed(17, c, r)));
+    Case::new(Group::Ordinary, "control", "a case that must break", noise)
         .seen("across", [4.0, 11.0, 40.0], [4.0, 3.0, 0.0])
         .drawn(Level::new(1).unwrap_or_default())
 }
