@@ -1,8 +1,8 @@
 // One invocation a pixel with open pairs: of each pair with a neighbour, walks the lattice from the nearer pixel's point on
 // the surface to the farther one's, facet by facet, in integers. An away facet on the way makes the nearer one ink; a
-// void or the outside ends the walk. Pairs with a pixel without surface, and walks past squares that lack facets or past
-// facets beside a coarser chunk, are rare and left to `walk_rest`: drivers that run both sides of every branch pay for
-// them here.
+// void or the outside ends the walk. Pairs with a pixel without surface, walks past squares that lack facets or past
+// facets beside a coarser chunk, and those that meet an away facet which the page shows elsewhere are rare and left to
+// `walk_rest`: drivers that run both sides of every branch pay for them here.
 
 @group(0) @binding(21) var<storage, read> pairs: ListRead;
 @group(0) @binding(22) var<storage, read_write> out_ink: array<atomic<u32>>;
@@ -69,13 +69,23 @@ fn centre_of(at: vec2<i32>) -> vec2<f32> {
     return vec2<f32>(at + camera.origin) + 0.5;
 }
 
-// Notes a facet that a walk from a pixel met. Of the walks that ink a pixel, the one whose line runs nearest to its centre
-// gives the place.
-fn ink(at: vec2<i32>, meeting: Meeting) {
-    let mark = silhouette_at(place_of(meeting.id, meeting.entered) - centre_of(at));
-    if meeting.met {
-        atomicMax(&out_ink[pixel_index(at)], mark);
-    }
+// How far from a pixel's centre a line may lie that parts it from a neighbour, px right or down.
+const BESIDE_PAIR: f32 = 1.5;
+
+// Where the facet that a walk from a pixel met begins, from the pixel's centre.
+fn offset_of(at: vec2<i32>, meeting: Meeting) -> vec2<f32> {
+    return place_of(meeting.id, meeting.entered) - centre_of(at);
+}
+
+// Whether that is elsewhere on the page.
+fn is_elsewhere(offset: vec2<f32>) -> bool {
+    return max(abs(offset.x), abs(offset.y)) > BESIDE_PAIR;
+}
+
+// Inks a pixel for a line at this offset. Of the walks that ink a pixel, the one whose line runs nearest to its centre gives
+// the place.
+fn ink(at: vec2<i32>, offset: vec2<f32>) {
+    atomicMax(&out_ink[pixel_index(at)], silhouette_at(offset));
 }
 
 fn check_done(meeting: Meeting) {
@@ -116,8 +126,13 @@ fn walk(@builtin(global_invocation_id) invocation: vec3<u32>, @builtin(num_workg
             }
             let other_place = facet_hit(second.x - 1u, centre_of(other));
             let meeting = walk_between(select(place, other_place, swapped), select(other_place, place, swapped));
-            deferred |= select(0u, left & (~left + 1u), meeting.deferred);
-            ink(select(one, other, swapped), meeting);
+            let at = select(one, other, swapped);
+            let offset = offset_of(at, meeting);
+            let is_left = meeting.deferred || (meeting.met && is_elsewhere(offset));
+            deferred |= select(0u, left & (~left + 1u), is_left);
+            if meeting.met && !is_left {
+                ink(at, offset);
+            }
             check_done(meeting);
             longest = max(longest, meeting.steps);
         }

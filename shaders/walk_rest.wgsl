@@ -1,13 +1,18 @@
 // One invocation a pixel with pairs that `walk` has left: with neighbours that show no surface, or with a walk past
-// squares that lack facets or past facets beside a coarser chunk. Where no surface shows, the cut of the land is followed too.
+// squares that lack facets or past facets beside a coarser chunk, or that meets a facet which the page shows elsewhere. There, and
+// where no surface shows, the cut of the land is followed too.
 //
 // Where the straight way to a pixel without surface meets nothing, the cut of the surface by the plane through the eye and
 // both pixels is followed: land as thin as a pixel turns away beside that way, and a straight way along its flank never
 // rounds it. An away facet on the cut inks the pixel where it lies behind the toward one before it; one that lies before it is
 // an underside, seen through a void or past the border, and hides the edge between the two.
 //
+// Where both pixels show land, the straight way from a flank to one beside it may cross land that turns away far above, as on a
+// needle. The page shows it elsewhere, and the cut decides: where it reaches the other pixel over toward facets, no line
+// parts the two.
+//
 // Cost: at most 256 facets a pair; in a plain seen edge-on against the sky, all of them. Not handled: land that takes more
-// facets than that to turn away within a pixel, and pairs that both show land, which take the straight way alone, so that
+// facets than that to turn away within a pixel, and pairs that both show land whose straight way meets nothing, so that
 // the foot of a spire may lack ink for a few pixels before land beside it.
 
 @group(0) @binding(25) var<storage, read> rest: ListRead;
@@ -69,11 +74,11 @@ fn open_goal(id: u32, centre: vec2<f32>, to_centre: vec2<f32>, origin: vec2<i32>
     return Goal(at, dot(normal, camera.right.xyz * px.x - camera.up.xyz * px.y) >= 0.0);
 }
 
-// What the cut of the surface from a pixel to one without surface meets.
-fn cut_between(id: u32, centre: vec2<f32>, to_centre: vec2<f32>) -> Meeting {
+// What the cut of the surface from a pixel meets before a ray.
+fn cut_between(id: u32, centre: vec2<f32>, ray: vec3<f32>) -> Meeting {
     let t = corners_of(chunks[id / CHUNK_FACETS], facet_of(id));
     let w = hit_weights(t, centre);
-    return follow_section(id, t.p + t.edge_1 * w.y + t.edge_2 * w.z, ray_beyond(centre, to_centre));
+    return follow_section(id, t.p + t.edge_1 * w.y + t.edge_2 * w.z, ray);
 }
 
 // Inks the nearer pixel of a pair if the walk to the farther one, or the cut, meets an away facet. Says how far it walked.
@@ -110,11 +115,21 @@ fn walk_pair(one: vec2<i32>, other: vec2<i32>) -> u32 {
         goal.at = map_exit(to_centre, start);
     }
     if to_open && !meeting.met && !by_rim {
-        meeting = cut_between(p.x - 1u, centre, to_centre);
+        meeting = cut_between(p.x - 1u, centre, ray_beyond(centre, to_centre));
         longest = max(longest, meeting.steps);
         check_done(meeting);
+    } else if !to_open && meeting.met && is_elsewhere(offset_of(at, meeting)) {
+        let cut = cut_between(p.x - 1u, centre, ray_through(to_centre));
+        longest = max(longest, cut.steps);
+        let reaches = !cut.met && !cut.left_land && cut.steps < LONGEST_SECTION;
+        meeting.met = !reaches;
+        if cut.met {
+            meeting = cut;
+        }
     }
-    ink(at, meeting);
+    if meeting.met {
+        ink(at, offset_of(at, meeting));
+    }
     return longest;
 }
 

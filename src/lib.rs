@@ -129,7 +129,7 @@
 //! degrees, cells of 1 mm and 10 km, northings of 0 and 10^7, land of 2 x 2 samples, pages of one pixel, voids of every shape. What holds
 //! without exception: no NaN, no infinity, no pinhole, no frame that fails; the same bits where land and eye are shifted by whole
 //! cells, scaled by a power of two, raised by whole metres. What bends, by how much, and what was tried stands in
-//! [`stress::exceptions`]: a walk over patches that fold, along a ridge that the line of sight touches for kilometres, from an eye on a
+//! [`stress::exceptions`]: a walk along a ridge that the line of sight touches for kilometres, from an eye on a
 //! sample; lines a fraction of a pixel apart; some pixels of lines where land is turned by half.
 //!
 //! # Words

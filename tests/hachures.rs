@@ -3,6 +3,7 @@
 mod bare;
 mod map;
 mod pops;
+mod scales;
 mod views;
 
 use std::fs;

@@ -2,8 +2,8 @@
 
 use std::io::{stdin, stdout};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, OnceLock};
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, OnceLock};
 
 use super::cache::CacheArguments;
 use super::cells;

@@ -5,6 +5,9 @@
 //! are among those of a dark one, and none is chosen by what else the page holds; lines come and go by width. Short pieces are
 //! left out. Long lines are cut where the page makes them longer than a hand would draw, always at the same places of the land.
 //!
+//! Where strokes stand far apart on the land, for it is far from the eye, lines are those of the land at a smaller scale. Between two
+//! scales lines of both are there, each coming or going at a distance of its own. A map is of the land as it is.
+//!
 //! Cost: a look at each point of the lines that may fill the spacing. What a page surely hides is left out; whether the eye sees
 //! the rest is looked at later. Does not handle: land so near that strokes would stand closer than lines do, which stays bare; how
 //! far it goes is told.
@@ -41,6 +44,12 @@ const BLANK: f64 = 0.3;
 const LONG: [f64; 2] = [1.0, 1.6];
 /// Most times that a piece is cut in two.
 const MOST_CUTS: u32 = 12;
+/// Distances between strokes, in cells of land at half the scale, from which on its lines begin to be drawn.
+const CELLS: f64 = 0.25;
+/// How many times that distance is where those alone are.
+const BLEND: f64 = 1.3;
+/// On the way there, how much of it a line takes to come or go.
+const COMES: f64 = 0.25;
 
 /// What sees the lines.
 #[derive(Debug, Clone, Copy)]
@@ -66,14 +75,25 @@ pub struct Hatched {
 /// As [`Slopes::blocks`].
 pub fn hatched(slopes: &Slopes, look: &Hachures, seen: Viewer) -> Result<Hatched> {
     let azimuth = if let Viewer::By(_, azimuth, _) = seen { azimuth } else { 0.0 };
-    let page = HachuredPage { seen, look, shade: look.shade(azimuth, slopes.exaggeration()), slopes };
-    let blocks = slopes.blocks(&page)?;
-    let of_block = |needed: &Needed| {
-        let of_line = |line| page.hatched(line, needed.share);
-        needed.block.lines.iter().map(of_line).fold(Hatched::default(), Hatched::and)
-    };
-    let of_blocks: Vec<Hatched> = blocks.par_iter().map(of_block).collect();
-    Ok(of_blocks.into_iter().fold(Hatched::default(), Hatched::and))
+    let shade = look.shade(azimuth, slopes.exaggeration());
+    let mut all = Hatched::default();
+    let (mut scale, mut from) = (Some(slopes), 0.0);
+    while let Some(slopes) = scale {
+        let to = CELLS * 2.0 * slopes.cell();
+        let farthest = slopes.corners().map_or(0.0, |corners| seen.metres_per_px(corners)[1] * look.spacing);
+        scale = if farthest > to { slopes.wider()? } else { None };
+        let to = if scale.is_some() { to } else { f64::INFINITY };
+        let page = HachuredPage { seen, look, shade, slopes, scale: [from, to] };
+        let blocks = slopes.blocks(&page)?;
+        let of_block = |needed: &Needed| {
+            let of_line = |line| page.hatched(line, needed.share);
+            needed.block.lines.iter().map(of_line).fold(Hatched::default(), Hatched::and)
+        };
+        let of_blocks: Vec<Hatched> = blocks.par_iter().map(of_block).collect();
+        all = of_blocks.into_iter().fold(all, Hatched::and);
+        from = to;
+    }
+    Ok(all)
 }
 
 impl Hatched {
@@ -96,6 +116,14 @@ impl Viewer<'_> {
                 }
             }
         }
+    }
+
+    /// The least and the most metres that a pixel takes across in a box of the world, wherever the eye looks; none of a map.
+    fn metres_per_px(self, [low, high]: [DVec3; 2]) -> [f64; 2] {
+        let Self::By(perspective, ..) = self else { return [0.0; 2] };
+        let eye = perspective.eye();
+        let farthest = (low - eye).abs().max((high - eye).abs());
+        [eye.clamp(low, high).distance(eye), farthest.length()].map(|metres| metres / perspective.focal())
     }
 
     /// How far a place of the world is from the eye, metres; of a map that is no matter.
@@ -153,6 +181,8 @@ struct HachuredPage<'a> {
     look: &'a Hachures,
     shade: Shade,
     slopes: &'a Slopes,
+    /// Metres between strokes of the widest spacing from which on the lines come, and from which on they go.
+    scale: [f64; 2],
 }
 
 /// A point on its way to the page.
@@ -192,14 +222,18 @@ impl HachuredPage<'_> {
             metres
         });
         let metres: Vec<f64> = [0.0].into_iter().chain(steps).collect();
+        let at = share_of(line.id, 0);
         let on_page = |((point, world), metres): ((&SlopePoint, &DVec3), &f64)| {
             let place = self.seen.place(*world)?;
             let point = self.point(point, *world, place, *metres);
-            let weight = point.of_way.weight * most as f32;
+            let weight = point.of_way.weight * (most * self.of_scale(*world, at)) as f32;
             Some(Point { of_way: WayPoint { weight, ..point.of_way }, ..point })
         };
         let points: Vec<Option<Point>> = line.points.iter().zip(&worlds).zip(&metres).map(on_page).collect();
-        let is_bare = |point: &&Point| point.far_enough < 0.5 && self.seen.may_show(point.place, point.of_way.world);
+        // Lines of a smaller scale go before they are too close.
+        let is_finest = self.scale[0] <= 0.0;
+        let is_bare =
+            |point: &&Point| is_finest && point.far_enough < 0.5 && self.seen.may_show(point.place, point.of_way.world);
         let bare = points.iter().flatten().filter(is_bare).map(|point| self.seen.distance(point.of_way.world));
         let bare = bare.reduce(f64::max);
         // Behind the eye there is no page.
@@ -246,6 +280,19 @@ impl HachuredPage<'_> {
         Point { of_way, place, arc: 0.0, metres, apart, far_enough }
     }
 
+    /// How far lines have come at a distance between strokes, and how far they have gone, 0 to 1.
+    fn ways(&self, metres: f64) -> [f64; 2] {
+        self.scale.map(|scale| if scale <= 0.0 { 1.0 } else { (metres / scale).ln() / BLEND.ln() }.clamp(0.0, 1.0))
+    }
+
+    /// How much of a line is there at a place for the scale of its land; `at` says when it comes and goes, 0 to 1.
+    fn of_scale(&self, world: DVec3, at: f64) -> f64 {
+        let [metres, _] = self.seen.metres_per_px([world; 2]);
+        let comes = (1.0 - COMES) * at;
+        let [come, gone] = self.ways(metres * self.look.spacing).map(|way| fade([comes, comes + COMES], way));
+        come * (1.0 - gone)
+    }
+
     /// How far apart on the map strokes are to stand on land of a gradient and a tone, metres; infinite where none are.
     fn metres_apart(&self, world: DVec3, gradient: DVec2, black: f64) -> f64 {
         if black <= 0.0 || self.seen.is_away(world, gradient) {
@@ -281,13 +328,19 @@ impl HachuredPage<'_> {
 /// What a page needs of the lines of the land.
 impl Need for HachuredPage<'_> {
     fn in_box(&self, corners: [DVec3; 2]) -> f64 {
-        ROOM[0] * self.look.least_apart() / self.seen.most_px_per_metre(corners)
+        let [least, most] = self.seen.metres_per_px(corners).map(|metres| metres * self.look.spacing);
+        let [[come, _], [_, gone]] = [self.ways(most), self.ways(least)];
+        let is_there = come > 0.0 && gone < 1.0;
+        let need = || ROOM[0] * self.look.least_apart() / self.seen.most_px_per_metre(corners);
+        if is_there { need() } else { f64::INFINITY }
     }
 
     fn at(&self, place: DVec3, gradient: DVec2) -> f64 {
-        let is_before = self.seen.place(place).is_some();
+        let [metres, _] = self.seen.metres_per_px([place; 2]);
+        let [come, gone] = self.ways(metres * self.look.spacing);
+        let is_there = come > 0.0 && gone < 1.0 && self.seen.place(place).is_some();
         let need = || ROOM[0] * self.metres_apart(place, gradient, self.shade.black(gradient));
-        if is_before { need() } else { f64::INFINITY }
+        if is_there { need() } else { f64::INFINITY }
     }
 
     fn sees(&self, place: DVec3) -> bool {

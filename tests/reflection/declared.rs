@@ -13,7 +13,7 @@ use wgpu::naga;
 use super::{all_modules, bound, constants, layouts, shader_of, shared_constants, shared_structs};
 
 /// Constants that are the shaders' own, and why Rust need not know them.
-const OWN_CONSTANTS: [(&str, &str); 34] = [
+const OWN_CONSTANTS: [(&str, &str); 35] = [
     ("HOLDS_TOWARD", "bit of a word of a chunk: set by turning and wanted, read by the passes behind them"),
     ("HOLDS_AWAY", "as HOLDS_TOWARD"),
     ("BOTH", "as HOLDS_TOWARD"),
@@ -45,6 +45,7 @@ const OWN_CONSTANTS: [(&str, &str); 34] = [
     ("EDGE_LIMIT", "up to where edge functions fit 32 bits"),
     ("CUT", "corner of a clipped polygon, within one invocation"),
     ("OVERSHOOT", "share by which walk_rest aims beyond the centre of a pixel"),
+    ("BESIDE_PAIR", "from where on walk leaves what it met to walk_rest"),
     ("NO_FACET", "no facet, within one invocation"),
     ("LONGEST_SECTION", "facets that walk_rest follows a cut over"),
     ("NONE", "no depth, within one invocation"),

@@ -56,8 +56,8 @@ fn a_name_that_is_none_is_answered_by_the_nearest() {
     assert!(named("control").is_ok() && all().iter().all(|case| case.name != "control"), "it is run by name alone");
 }
 
-/// Exceptions to accuracy: three are aimed at, six there are. More must not come.
-const MOST_OF_ACCURACY: usize = 6;
+/// Exceptions to accuracy: three are aimed at, five there are. More must not come.
+const MOST_OF_ACCURACY: usize = 5;
 
 #[test]
 fn exceptions_are_few_and_say_why() {

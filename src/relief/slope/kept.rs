@@ -37,10 +37,10 @@ const KIND: CacheKind = CacheKind {
 const LEAST: usize = 200;
 
 /// Where the lines of a DEM are kept.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Store {
     cache: Cache,
-    /// Of all that lines depend on.
+    /// Of the DEM.
     hash: u128,
     /// The DEM, for people.
     of: String,
@@ -78,11 +78,11 @@ struct Point {
 }
 
 impl Store {
-    /// In a cache, of a DEM whose heights are exaggerated by a factor, and its land; none for files that may be others next time.
+    /// In a cache, of a DEM whose heights are exaggerated by a factor; none for files that may be others next time.
     ///
     /// # Errors
     /// Those of reading the samples.
-    pub(super) fn new(cache: &Cache, dem: &Dem, exaggeration: f64, land: &Land) -> Result<Option<Self>> {
+    pub(super) fn new(cache: &Cache, dem: &Dem, exaggeration: f64) -> Result<Option<Self>> {
         if cache.folder().is_none() {
             return Ok(None);
         }
@@ -90,16 +90,16 @@ impl Store {
         let mut hash = Xxh3::new();
         hash.update(&heights.to_le_bytes());
         hash.update(bytemuck::bytes_of(&dem.position(0, 0).truncate().to_array()));
-        land.identify(&mut hash);
         Ok(Some(Self { cache: cache.clone(), hash: hash.digest128(), of: dem.label() }))
     }
 
-    /// Blocks as they are kept, or as they are made and kept from now on.
+    /// Blocks of lines on some land as they are kept, or as they are made and kept from now on.
     ///
     /// # Errors
     /// None of its own.
     pub(super) fn blocks(
         &self,
+        land: &Land,
         wanted: &[BlockAt],
         make: impl FnOnce() -> Vec<Arc<SlopeBlock>>,
     ) -> Result<Vec<Arc<SlopeBlock>>> {
@@ -108,6 +108,7 @@ impl Store {
         }
         let mut hash = Xxh3::new();
         hash.update(&self.hash.to_le_bytes());
+        land.identify(&mut hash);
         wanted.iter().for_each(|at| hash.update(bytemuck::bytes_of(&[at.level, at.row, at.column])));
         let key = CacheKey { kind: KIND, hash: hash.digest128(), of: self.of.clone() };
         let hearing = CacheObserver { warn: &|_| (), progress: &|_| () };

@@ -6,10 +6,11 @@
 
 use std::sync::Arc;
 
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, FloatExt};
 use xxhash_rust::xxh3::Xxh3;
 
 use super::SlopeRules;
+use super::halved::halved;
 use super::stops::Stops;
 use crate::dem::Dem;
 use crate::error::Result;
@@ -24,6 +25,9 @@ const LEAST_COVER: f64 = 0.01;
 /// The share of the least gradient under which, at a sample, no line begins about it.
 const NEARLY: f64 = 0.5;
 
+/// Metres of water or of a ridge, in cells, from which on it ends lines on land of a smaller scale.
+const LONG_CELLS: f64 = 8.0;
+
 /// The land and its rules.
 #[derive(Debug)]
 pub(super) struct Land {
@@ -33,6 +37,10 @@ pub(super) struct Land {
     pub cell: DVec2,
     /// Metres between the DEM's samples, of which those of the surface are all or some.
     metres: DVec2,
+    /// What lies under the surface where that is at a smaller scale: lines lie on it.
+    ground: Option<Arc<Surface>>,
+    rules: SlopeRules,
+    exaggeration: f64,
     /// Least gradient, exaggerated metres a metre.
     least: f64,
     /// Cosine of the most turn.
@@ -75,22 +83,70 @@ impl Land {
     ) -> Result<Self> {
         let spacing = spacing(surface.dem());
         let surface = if surface.dem().is_filed() { Arc::new(thinned(surface.dem(), spacing)?) } else { surface };
+        let metres = surface.dem().cell() / spacing as f64;
+        Ok(Self::on(surface, metres, exaggeration, rules, stops, water))
+    }
+
+    fn on(
+        surface: Arc<Surface>,
+        metres: DVec2,
+        exaggeration: f64,
+        rules: SlopeRules,
+        stops: &[SurfaceLine],
+        water: Option<&FlatWater>,
+    ) -> Self {
         let dem = surface.dem();
         let cells = [dem.columns(), dem.rows()].map(|samples| samples - 1);
-        Ok(Self {
+        let scale = (dem.cell() / metres).x.round();
+        Self {
             cell: dem.cell(),
             least: (exaggeration * rules.min_slope.to_radians().tan()).max(LEAST_GRADIENT),
             turned: rules.max_turn.to_radians().cos(),
-            stops: Stops::new(stops, cells, spacing as f64),
+            stops: Stops::new(stops, cells, scale),
             water: water.cloned(),
-            metres: dem.cell() / spacing as f64,
+            ground: None,
+            metres,
+            rules,
+            exaggeration,
             surface,
-        })
+        }
+    }
+
+    /// The same at half the scale, where only longer ones of all `stops` end lines; none of land that is small.
+    ///
+    /// # Errors
+    /// As [`halved`].
+    pub(super) fn halved(&self, stops: &[SurfaceLine]) -> Result<Option<Self>> {
+        let Some(dem) = halved(self.surface.dem())? else { return Ok(None) };
+        let long = LONG_CELLS * dem.cell().min_element();
+        let rest = |line: &SurfaceLine| {
+            let from = line.points.partition_point(|point| f64::from(point.length) < long);
+            SurfaceLine { points: line.points[from..].to_vec(), closed: line.closed && from == 0, ..line.clone() }
+        };
+        let stops: Vec<SurfaceLine> = stops.iter().map(rest).collect();
+        let surface = Arc::new(Surface::new(dem));
+        let land = Self::on(surface, self.metres, self.exaggeration, self.rules, &stops, self.water.as_ref());
+        let ground = self.ground.clone().unwrap_or_else(|| self.surface.clone());
+        Ok(Some(Self { ground: Some(ground), ..land }))
+    }
+
+    /// The height of what lies under a place of the surface, by the samples around it, exaggerated metres; none at voids.
+    pub(super) fn height(&self, place: &LandPlace) -> Option<f64> {
+        let on_ground = |ground: &Arc<Surface>| {
+            let dem = ground.dem();
+            let at = place.at / dem.cell();
+            let corner = at.min(DVec2::new(dem.columns() as f64, dem.rows() as f64) - 2.0).as_usizevec2();
+            let DVec2 { x: u, y: v } = at - corner.as_dvec2();
+            let height = |c: usize, r: usize| dem.height(corner.x + c, corner.y + r).map(f64::from);
+            let along = |r: usize| Some(height(0, r)?.lerp(height(1, r)?, u));
+            Some(along(0)?.lerp(along(1)?, v))
+        };
+        self.ground.as_ref().map_or(Some(place.height), on_ground)
     }
 
     /// Adds to a hash what lines depend on beside the heights.
     pub(super) fn identify(&self, hash: &mut Xxh3) {
-        hash.update(bytemuck::bytes_of(&[self.least, self.turned]));
+        hash.update(bytemuck::bytes_of(&[self.least, self.turned, self.cell.x]));
         hash.update(&[self.water.is_some().into()]);
         self.stops.identify(hash);
         self.surface.limits().identify(hash);
@@ -133,6 +189,7 @@ impl Land {
         self.is_steep(place.gradient)
             && place.is_towards(seed, self.turned)
             && !self.water.as_ref().is_some_and(is_water)
+            && self.height(place).is_some()
     }
 }
 

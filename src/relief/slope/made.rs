@@ -1,6 +1,6 @@
 //! All slope lines of a DEM, made where they are asked for.
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
@@ -83,6 +83,10 @@ pub struct Slopes {
     blocks: Blocks,
     made: Mutex<Made>,
     store: Option<Store>,
+    /// At which lines end, at this scale and at smaller ones.
+    stops: Arc<[SurfaceLine]>,
+    /// Those at half the scale, once somebody asked; none of land that is small.
+    wider: OnceLock<Option<Box<Self>>>,
 }
 
 type Made = FxHashMap<BlockAt, Arc<SlopeBlock>>;
@@ -109,12 +113,40 @@ impl Slopes {
         stops: &[SurfaceLine],
         water: Option<&FlatWater>,
     ) -> Result<Self> {
-        let land = Land::new(surface, exaggeration, rules, stops, water)?;
+        Self::on(Land::new(surface, exaggeration, rules, stops, water)?, exaggeration, stops.into(), None)
+    }
+
+    fn on(land: Land, exaggeration: f64, stops: Arc<[SurfaceLine]>, store: Option<Store>) -> Result<Self> {
         land.surface.pyramid()?;
         let dem = land.surface.dem();
         let extent = DVec2::new(dem.columns() as f64, dem.rows() as f64) - 1.0;
         let blocks = Blocks { unit: land.cell.min_element(), extent: extent * land.cell };
-        Ok(Self { land, exaggeration, blocks, made: Mutex::default(), store: None })
+        Ok(Self { land, exaggeration, blocks, made: Mutex::default(), store, stops, wider: OnceLock::new() })
+    }
+
+    /// Lines of the same land at half the scale; none where it is small.
+    ///
+    /// # Errors
+    /// As [`Surface::pyramid`].
+    pub(crate) fn wider(&self) -> Result<Option<&Self>> {
+        if self.wider.get().is_none() {
+            let on = |land| Self::on(land, self.exaggeration, self.stops.clone(), self.store.clone()).map(Box::new);
+            let made = self.land.halved(&self.stops)?.map(on).transpose()?;
+            let _ = self.wider.set(made);
+        }
+        Ok(self.wider.get().and_then(Option::as_deref))
+    }
+
+    /// Low and high corner of the land in the exaggerated world; none where it is all void.
+    pub(crate) fn corners(&self) -> Option<[DVec3; 2]> {
+        let dem = self.land.surface.dem();
+        let ([west, south, east, north], [low, high]) = (dem.extent(), dem.range()?.map(f64::from));
+        Some([DVec3::new(west, south, low), DVec3::new(east, north, high)])
+    }
+
+    /// Metres of the cells of the land that they run down.
+    pub(crate) fn cell(&self) -> f64 {
+        self.blocks.unit
     }
 
     /// Blocks whose lines may be drawn, by level, row and column: those whose lines may have as much room as is needed in the box
@@ -130,7 +162,7 @@ impl Slopes {
         let mut known = self.lock().clone();
         let missing = self.with_needed(&wanted, |at| !known.contains_key(&at));
         let new = match &self.store {
-            Some(store) if known.is_empty() => store.blocks(&missing, || self.make(&missing, &known))?,
+            Some(store) if known.is_empty() => store.blocks(&self.land, &missing, || self.make(&missing, &known))?,
             _ => self.make(&missing, &known),
         };
         known.extend(missing.iter().copied().zip(new));
@@ -313,8 +345,7 @@ impl Slopes {
     /// # Errors
     /// Those of reading the samples.
     pub fn kept_in(self, cache: &Cache, dem: &Dem) -> Result<Self> {
-        let store = Store::new(cache, dem, self.exaggeration, &self.land)?;
-        Ok(Self { store, ..self })
+        Ok(Self { store: Store::new(cache, dem, self.exaggeration)?, ..self })
     }
 
     /// How far apart the closest lines are, metres on the map.

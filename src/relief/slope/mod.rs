@@ -13,6 +13,9 @@
 //! those beside it that have an earlier phase, of four (`level`): its lines are the same, to the last bit, whatever was asked
 //! for before, on as many threads as there are.
 //!
+//! Lines that stand far apart on the map run down land [at half the scale](halved), and a half of that, and so on: on the land as it is they
+//! would follow what no page shows of it. Each scale has lines of its own, from the widest spacing on.
+//!
 //! Distances are those of the map of the DEM, on which samples lie evenly: where the surface bends sideways between samples,
 //! places lie up to a tenth of a cell beside. Cost: about 3 us a point on a core, 32 bytes a point; a million samples down to a
 //! spacing of one cell have 1.6 million points. Not handled: land that folds over itself, where lines end; lines longer than 10 of
@@ -20,6 +23,7 @@
 //! ahead than across.
 
 mod block;
+mod halved;
 mod kept;
 mod land;
 mod level;

@@ -117,6 +117,7 @@ impl<'a> Tracer<'a> {
 
     fn point(&self, place: &LandPlace, room: f32) -> SlopePoint {
         let at = self.walker.land.samples(place.at);
-        SlopePoint { at, height: place.height as f32, gradient: place.gradient.as_vec2(), room }
+        let height = self.walker.land.height(place).unwrap_or(place.height) as f32;
+        SlopePoint { at, height, gradient: place.gradient.as_vec2(), room }
     }
 }
