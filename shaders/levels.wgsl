@@ -10,6 +10,8 @@ struct Meeting {
     left_land: bool,
     done: bool,
     deferred: bool,
+    // Of a cut: whether it came to where it leads, in the facet of `id`.
+    reached: bool,
     id: u32,
     entered: vec2<f32>,
     steps: u32,

@@ -77,7 +77,10 @@ fn follow_section(first: u32, origin: vec3<f32>, ray: vec3<f32>) -> Meeting {
         let leaves = right & !right.yzx;
         let k = select(select(2u, 1u, leaves.y), 0u, leaves.x);
         let share = sides[k] / (sides[k] - sides[(k + 1u) % 3u]);
-        if !any(leaves) || dot(ahead, mix(p[k], p[(k + 1u) % 3u], share)) > 0.0 {
+        let is_ahead = dot(ahead, mix(p[k], p[(k + 1u) % 3u], share)) > 0.0;
+        if !any(leaves) || is_ahead {
+            meeting.reached = any(leaves) && is_ahead;
+            meeting.id = id;
             meeting.done = true;
             break;
         }

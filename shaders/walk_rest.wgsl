@@ -8,8 +8,8 @@
 // an underside, seen through a void or past the border, and hides the edge between the two.
 //
 // Where both pixels show land, the straight way from a flank to one beside it may cross land that turns away far above, as on a
-// needle. The page shows it elsewhere, and the cut decides: where it reaches the other pixel over toward facets, no line
-// parts the two.
+// needle. The page shows it elsewhere, and the cut decides: where it reaches the facet that the other pixel shows over toward
+// ones, no line parts the two.
 //
 // Cost: at most 256 facets a pair; in a plain seen edge-on against the sky, all of them. Not handled: land that takes more
 // facets than that to turn away within a pixel, and pairs that both show land whose straight way meets nothing, so that
@@ -121,8 +121,7 @@ fn walk_pair(one: vec2<i32>, other: vec2<i32>) -> u32 {
     } else if !to_open && meeting.met && is_elsewhere(offset_of(at, meeting)) {
         let cut = cut_between(p.x - 1u, centre, ray_through(to_centre));
         longest = max(longest, cut.steps);
-        let reaches = !cut.met && !cut.left_land && cut.steps < LONGEST_SECTION;
-        meeting.met = !reaches;
+        meeting.met = !(cut.reached && cut.id == q.x - 1u);
         if cut.met {
             meeting = cut;
         }

@@ -130,7 +130,7 @@
 //! without exception: no NaN, no infinity, no pinhole, no frame that fails; the same bits where land and eye are shifted by whole
 //! cells, scaled by a power of two, raised by whole metres. What bends, by how much, and what was tried stands in
 //! [`stress::exceptions`]: a walk along a ridge that the line of sight touches for kilometres, from an eye on a
-//! sample; lines a fraction of a pixel apart; some pixels of lines where land is turned by half.
+//! sample; lines a fraction of a pixel apart, as where patches fold; some pixels of lines where land is turned by half.
 //!
 //! # Words
 //!

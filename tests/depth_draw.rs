@@ -104,7 +104,12 @@ fn stamps_time_copy_and_draw() {
         renderer.frame(&camera).expect("a frame");
         let draw = little.draw_ms(&renderer).expect("a draw").expect("a time");
         assert!(draw.is_finite() && draw > 0.0, "{clock:?}: {draw} ms");
-        let [few, many] = [&little, &much].map(|floor| floor.copy_ms().expect("a copy").expect("a time"));
+        // The least of some: other tests use the device meanwhile.
+        let least = |floor: &Floor| {
+            let copies = (0..5).map(|_| floor.copy_ms().expect("a copy").expect("a time"));
+            copies.fold(f64::INFINITY, f64::min)
+        };
+        let [few, many] = [&little, &much].map(least);
         assert!(many > few, "{clock:?}: 256 MiB take {many} ms, 4 KiB {few} ms");
     }
 }

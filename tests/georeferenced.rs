@@ -280,6 +280,20 @@ fn own_lines_keep_their_order_and_their_layer_and_plans_have_lines_too() {
     assert_eq!(layers, ["road"]);
 }
 
+#[test]
+fn lines_of_a_dem_without_a_system_are_read_again() {
+    let place = Place::new();
+    let drawn = |flags: &[&str]| {
+        let output =
+            place.run(&[&["draw", "hill.asc", "-o", "out.svg", "--plan", "--scale", "1:20000"], flags].concat());
+        assert!(output.status.success(), "{flags:?}: {}", stderr(&output));
+        fs::read_to_string(place.path("out.svg")).expect("a drawing")
+    };
+    let without = drawn(&["--georeferenced", "lines.gpkg"]);
+    assert!(!lines(&place.path("lines.gpkg")).is_empty());
+    assert_ne!(drawn(&["--lines", "lines.gpkg"]), without, "its own lines are drawn on it");
+}
+
 fn check_own(surface: &Surface, own: &Read) {
     let worst = own.points.windows(3).step_by(7).map(|part| leaves(surface, &[], part)).fold(0.0, f64::max);
     assert!(worst < MAPPED_CELLS, "{worst} cells");

@@ -188,7 +188,10 @@ fn fly(aloft: &mut Option<Aloft>, asked: &Asked, work: &JobWork, progress: &Prog
         count => talk.warn(&bare::of_frames(count)),
     }
     if let Some(folds) = folds.into_inner().transpose()? {
-        folds.warning().into_iter().for_each(|words| talk.warn(&format!("a frame was looked at: {words}")));
+        folds
+            .warning()
+            .into_iter()
+            .for_each(|words| talk.warn(&format!("of the one frame that was looked at: {words}")));
     }
     Ok(())
 }

@@ -67,7 +67,7 @@ fn peaks_help() -> String {
     )
 }
 
-/// Prints size, CRS, extent, cell, range, voids, what was converted and assumed, peaks and areas of channels; or the adapters.
+/// Prints size, CRS, extent, cell, range, voids, what was converted and assumed, peaks and areas of channels, folds; or the adapters.
 ///
 /// # Errors
 /// As [`geo::info()`] and [`Adapter::all`]; for peaks and channels of a DEM that stays in its files [`Error::Limit`](crate::error::Error::Limit).
@@ -81,7 +81,7 @@ pub fn run(arguments: &InfoArguments, talk: &Talk) -> Result<()> {
     // These first: where they cannot be told, nothing is.
     let peaks = arguments.peaks.map(|count| peaks::told(&dem, count)).transpose()?;
     let channels = arguments.channels.then(|| channels::told(&dem)).transpose()?;
-    let folds = arguments.folds.then(|| folds(arguments, dem, talk)).transpose()?;
+    let folds = (arguments.folds || terrain.limits_folds()).then(|| folds(arguments, dem, talk)).transpose()?;
     talk.answer(&[Some(info.told(told)), folds, peaks, channels].into_iter().flatten().collect::<Vec<_>>().join("\n"))
 }
 

@@ -165,7 +165,8 @@ Hachures are strokes down the slope, which give the tone by their width and by h
 (share of ink = slope / 45 degrees, Lehmann 1799; black-at 50 is Mueffling, 60 Bavaria, 80 Austria), shadow that of light against \
 level land, which stays blank, both their mean. A style has them in [hachures], [light] (azimuth of the world; else 45 degrees \
 left of where the eye looks, in a flight at its first frame, and the north-west in plans) and [pens.hachure]. They end half a \
-spacing short of silhouettes and of lines of the land before them; land so near that they would stand closer than an eighth of a \
+spacing short of silhouettes and of lines of the land before them. Far from the eye they run down land at a smaller scale, \
+halved with each doubling of the distance, as a hand would draw it; maps show it as it is. Land so near that they would stand closer than an eighth of a \
 cell gets none, which is warned of. Of a DEM that stays in its file they run on every so-manieth sample, and not down to water.
 
 For plotters (style `plotter`) strokes of a layer that meet are joined, none is drawn twice, dots are 0.05 mm long and nothing \

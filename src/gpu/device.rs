@@ -1,7 +1,7 @@
 //! Opens an adapter and turns the driver's ways of failing into errors.
 
 use std::borrow::Cow;
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock};
 
 use bytemuck::Pod;
 
@@ -51,9 +51,6 @@ pub struct Gpu {
     compiled: Compiled,
     failure: Arc<Mutex<Option<String>>>,
     lost: Arc<Mutex<Option<String>>>,
-    /// Held by who waits: where two did, and one of them gave up just as the other heard that all is done, wgpu panicked
-    /// (mended in <https://github.com/gfx-rs/wgpu/pull/9958>, after version 30).
-    waiting: Mutex<()>,
 }
 
 impl Gpu {
@@ -114,18 +111,7 @@ impl Gpu {
         });
         let info = device.adapter_info();
         let pace = Pace::new(info.device_type == wgpu::DeviceType::Cpu);
-        Ok(Self {
-            device,
-            queue,
-            info,
-            int64,
-            clock,
-            pace,
-            compiled: Compiled::default(),
-            failure,
-            lost,
-            waiting: Mutex::default(),
-        })
+        Ok(Self { device, queue, info, int64, clock, pace, compiled: Compiled::default(), failure, lost })
     }
 
     /// Adapter and driver in words.
@@ -240,7 +226,6 @@ impl Gpu {
     /// Seconds that the driver had for it.
     fn wait_through(&self, work: Option<Work>) -> Result<f64> {
         WAITED.get().into_iter().for_each(|waited| waited(self));
-        let _alone = self.waiting.lock().unwrap_or_else(PoisonError::into_inner);
         let mut watch = self.pace.watch(work);
         loop {
             let wait = wgpu::PollType::Wait { submission_index: None, timeout: Some(watch.look()) };

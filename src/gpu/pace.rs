@@ -23,8 +23,9 @@ const TIMES: f64 = 30.0;
 const LEAST: f64 = 30.0;
 /// Waiting so many seconds for one part means that the driver hangs, whatever it was expected to take.
 const PATIENCE: f64 = 900.0;
-/// How often it is looked whether a part is done.
-const LOOK: Duration = Duration::from_secs(1);
+/// How often it is looked whether a part is done: seldom, for where a look just misses what another thread hears of, wgpu panics
+/// (<https://github.com/gfx-rs/wgpu/pull/9958>, mended after version 30).
+const LOOK: Duration = Duration::from_secs(10);
 /// No more time than so many looks take passes between two of them.
 const LOOKS: f64 = 4.0;
 /// What each part takes beside its work, seconds: submitting, waiting.

@@ -46,6 +46,8 @@ const LONG: [f64; 2] = [1.0, 1.6];
 const MOST_CUTS: u32 = 12;
 /// Distances between strokes, in cells of land at half the scale, from which on its lines begin to be drawn.
 const CELLS: f64 = 0.25;
+/// Least spacings of lines in a cell.
+const CELL: f64 = 8.0;
 /// How many times that distance is where those alone are.
 const BLEND: f64 = 1.3;
 /// On the way there, how much of it a line takes to come or go.
@@ -79,9 +81,12 @@ pub fn hatched(slopes: &Slopes, look: &Hachures, seen: Viewer) -> Result<Hatched
     let mut all = Hatched::default();
     let (mut scale, mut from) = (Some(slopes), 0.0);
     while let Some(slopes) = scale {
-        let to = CELLS * 2.0 * slopes.cell();
-        let farthest = slopes.corners().map_or(0.0, |corners| seen.metres_per_px(corners)[1] * look.spacing);
-        scale = if farthest > to { slopes.wider()? } else { None };
+        // The next has lines that are close enough for what is black, at the corners of the page too.
+        let closest = NEAR[1] * seen.stretch() * look.spacing / look.least_apart();
+        let to = (2.0 * slopes.least_spacing()) * (CELLS * CELL).max(closest);
+        let is_beyond =
+            |corners| seen.most_px_per_metre(corners) > 0.0 && seen.metres_per_px(corners)[1] * look.spacing > to;
+        scale = if slopes.has_land(is_beyond)? { slopes.wider()? } else { None };
         let to = if scale.is_some() { to } else { f64::INFINITY };
         let page = HachuredPage { seen, look, shade, slopes, scale: [from, to] };
         let blocks = slopes.blocks(&page)?;
@@ -124,6 +129,12 @@ impl Viewer<'_> {
         let eye = perspective.eye();
         let farthest = (low - eye).abs().max((high - eye).abs());
         [eye.clamp(low, high).distance(eye), farthest.length()].map(|metres| metres / perspective.focal())
+    }
+
+    /// How many times as large a page shows land at its corners as in its middle.
+    fn stretch(self) -> f64 {
+        let Self::By(perspective, ..) = self else { return 1.0 };
+        1.0 + (perspective.size() / 2.0 / perspective.focal()).length_squared()
     }
 
     /// How far a place of the world is from the eye, metres; of a map that is no matter.

@@ -89,7 +89,7 @@ pub(super) const WALK: MethodEntry = MethodEntry {
     brief: "Walk the lattice between neighbouring pixels: complete",
     aside: "",
     rule: "A pixel is ink if the straight way on the lattice from its point on the surface to a farther neighbour's \
-           crosses a facet that faces away.",
+           crosses a facet that faces away; where the page shows that elsewhere, the cut of the surface between the two must.",
     yields: Yields::Ink,
     raster: Raster::Facets,
     sub_pixel: true,

@@ -35,7 +35,7 @@ const OF_SAMPLE_HATCHED: f64 = 2e-6;
 const PROGRAM: u64 = 209 << 20;
 /// Bytes a sample that is held: height, normal, and what is made of them.
 const OF_SAMPLE: u64 = 16;
-/// Bytes of the lines that hachures are drawn of.
+/// Bytes of the lines that hachures are drawn of, beside those a sample of land at smaller scales.
 const OF_SLOPES: u64 = 192 << 20;
 /// Bytes a pixel of drawings on their way to their files, of which there are up to three.
 const OF_DRAWING: u64 = 3 * 24;
@@ -94,13 +94,14 @@ impl Estimate {
         let samples = samples(surface.dem());
         let held = if surface.dem().held().is_ok() { samples } else { 0 };
         let of_facet = OF_FACET[usize::from(frame.plan.has_curves())];
-        let [hatched, of_slopes] = if frame.plan.hachures.is_some() { [pixels, OF_SLOPES] } else { [0; 2] };
+        let [hatched, of_scales, of_slopes] =
+            if frame.plan.hachures.is_some() { [pixels, held, OF_SLOPES] } else { [0; 3] };
         Ok(Self {
             samples,
             facets,
             start: start(samples, frame.plan.land == LandLines::On),
             seconds: SECONDS + facets as f64 * of_facet + pixels as f64 * OF_PIXEL + hatched as f64 * OF_HATCHED,
-            memory: PROGRAM + held * OF_SAMPLE + of_slopes + device + pixels * OF_DRAWING,
+            memory: PROGRAM + held * OF_SAMPLE + of_scales * OF_SAMPLE / 3 + of_slopes + device + pixels * OF_DRAWING,
             device,
         })
     }

@@ -1,7 +1,7 @@
 //! What bends: promises with a limit of their own, which counts from then on. Each says why, and what was tried.
 //!
 //! Of accuracy there are five in four views, where three were aimed at: of these the contour is right in all but two. Figures are
-//! those of 2026-11-29.
+//! those of 2026-11-29. A plane that holds the eye (`edge-on`) promises no accuracy at all: truth is noise there too.
 //!
 //! Mended, so that no exception stands for it:
 //! - Rims of undersides were inked where the top of the land lay behind them by less than a pixel (`border.wgsl`).

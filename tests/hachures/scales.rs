@@ -8,7 +8,7 @@ use hachure::dem::Dem;
 use hachure::door::line::hachures::{Viewer, hatched};
 use hachure::door::line::{LandWay, Overhead};
 use hachure::ink::{Sheet, Style};
-use hachure::plan::Hachures;
+use hachure::plan::{Hachures, Tone};
 use hachure::relief::Slopes;
 use hachure::surface::Surface;
 use hachure::view::{Camera, Perspective};
@@ -46,8 +46,8 @@ struct Far {
 }
 
 impl Far {
-    fn new() -> Self {
-        let surface = Arc::new(Surface::new(rough()));
+    fn new(dem: Dem) -> Self {
+        let surface = Arc::new(Surface::new(dem));
         let style = Style::default();
         let rules = style.hachures.rules().expect("hachures");
         let slopes = Slopes::new(surface.clone(), 1.0, rules, &[], None).expect("slopes");
@@ -55,11 +55,11 @@ impl Far {
         Self { surface, slopes, look }
     }
 
-    /// From so many metres south of the middle, a little above it.
-    fn seen(&self, metres: f64) -> (Vec<LandWay>, Perspective) {
+    /// From so many metres south of the middle, a little above it, with a field of view in degrees.
+    fn seen(&self, metres: f64, fov: f64) -> (Vec<LandWay>, Perspective) {
         let dem = self.surface.dem();
-        let middle = dem.position(SIDE / 2, SIDE / 2).truncate().extend(2000.0);
-        let camera: Camera = look(middle + DVec3::new(0.0, -metres, 0.2 * metres), middle, 40.0, SIZE);
+        let middle = dem.position(dem.columns() / 2, dem.rows() / 2).truncate().extend(2000.0);
+        let camera: Camera = look(middle + DVec3::new(0.0, -metres, 0.2 * metres), middle, fov, SIZE);
         let perspective = Perspective::new(&camera, 1.0);
         let seen = Viewer::By(&perspective, camera.azimuth, None);
         (hatched(&self.slopes, &self.look, seen).expect("strokes").ways, perspective)
@@ -81,8 +81,8 @@ fn along(ways: &[LandWay]) -> f64 {
 
 #[test]
 fn far_strokes_follow_the_land_and_not_its_noise() {
-    let far = Far::new();
-    let (ways, perspective) = far.seen(12_000.0);
+    let far = Far::new(rough());
+    let (ways, perspective) = far.seen(12_000.0, 40.0);
     let dem = far.surface.dem();
     let px_per_metre = perspective.focal() / 12_000.0;
     let on_map = Overhead { area: dem.extent(), size: [(4800.0 * px_per_metre) as u32; 2], px_per_metre };
@@ -94,9 +94,9 @@ fn far_strokes_follow_the_land_and_not_its_noise() {
 
 #[test]
 fn far_strokes_lie_on_the_land_and_not_in_its_voids() {
-    let far = Far::new();
+    let far = Far::new(rough());
     let dem = far.surface.dem();
-    let (ways, _) = far.seen(12_000.0);
+    let (ways, _) = far.seen(12_000.0, 40.0);
     let [mut counted, mut exact] = [0; 2];
     for point in ways.iter().flat_map(|way| &way.points) {
         let corner = point.at.floor().min(DVec2::splat((SIDE - 2) as f64)).as_usizevec2();
@@ -114,20 +114,40 @@ fn far_strokes_lie_on_the_land_and_not_in_its_voids() {
 }
 
 #[test]
+fn far_strokes_reach_the_rim_of_land_of_any_size() {
+    const COLUMNS: usize = 500;
+    let fall = |i: usize| (3000.0 - FALL * 10.0 * (i / COLUMNS) as f64) as f32;
+    let heights = (0..COLUMNS * COLUMNS).map(fall).collect();
+    let far = Far::new(Dem::from_heights(COLUMNS, DVec2::splat(10.0), DVec2::new(500_000.0, 4_000_000.0), heights));
+    let (ways, _) = far.seen(9_000.0, 60.0);
+    let ends = ways.iter().flat_map(|way| &way.points).map(|point| point.at);
+    let [low, high] = ends.fold([DVec2::MAX, DVec2::MIN], |[low, high], at| [low.min(at), high.max(at)]);
+    println!("strokes from {low} to {high}");
+    assert!(low.max_element() < 6.0 && high.min_element() > COLUMNS as f64 - 7.0, "{low} {high}");
+}
+
+#[test]
 fn scales_give_way_to_each_other_without_a_gap_or_a_crowd() {
-    let far = Far::new();
-    // What there is on the page, as if it were as large from everywhere.
-    let length = |metres: f64| {
-        let (ways, perspective) = far.seen(metres);
-        let pairs = ways.iter().flat_map(|way| way.points.windows(2));
-        let seen = pairs.map(|pair| {
-            let [a, b] = [0, 1].map(|k| perspective.project(pair[k].world).0);
-            a.distance(b) * f64::from(pair[0].weight)
-        });
-        seen.sum::<f64>() * metres * metres
-    };
-    let lengths: Vec<f64> = (0..9).map(|k| length(9_000.0 * 2.0_f64.powf(f64::from(k) / 8.0))).collect();
-    let mean = lengths.iter().sum::<f64>() / lengths.len() as f64;
-    println!("{:.2?} of the mean", lengths.iter().map(|length| length / mean).collect::<Vec<_>>());
-    assert!(lengths.iter().all(|length| (0.8..1.25).contains(&(length / mean))));
+    let usual = Far::new(rough());
+    // Fine pens: strokes stand closer, to be as dark.
+    let fine = Hachures { broadest: usual.look.broadest / 3.0, tone: Tone::Shadow, ..usual.look };
+    let least = |look: &Hachures| look.apart(look.most_black);
+    assert!(least(&fine) < 0.4 * fine.spacing && least(&usual.look) > least(&fine));
+    let fine = Far { look: fine, ..Far::new(rough()) };
+    for (far, fov, from) in [(&usual, 40.0, 9_000.0), (&usual, 100.0, 9_000.0), (&fine, 40.0, 9_000.0)] {
+        // What there is on the page, as if it were as large from everywhere.
+        let length = |metres: f64| {
+            let (ways, perspective) = far.seen(metres, fov);
+            let pairs = ways.iter().flat_map(|way| way.points.windows(2));
+            let seen = pairs.map(|pair| {
+                let [a, b] = [0, 1].map(|k| perspective.project(pair[k].world).0);
+                a.distance(b) * f64::from(pair[0].weight)
+            });
+            seen.sum::<f64>() * metres * metres
+        };
+        let lengths: Vec<f64> = (0..9).map(|k| length(from * 2.0_f64.powf(f64::from(k) / 8.0))).collect();
+        let mean = lengths.iter().sum::<f64>() / lengths.len() as f64;
+        println!("fov {fov}: {:.2?} of the mean", lengths.iter().map(|length| length / mean).collect::<Vec<_>>());
+        assert!(lengths.iter().all(|length| (0.8..1.25).contains(&(length / mean))));
+    }
 }

@@ -10,8 +10,7 @@ use gdal::vector::{
 };
 use glam::DVec2;
 
-use super::vectors::{Purpose, Vectors};
-use crate::dem::Crs;
+use super::vectors::{Purpose, Vectors, system_of};
 use crate::error::{Error, Result};
 use crate::geo::{OwnLayer, OwnLine, OwnLines};
 
@@ -39,7 +38,7 @@ pub fn own_lines(path: &Path, allow_remote: bool) -> Result<OwnLines> {
 }
 
 fn read(layer: &mut Layer) -> OwnLayer {
-    let crs = layer.spatial_ref().and_then(Crs::of);
+    let crs = system_of(layer);
     let fields: Vec<String> = layer.defn().fields().map(|field| field.name()).collect();
     let of_order = |known: &&str| fields.iter().position(|name| name.eq_ignore_ascii_case(known));
     let orders: Vec<usize> = ORDERS.iter().filter_map(of_order).collect();

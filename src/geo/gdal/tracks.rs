@@ -14,7 +14,7 @@ use gdal::vector::{
 };
 use glam::DVec3;
 
-use super::vectors::{Purpose, Vectors};
+use super::vectors::{Purpose, Vectors, system_of};
 use crate::dem::Crs;
 use crate::error::{Error, Message, Result, Setting};
 use crate::geo::Track;
@@ -117,7 +117,7 @@ fn chosen<'a>(found: &'a [Found], is_gpx: bool, path: &Path) -> Result<(&'a Trac
 
 impl Found {
     fn of(layer: &mut Layer) -> Self {
-        let crs = layer.spatial_ref().and_then(Crs::of);
+        let crs = system_of(layer);
         let mut found = Self { layer: layer.name(), crs, ..Self::default() };
         for feature in layer.features() {
             let text =

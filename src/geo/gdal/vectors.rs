@@ -12,6 +12,7 @@ use super::formats::{self, FORMATS, VECTORS};
 use super::name::{Local, Name};
 use super::source::{check_file, heard, one_line, unreadable_file};
 use super::{lossless, vsi};
+use crate::dem::Crs;
 use crate::error::{Error, Result, Setting};
 use crate::geo::track::with_layer;
 use crate::message;
@@ -35,6 +36,13 @@ pub(super) struct Vectors {
     file: PathBuf,
     dataset: Dataset,
     layers: Vec<String>,
+}
+
+/// The system of a layer's places; none where it names none, for which GeoPackage has names of its own (OGC 12-128r19, 1.1.2.1.2).
+pub(super) fn system_of(layer: &Layer) -> Option<Crs> {
+    let is_undefined = |name: String| name.to_ascii_lowercase().starts_with("undefined ");
+    let named = layer.spatial_ref().filter(|reference| !reference.name().is_some_and(is_undefined));
+    named.and_then(Crs::of)
 }
 
 impl Purpose {

@@ -1,8 +1,8 @@
 //! The land at half the scale, for lines that stand so far apart that they would follow what no page shows of it.
 //!
 //! Method: a Gaussian pyramid (Burt, Adelson 1983): heights are averaged by binomial weights, 1 4 6 4 1, along rows and columns, and
-//! every other one stays. After n times they are those of a Gaussian of about .58 of the new cells. Voids have no weight; a sample that is
-//! one stays one. Cost: some 20 multiplications a sample that stays, on every core.
+//! every other one stays, of even sides one more beyond the edge. After n times they are those of a Gaussian of about .58 of the new cells.
+//! Voids have no weight: they are filled from what is about them, so who goes on the land looks at the land itself. Cost: some 20 multiplications a sample that stays, on every core.
 
 use rayon::prelude::*;
 
@@ -26,13 +26,14 @@ pub(super) fn halved(dem: &Dem) -> Result<Option<Dem>> {
         return Ok(None);
     }
     let samples = dem.held()?;
-    let rows = (0..size[1]).step_by(2).collect::<Vec<_>>();
-    let heights: Vec<f32> = rows.into_par_iter().flat_map_iter(|row| halved_row(samples, row)).collect();
-    Ok(Some(Dem::from_heights(size[0].div_ceil(2), dem.cell() * 2.0, dem.position(0, 0).truncate(), heights)))
+    let halves = size.map(|side| side / 2 + 1);
+    let heights: Vec<f32> =
+        (0..halves[1]).into_par_iter().flat_map_iter(|row| halved_row(samples, 2 * row, halves[0])).collect();
+    Ok(Some(Dem::from_heights(halves[0], dem.cell() * 2.0, dem.position(0, 0).truncate(), heights)))
 }
 
-/// Every other sample of a row, averaged; not a number where it is a void.
-fn halved_row(samples: &Samples, row: usize) -> Vec<f32> {
+/// So many samples about a row, every other one, averaged; not a number where all about one are voids.
+fn halved_row(samples: &Samples, row: usize, halves: usize) -> Vec<f32> {
     let [columns, rows] = samples.size();
     // Heights by their weights down the columns, and these: 0 of voids.
     let [mut sums, mut weights] = [0, 1].map(|_| vec![0.0_f32; columns]);
@@ -47,9 +48,9 @@ fn halved_row(samples: &Samples, row: usize) -> Vec<f32> {
         let add =
             |[sum, all]: [f32; 2], (at, weight): (usize, f32)| [sum + weight * sums[at], all + weight * weights[at]];
         let [sum, all] = around(c, columns).fold([0.0; 2], add);
-        samples.height(c, row).map_or(f32::NAN, |_| sum / all)
+        if all > 0.0 { sum / all } else { f32::NAN }
     };
-    (0..columns).step_by(2).map(middle).collect()
+    (0..halves).map(|half| middle(2 * half)).collect()
 }
 
 /// Those of so many samples that count at one, with their weights.

@@ -1,6 +1,6 @@
 //! Slope lines that a view needed, kept in the cache: who draws it again need not wait for them.
 //!
-//! What a first request makes is one file, named by the heights, the rules, what lines end at, and the blocks that were made, which
+//! What a first request makes of a scale is one file, named by the heights, the rules, what lines end at, and the blocks that were made, which
 //! are others for another tone or spacing; what flights add from frame to frame is not kept.
 //!
 //! ```text

@@ -25,8 +25,9 @@ const LEAST_COVER: f64 = 0.01;
 /// The share of the least gradient under which, at a sample, no line begins about it.
 const NEARLY: f64 = 0.5;
 
-/// Metres of water or of a ridge, in cells, from which on it ends lines on land of a smaller scale.
-const LONG_CELLS: f64 = 8.0;
+/// Metres of water above a place of a channel, or of flow that a ridge parts there, in cells, from which on it ends lines on land at a
+/// smaller scale.
+pub(super) const LONG_CELLS: f64 = 8.0;
 
 /// The land and its rules.
 #[derive(Debug)]
@@ -119,27 +120,25 @@ impl Land {
     pub(super) fn halved(&self, stops: &[SurfaceLine]) -> Result<Option<Self>> {
         let Some(dem) = halved(self.surface.dem())? else { return Ok(None) };
         let long = LONG_CELLS * dem.cell().min_element();
-        let rest = |line: &SurfaceLine| {
-            let from = line.points.partition_point(|point| f64::from(point.length) < long);
-            SurfaceLine { points: line.points[from..].to_vec(), closed: line.closed && from == 0, ..line.clone() }
-        };
-        let stops: Vec<SurfaceLine> = stops.iter().map(rest).collect();
+        let stops = long_stops(stops, long);
         let surface = Arc::new(Surface::new(dem));
         let land = Self::on(surface, self.metres, self.exaggeration, self.rules, &stops, self.water.as_ref());
         let ground = self.ground.clone().unwrap_or_else(|| self.surface.clone());
         Ok(Some(Self { ground: Some(ground), ..land }))
     }
 
-    /// The height of what lies under a place of the surface, by the samples around it, exaggerated metres; none at voids.
+    /// The height of what lies under a place of the surface, by the samples around it, exaggerated metres; none at voids and
+    /// outside.
     pub(super) fn height(&self, place: &LandPlace) -> Option<f64> {
         let on_ground = |ground: &Arc<Surface>| {
             let dem = ground.dem();
             let at = place.at / dem.cell();
-            let corner = at.min(DVec2::new(dem.columns() as f64, dem.rows() as f64) - 2.0).as_usizevec2();
+            let last = DVec2::new(dem.columns() as f64, dem.rows() as f64) - 1.0;
+            let corner = at.min(last - 1.0).as_usizevec2();
             let DVec2 { x: u, y: v } = at - corner.as_dvec2();
             let height = |c: usize, r: usize| dem.height(corner.x + c, corner.y + r).map(f64::from);
             let along = |r: usize| Some(height(0, r)?.lerp(height(1, r)?, u));
-            Some(along(0)?.lerp(along(1)?, v))
+            at.cmple(last).all().then(|| Some(along(0)?.lerp(along(1)?, v))).flatten()
         };
         self.ground.as_ref().map_or(Some(place.height), on_ground)
     }
@@ -188,9 +187,25 @@ impl Land {
         };
         self.is_steep(place.gradient)
             && place.is_towards(seed, self.turned)
-            && !self.water.as_ref().is_some_and(is_water)
             && self.height(place).is_some()
+            && !self.water.as_ref().is_some_and(is_water)
     }
+}
+
+/// The parts of lines whose water is so long, metres: those that tell of larger forms. They join nothing.
+pub(super) fn long_stops(stops: &[SurfaceLine], metres: f64) -> Vec<SurfaceLine> {
+    let long = |line: &SurfaceLine| {
+        let from = line.points.partition_point(|point| f64::from(point.length) < metres);
+        let points = line.points[from..].to_vec();
+        (points.len() > 1).then(|| SurfaceLine {
+            kind: line.kind,
+            order: line.order,
+            points,
+            closed: line.closed && from == 0,
+            joins: None,
+        })
+    };
+    stops.iter().filter_map(long).collect()
 }
 
 /// The surface of a DEM's every so-manieth sample, held.

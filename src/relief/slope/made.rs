@@ -8,7 +8,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::block::made;
 use super::kept::Store;
-use super::land::{Land, Walker};
+use super::land::{LONG_CELLS, Land, Walker, long_stops};
 use super::level::{BlockAt, Blocks, LEVELS};
 use super::{SlopeBlock, SlopePoint, SlopeRules};
 use crate::cache::Cache;
@@ -83,7 +83,7 @@ pub struct Slopes {
     blocks: Blocks,
     made: Mutex<Made>,
     store: Option<Store>,
-    /// At which lines end, at this scale and at smaller ones.
+    /// At which lines end at smaller scales.
     stops: Arc<[SurfaceLine]>,
     /// Those at half the scale, once somebody asked; none of land that is small.
     wider: OnceLock<Option<Box<Self>>>,
@@ -113,7 +113,10 @@ impl Slopes {
         stops: &[SurfaceLine],
         water: Option<&FlatWater>,
     ) -> Result<Self> {
-        Self::on(Land::new(surface, exaggeration, rules, stops, water)?, exaggeration, stops.into(), None)
+        let land = Land::new(surface, exaggeration, rules, stops, water)?;
+        // At the next scale no more are needed.
+        let long = long_stops(stops, 2.0 * LONG_CELLS * land.cell.min_element());
+        Self::on(land, exaggeration, long.into(), None)
     }
 
     fn on(land: Land, exaggeration: f64, stops: Arc<[SurfaceLine]>, store: Option<Store>) -> Result<Self> {
@@ -137,16 +140,13 @@ impl Slopes {
         Ok(self.wider.get().and_then(Option::as_deref))
     }
 
-    /// Low and high corner of the land in the exaggerated world; none where it is all void.
-    pub(crate) fn corners(&self) -> Option<[DVec3; 2]> {
-        let dem = self.land.surface.dem();
-        let ([west, south, east, north], [low, high]) = (dem.extent(), dem.range()?.map(f64::from));
-        Some([DVec3::new(west, south, low), DVec3::new(east, north, high)])
-    }
-
-    /// Metres of the cells of the land that they run down.
-    pub(crate) fn cell(&self) -> f64 {
-        self.blocks.unit
+    /// Whether that is so of the box of the exaggerated world about some of the land, by its low and high corner.
+    ///
+    /// # Errors
+    /// As [`Surface::pyramid`].
+    pub(crate) fn has_land(&self, is_so: impl Fn([DVec3; 2]) -> bool) -> Result<bool> {
+        let pyramid = self.land.surface.pyramid()?;
+        Ok(self.blocks.of(0).filter_map(|at| self.bounds(pyramid, at)).any(is_so))
     }
 
     /// Blocks whose lines may be drawn, by level, row and column: those whose lines may have as much room as is needed in the box

@@ -53,9 +53,9 @@ pub struct SlopeRules {
 pub struct SlopePoint {
     /// Column and row of the DEM, fractional: the place on the lattice of patches.
     pub at: DVec2,
-    /// Metres of the exaggerated world, on the PN surface.
+    /// Metres of the exaggerated world: on the PN surface, or of land at a smaller scale on the cells of the land itself.
     pub height: f32,
-    /// Gradient of the PN surface there, exaggerated metres for a metre east and for one north: dz/dx, dz/dy.
+    /// Gradient there of the PN surface that the line runs down, exaggerated metres for a metre east and for one north: dz/dx, dz/dy.
     pub gradient: Vec2,
     /// How far it is, across, to the nearest line that is there when lines so far apart are drawn, metres on the map; at most
     /// the spacing of the level before, of level 0 four of its own.
@@ -67,7 +67,7 @@ pub struct SlopePoint {
 pub struct SlopeLine {
     /// Made of its rank alone: level, block, number in it.
     pub id: u64,
-    /// At least two, about half of the level's spacing apart but at most half a cell.
+    /// At least two, about half of the level's spacing apart but at most half a cell of that surface.
     pub points: Vec<SlopePoint>,
 }
 
