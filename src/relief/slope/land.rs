@@ -196,16 +196,15 @@ impl Land {
 pub(super) fn long_stops(stops: &[SurfaceLine], metres: f64) -> Vec<SurfaceLine> {
     let long = |line: &SurfaceLine| {
         let from = line.points.partition_point(|point| f64::from(point.length) < metres);
-        let points = line.points[from..].to_vec();
-        (points.len() > 1).then(|| SurfaceLine {
+        SurfaceLine {
             kind: line.kind,
             order: line.order,
-            points,
+            points: line.points[from..].to_vec(),
             closed: line.closed && from == 0,
             joins: None,
-        })
+        }
     };
-    stops.iter().filter_map(long).collect()
+    stops.iter().map(long).filter(|line| line.points.len() > 1).collect()
 }
 
 /// The surface of a DEM's every so-manieth sample, held.
