@@ -44,10 +44,9 @@ const BLANK: f64 = 0.3;
 const LONG: [f64; 2] = [1.0, 1.6];
 /// Most times that a piece is cut in two.
 const MOST_CUTS: u32 = 12;
-/// Distances between strokes, in cells of land at half the scale, from which on its lines begin to be drawn.
-const CELLS: f64 = 0.25;
-/// Least spacings of lines in a cell.
-const CELL: f64 = 8.0;
+/// Least distance between strokes from which on lines of land at half the scale begin to be drawn, in the closest that these are: a
+/// quarter of its cells.
+const WIDER: f64 = 2.0;
 /// How many times that distance is where those alone are.
 const BLEND: f64 = 1.3;
 /// On the way there, how much of it a line takes to come or go.
@@ -83,7 +82,7 @@ pub fn hatched(slopes: &Slopes, look: &Hachures, seen: Viewer) -> Result<Hatched
     while let Some(slopes) = scale {
         // The next has lines that are close enough for what is black, at the corners of the page too.
         let closest = NEAR[1] * seen.stretch() * look.spacing / look.least_apart();
-        let to = (2.0 * slopes.least_spacing()) * (CELLS * CELL).max(closest);
+        let to = 2.0 * slopes.least_spacing() * closest.max(WIDER);
         let is_beyond =
             |corners| seen.most_px_per_metre(corners) > 0.0 && seen.metres_per_px(corners)[1] * look.spacing > to;
         scale = if slopes.has_land(is_beyond)? { slopes.wider()? } else { None };

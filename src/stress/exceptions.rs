@@ -7,7 +7,7 @@
 //! - Rims of undersides were inked where the top of the land lay behind them by less than a pixel (`border.wgsl`).
 //! - Along the flank of a needle the walk inked a second line, F .963: the straight way from one pixel's land to its neighbour's
 //!   crossed land that turns away far above. Where the page shows elsewhere what the way meets, the cut of the surface decides
-//!   (`walk_rest.wgsl`); F .999, and on land with cliffs a little better too.
+//!   (`walk_rest.wgsl`); F .994, and precision on Yosemite's cliffs .9904 to .9912.
 
 use super::promise::Promise;
 
@@ -67,7 +67,7 @@ pub const EXCEPTIONS: &[Exception] = &[
     except(("doubled-rows", "across", "walk"), Promise::Accurate, 0.85, SLIVERS),
     except(("doubled-rows", "across", "contour"), Promise::Accurate, 0.81, SLIVERS),
     except(("folds", "above", "contour"), Promise::Accurate, 0.96, FOLDS),
-    except(("folds", "above", "walk"), Promise::NoFlood, 0.0021, FOLDS),
+    except(("folds", "above", "walk"), Promise::NoFlood, 0.0029, FOLDS),
     except(("folds", "above", "contour"), Promise::NoFlood, 0.0015, FOLDS),
     except(("on-the-land", "sample", "walk"), Promise::Conditioned, 160.0, ON_A_SAMPLE),
     except(("on-the-land", "sample", "toward-away"), Promise::Conditioned, 114.0, ON_A_SAMPLE),
@@ -75,7 +75,7 @@ pub const EXCEPTIONS: &[Exception] = &[
     except(("mountains", "valley", "walk"), Promise::Turned, 4.0, HALF_TURN),
     except(("cliff-10", "below", "walk"), Promise::Turned, 8.0, HALF_TURN),
     except(("cliff-10", "below", "walk"), Promise::TurnedFar, 3.0, HALF_TURN),
-    except(("cliff-10000", "below", "walk"), Promise::Turned, 54.0, HALF_TURN),
+    except(("cliff-10000", "below", "walk"), Promise::Turned, 64.0, HALF_TURN),
     except(("terraces", "above", "walk"), Promise::Turned, 4.0, HALF_TURN),
     except(("saw-tooth", "along", "walk"), Promise::Turned, 6.0, HALF_TURN),
     except(("saw-tooth", "along", "walk"), Promise::TurnedFar, 1.0, HALF_TURN),
