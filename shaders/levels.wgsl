@@ -65,7 +65,7 @@ fn meet_beside_coarser(slot: u32, quad: vec2<u32>, origin: vec2<i32>, end: vec2<
             continue;
         }
         let missing = lacks_vertex(f);
-        if !missing && !is_away(id) {
+        if !missing && is_away(id) == seeks_toward {
             continue;
         }
         let share = entry_share(f, origin, end);

@@ -1,8 +1,8 @@
 // One invocation a pixel with open pairs: of each pair with a neighbour, walks the lattice from the nearer pixel's point on
 // the surface to the farther one's, facet by facet, in integers. An away facet on the way makes the nearer one ink; a
 // void or the outside ends the walk. Pairs with a pixel without surface, walks past squares that lack facets or past
-// facets beside a coarser chunk, and those that meet an away facet which the page shows elsewhere are rare and left to
-// `walk_rest`: drivers that run both sides of every branch pay for them here.
+// facets beside a coarser chunk, and those that meet an away facet which the page shows elsewhere or under which the
+// surface does not turn away are rare and left to `walk_rest`: drivers that run both sides of every branch pay for them here.
 
 @group(0) @binding(21) var<storage, read> pairs: ListRead;
 @group(0) @binding(22) var<storage, read_write> out_ink: array<atomic<u32>>;
@@ -88,6 +88,65 @@ fn ink(at: vec2<i32>, offset: vec2<f32>) {
     atomicMax(&out_ink[pixel_index(at)], silhouette_at(offset));
 }
 
+// How many times as fine the surface under a facet in doubt is looked at.
+const FINER: u32 = 4u;
+// Of the facets of a quad and of those about it in its chunk at most this share faces away in an island.
+const ISLAND: f32 = 0.34;
+
+// Whether an away facet may be one of an island of such: few about it face away, too, and the surface is known finer.
+fn is_in_doubt(id: u32) -> bool {
+    let slot = id / CHUNK_FACETS;
+    let step = chunks[slot].step;
+    let quad = local_quad(id % CHUNK_FACETS);
+    let first = max(quad, vec2<u32>(1u)) - 1u;
+    let last = min(quad + 1u, vec2<u32>(CHUNK_QUADS - 1u));
+    var away = 0u;
+    for (var row = first.y; row <= last.y; row++) {
+        for (var column = first.x; column <= last.x; column++) {
+            away += countOneBits(away_bits(slot * CHUNK_FACETS + quad_local(vec2<u32>(column, row))) & 3u);
+        }
+    }
+    let about = 2u * (last.x - first.x + 1u) * (last.y - first.y + 1u);
+    return step < CELL_STEPS && step >= FINER && f32(away) <= ISLAND * f32(about);
+}
+
+// Whether a facet, given by its corners in metres from the eye, faces away.
+fn turns_away(a: vec3<f32>, b: vec3<f32>, c: vec3<f32>) -> bool {
+    return dot(cross(b - a, c - a), a) >= 0.0;
+}
+
+// Whether the surface turns away under an away facet of a patch: some of the finer facets that it is made of do. Beside coarser
+// chunks, too, no facet lies in two patches.
+fn surface_turns(id: u32) -> bool {
+    let chunk = chunks[id / CHUNK_FACETS];
+    let f = facet_of(id);
+    let cell = (f.a + f.b + f.c) / (3u * CELL_STEPS);
+    let sub = f.a + f.b + f.c - cell * (3u * CELL_STEPS);
+    let of_cell = patch_of(chunk.tile, tile_place(chunk, cell * CELL_STEPS), sub.x > sub.y);
+    let corner = eye_relative(cell, vec4<f32>(0.0, 0.0, 0.0, of_cell.height));
+    let at = vec2<f32>(vec2<i32>(f.a) - vec2<i32>(cell * CELL_STEPS)) / f32(CELL_STEPS);
+    let along = vec2<f32>(vec2<i32>(f.b) - vec2<i32>(f.a)) / f32(CELL_STEPS * FINER);
+    let up = vec2<f32>(vec2<i32>(f.c) - vec2<i32>(f.a)) / f32(CELL_STEPS * FINER);
+    for (var row = 0u; row < FINER; row++) {
+        let start = at + up * f32(row);
+        var low = corner + patch_point(of_cell, start);
+        var high = corner + patch_point(of_cell, start + up);
+        for (var column = 1u; column <= FINER - row; column++) {
+            let next = start + along * f32(column);
+            let next_low = corner + patch_point(of_cell, next);
+            let next_high = corner + patch_point(of_cell, next + up);
+            // The last of a row has none on its tip.
+            let on_tip = column < FINER - row && turns_away(next_low, next_high, high);
+            if turns_away(low, next_low, high) || on_tip {
+                return true;
+            }
+            low = next_low;
+            high = next_high;
+        }
+    }
+    return false;
+}
+
 fn check_done(meeting: Meeting) {
     if !meeting.done {
         atomicAdd(&out_counts.cut_short, 1u);
@@ -128,7 +187,8 @@ fn walk(@builtin(global_invocation_id) invocation: vec3<u32>, @builtin(num_workg
             let meeting = walk_between(select(place, other_place, swapped), select(other_place, place, swapped));
             let at = select(one, other, swapped);
             let offset = offset_of(at, meeting);
-            let is_left = meeting.deferred || (meeting.met && is_elsewhere(offset));
+            let goes_on = meeting.met && !meeting.deferred && is_in_doubt(meeting.id) && !surface_turns(meeting.id);
+            let is_left = meeting.deferred || goes_on || (meeting.met && is_elsewhere(offset));
             deferred |= select(0u, left & (~left + 1u), is_left);
             if meeting.met && !is_left {
                 ink(at, offset);

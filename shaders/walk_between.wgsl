@@ -3,6 +3,10 @@
 // Whether what is rare is left to another pass.
 override defers: bool = true;
 
+// Whether a walk looks for the first facet that does not face away, and through how many nodes.
+var<private> seeks_toward: bool = false;
+const SEEN_TOWARD: u32 = 4u;
+
 // How the segment stands in a quad or passes its side: half 0 (south-west) or 1 (north-east) of the quad.
 fn half_at(z: i32, direction_z: i32) -> u32 {
     return select(select(0u, 1u, z > 0), select(0u, 1u, direction_z > 0), z == 0);
@@ -154,9 +158,9 @@ fn node_of(walk: ptr<function, Walk>, leg: ptr<function, Leg>) -> Node {
     let summary = (*leg).summary;
     node.inner = vec2<u32>((*walk).quad) & vec2<u32>(CHUNK_QUADS - 1u);
     let of_square = summary >> square_of(node.inner);
-    node.eventful = (of_square & 0x10001u) != 0u;
+    node.eventful = seeks_toward || (of_square & 0x10001u) != 0u;
     node.lacking = (of_square & 0x10000u) != 0u;
-    node.size = select(select(4u, 1u, node.eventful || !culls), CHUNK_QUADS, summary == 0u && culls);
+    node.size = select(select(4u, 1u, node.eventful || !culls), CHUNK_QUADS, summary == 0u && culls && !seeks_toward);
     let in_node = node.inner & vec2<u32>(node.size - 1u);
     node.to_side = select(in_node + 1u, node.size - in_node, ahead);
     node.column_end = wide_add((*leg).lead, wide_scale((*leg).per_column, node.to_side.x - 1u));
@@ -175,7 +179,7 @@ fn meet_in_quad(walk: ptr<function, Walk>, leg: ptr<function, Leg>, node: Node) 
     let exit = select(half_behind(node.leaves, -d), half_at(at_end.x - at_end.y, d.y - d.x), node.ends);
     let entry = (*leg).entry;
     let id = (*leg).slot * CHUNK_FACETS + quad_local(node.inner);
-    let away = away_bits(id);
+    let away = away_bits(id) ^ select(0u, 3u, seeks_toward);
     let entry_away = ((away >> entry) & 1u) == 1u;
     let entry_missing = !defers && is_no_facet((*leg).chunk, node.inner, entry);
     let exit_missing = !defers && is_no_facet((*leg).chunk, node.inner, exit);
@@ -245,7 +249,7 @@ fn cross_chunk(walk: ptr<function, Walk>, leg: ptr<function, Leg>) -> Meeting {
         (*walk).steps += 1u;
         let node = node_of(walk, leg);
         meeting = meet_in(walk, leg, node);
-        meeting.done = meeting.done || node.ends;
+        meeting.done = meeting.done || node.ends || (seeks_toward && (*walk).steps == SEEN_TOWARD);
         if meeting.done {
             break;
         }

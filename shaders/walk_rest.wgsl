@@ -11,6 +11,11 @@
 // needle. The page shows it elsewhere, and the cut decides: where it reaches the facet that the other pixel shows over toward
 // ones, no line parts the two.
 //
+// A facet may turn away where the surface that it stands for does not: seen nearly edge-on, and on land whose samples are rounded,
+// there are islands of such facets. Where the way crosses a short stretch that hides next to nothing, the surface under its first
+// facet decides, four times as fine: tangent to the sight for 8 km F .975 to .998, on Yosemite's cliffs precision .991 to .994 at
+// the same recall.
+//
 // Cost: at most 256 facets a pair; in a plain seen edge-on against the sky, all of them. Not handled: land that takes more
 // facets than that to turn away within a pixel, and pairs that both show land whose straight way meets nothing, so that
 // the foot of a spire may lack ink for a few pixels before land beside it.
@@ -74,6 +79,47 @@ fn open_goal(id: u32, centre: vec2<f32>, to_centre: vec2<f32>, origin: vec2<i32>
     return Goal(at, dot(normal, camera.right.xyz * px.x - camera.up.xyz * px.y) >= 0.0);
 }
 
+// What an away stretch of at most `SEEN_TOWARD` nodes may lead back on the page and hide next to nothing, px.
+const LEAST_HIDDEN: f32 = 0.02;
+// Such stretches that one way may cross.
+const MOST_STRETCHES: u32 = 4u;
+
+// Where on the map a meeting is, a little on along the way.
+fn beyond_entry(meeting: Meeting, d: vec2<i32>) -> vec2<i32> {
+    let on = normalize(vec2<f32>(d)) * 1.5;
+    return vec2<i32>(facet_of(meeting.id).a * UNITS) + vec2<i32>(round(meeting.entered + on));
+}
+
+// The way on the page that a facet faces.
+fn page_normal(id: u32) -> vec2<f32> {
+    let t = corners_of(chunks[id / CHUNK_FACETS], facet_of(id));
+    let normal = cross(t.edge_1, t.edge_2);
+    let on_page = vec2<f32>(dot(normal, camera.right.xyz), -dot(normal, camera.up.xyz));
+    return on_page / max(length(on_page), 1e-30);
+}
+
+// The first away facet between two points that is in no doubt, or under which the surface turns away too, or behind which the way
+// leads back on the page.
+fn turn_between(origin: vec2<i32>, end: vec2<i32>) -> Meeting {
+    var start = origin;
+    var meeting: Meeting;
+    for (var k = 0u; k < MOST_STRETCHES; k++) {
+        meeting = walk_between(start, end);
+        if !meeting.met || !is_in_doubt(meeting.id) || surface_turns(meeting.id) {
+            break;
+        }
+        seeks_toward = true;
+        let beyond = walk_between(beyond_entry(meeting, end - start), end);
+        seeks_toward = false;
+        let back = place_of(meeting.id, meeting.entered) - place_of(beyond.id, beyond.entered);
+        if !beyond.met || dot(back, page_normal(meeting.id)) > LEAST_HIDDEN {
+            break;
+        }
+        start = beyond_entry(beyond, end - start);
+    }
+    return meeting;
+}
+
 // What the cut of the surface from a pixel meets before a ray.
 fn cut_between(id: u32, centre: vec2<f32>, ray: vec3<f32>) -> Meeting {
     let t = corners_of(chunks[id / CHUNK_FACETS], facet_of(id));
@@ -104,7 +150,7 @@ fn walk_pair(one: vec2<i32>, other: vec2<i32>) -> u32 {
     var longest = 0u;
     var by_rim = false;
     for (var leg = 0u; leg < select(1u, 2u, goal.goes_on); leg++) {
-        meeting = walk_between(start, goal.at);
+        meeting = turn_between(start, goal.at);
         longest = max(longest, meeting.steps);
         check_done(meeting);
         if meeting.met || meeting.left_land {

@@ -360,6 +360,15 @@ pub mod stress {
     pub mod finite {
         pub use crate::stress::finite::*;
     }
+    pub mod flight {
+        pub use crate::stress::flight::*;
+    }
+    pub mod folded {
+        pub use crate::stress::folded::folded;
+    }
+    pub mod illustrated {
+        pub use crate::stress::illustrated::*;
+    }
     pub mod invariance {
         pub use crate::stress::invariance::*;
     }

@@ -12,7 +12,7 @@ use crate::error::{Error, Result, shown};
 use crate::files::Taken;
 use crate::report::folder::Folder;
 use crate::report::stress::{Report, SCHEMA, picture as stress_picture};
-use crate::stress::run::picture_name;
+use crate::stress::sight::picture_name;
 use crate::stress::{self, Case, Outcome};
 
 /// The end of `hachure stress --help`.

@@ -127,6 +127,12 @@ impl Case {
         self
     }
 
+    /// A short flight begins at its first view, too.
+    pub fn flown(mut self) -> Self {
+        self.promises.extend([Promise::Alone, Promise::Steady]);
+        self
+    }
+
     /// Without a promise that makes no sense of it.
     pub fn without(mut self, promise: Promise) -> Self {
         self.promises.retain(|other| *other != promise);

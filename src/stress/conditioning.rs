@@ -18,9 +18,14 @@ const WAY: DVec3 = DVec3::new(0.64, 0.48, 0.6);
 
 /// The camera a step on; `distance` metres from what it looks at.
 pub fn stepped(camera: &Camera, distance: f64) -> Camera {
+    moved(camera, distance * STEP)
+}
+
+/// The camera so many metres on, aslant to the page.
+pub fn moved(camera: &Camera, metres: f64) -> Camera {
     let [right, up, forward] = camera.axes();
     let way = right * WAY.x + up * WAY.y + forward * WAY.z;
-    Camera { eye: camera.eye + way * (distance * STEP), ..*camera }
+    Camera { eye: camera.eye + way * metres, ..*camera }
 }
 
 /// What a step changed.

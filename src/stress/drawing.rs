@@ -88,7 +88,7 @@ impl Drawer {
 }
 
 /// Places and depths of curves, in an order of their own.
-fn words(chains: &[Chain]) -> Vec<u64> {
+pub(super) fn words(chains: &[Chain]) -> Vec<u64> {
     let of_chain = |chain: &Chain| {
         let depths = |a: f32, b: f32| u64::from(a.to_bits()) << 32 | u64::from(b.to_bits());
         let of_point = chain.points.iter().flat_map(move |point| {

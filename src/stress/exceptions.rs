@@ -1,13 +1,17 @@
 //! What bends: promises with a limit of their own, which counts from then on. Each says why, and what was tried.
 //!
-//! Of accuracy there are five in four views, where three were aimed at: of these the contour is right in all but two. Figures are
-//! those of 2026-11-29. A plane that holds the eye (`edge-on`) promises no accuracy at all: truth is noise there too.
+//! Of accuracy there are three in two views. Figures are those of 2026-11-29. Two views promise none, for truth is noise there: a
+//! plane that holds the eye (`edge-on`), and an eye on a sample, where truth has 1 132 px of line at level 32 and none at level 64
+//! (`on-the-land`; its facets about the eye hold it, and what holds the eye counts as facing away).
 //!
 //! Mended, so that no exception stands for it:
 //! - Rims of undersides were inked where the top of the land lay behind them by less than a pixel (`border.wgsl`).
 //! - Along the flank of a needle the walk inked a second line, F .963: the straight way from one pixel's land to its neighbour's
 //!   crossed land that turns away far above. Where the page shows elsewhere what the way meets, the cut of the surface decides
 //!   (`walk_rest.wgsl`); F .994, and precision on Yosemite's cliffs .9904 to .9912.
+//! - Where the sight nearly touches a round ridge for 8 km, facets turned away in islands behind which nothing hides, and the walk
+//!   inked them, F .975: now the surface under such a facet decides (`walk_rest.wgsl`); F .998, and precision on Yosemite's cliffs
+//!   .9912 to .9939 at the same recall.
 
 use super::promise::Promise;
 
@@ -28,10 +32,6 @@ pub struct Exception {
     pub reason: &'static str,
 }
 
-const TANGENT: &str = "Where the line of sight nearly touches a round ridge for 8 km, facets that may deviate by 0.15 px turn \
-    away in islands behind which nothing hides, and the walk inks them. Tried: levels 4, 8, 16 and 32 \
-    throughout, each of F 1, where contour falls to .90 to .92 for want of facets at the far end; by levels \
-    for the view contour has F 1.";
 const ON_A_SAMPLE: &str = "The eye lies on a sample: facets about it hold the eye, and what holds the eye counts as facing away. \
     Truth and contour have a line there, the walk and toward-away parts of it; a millionth of the distance \
     changes which. On an edge and in a facet they have all of it. Tried: levels 4 to 32 throughout, walk .58 \
@@ -48,6 +48,8 @@ const HALF_TURN: &str = "On land that is turned by half the walk inks a few pixe
     cause is not found.";
 const NEARLY_EQUAL: &str = "On a cliff 320 km high within 2 km depths of toward and away surface in a pixel are nearly equal, and toward-away inks \
                             by which is nearer: some ends of lines come and go. Walk and contour do not. Nothing was tried.";
+const ALONG_CRESTS: &str = "Crests as high as the eye lie within 1.2 px of each other, and 16 px of contour of one of them are there in one frame \
+                            and not in the next. Truth and the walk keep them. Nothing was tried.";
 const TIES: &str = "On land that is mirrored, border lines of voids that meet in corners take the pixel beside; turned by 180 degrees they do \
                     not. The cause is not found, nothing was tried.";
 
@@ -62,8 +64,6 @@ const fn except(
 
 /// All of them.
 pub const EXCEPTIONS: &[Exception] = &[
-    except(("tangent", "flank", "walk"), Promise::Accurate, 0.97, TANGENT),
-    except(("on-the-land", "sample", "walk"), Promise::Accurate, 0.59, ON_A_SAMPLE),
     except(("doubled-rows", "across", "walk"), Promise::Accurate, 0.85, SLIVERS),
     except(("doubled-rows", "across", "contour"), Promise::Accurate, 0.81, SLIVERS),
     except(("folds", "above", "contour"), Promise::Accurate, 0.96, FOLDS),
@@ -72,21 +72,18 @@ pub const EXCEPTIONS: &[Exception] = &[
     except(("on-the-land", "sample", "walk"), Promise::Conditioned, 160.0, ON_A_SAMPLE),
     except(("on-the-land", "sample", "toward-away"), Promise::Conditioned, 114.0, ON_A_SAMPLE),
     except(("cliff-10000", "below", "toward-away"), Promise::Conditioned, 10.0, NEARLY_EQUAL),
-    except(("mountains", "valley", "walk"), Promise::Turned, 4.0, HALF_TURN),
-    except(("cliff-10", "below", "walk"), Promise::Turned, 8.0, HALF_TURN),
-    except(("cliff-10", "below", "walk"), Promise::TurnedFar, 3.0, HALF_TURN),
+    except(("dunes", "grazing", "contour"), Promise::Steady, 0.03, ALONG_CRESTS),
+    except(("cliff-10", "below", "walk"), Promise::Turned, 10.0, HALF_TURN),
+    except(("cliff-10", "below", "walk"), Promise::TurnedFar, 5.0, HALF_TURN),
     except(("cliff-10000", "below", "walk"), Promise::Turned, 64.0, HALF_TURN),
     except(("terraces", "above", "walk"), Promise::Turned, 4.0, HALF_TURN),
-    except(("saw-tooth", "along", "walk"), Promise::Turned, 6.0, HALF_TURN),
-    except(("saw-tooth", "along", "walk"), Promise::TurnedFar, 1.0, HALF_TURN),
     except(("folds", "above", "walk"), Promise::TurnedFar, 1.0, HALF_TURN),
-    except(("dunes", "grazing", "walk"), Promise::Turned, 7.0, HALF_TURN),
+    except(("dunes", "grazing", "walk"), Promise::Turned, 2.0, HALF_TURN),
     except(("pixel-centres", "row", "walk"), Promise::Turned, 12.0, HALF_TURN),
-    except(("tangent", "crest", "walk"), Promise::Turned, 13.0, HALF_TURN),
-    except(("tangent", "flank", "walk"), Promise::Turned, 5.0, HALF_TURN),
+    except(("tangent", "crest", "walk"), Promise::Turned, 3.0, HALF_TURN),
     except(("doubled-rows", "across", "walk"), Promise::Turned, 2.0, HALF_TURN),
     except(("void-checkerboard", "across", "walk"), Promise::Turned, 32.0, TIES),
-    except(("void-checkerboard", "above", "walk"), Promise::Turned, 87.0, TIES),
+    except(("void-checkerboard", "above", "walk"), Promise::Turned, 85.0, TIES),
 ];
 
 /// The exception of a promise.

@@ -8,6 +8,8 @@ pub(crate) const LEAST_TRUTH_PX: f64 = 200.0;
 pub(crate) const ASTRAY: f64 = 1e-3;
 /// Most ink that pops for an eye a millionth of its distance on, less that of truth: of 1 000 px one.
 pub(crate) const POPPED: f64 = 1e-3;
+/// Most ink that pops from a frame of a flight to the next, less that of truth: of 1 000 px five.
+pub(crate) const UNSTEADY: f64 = 5e-3;
 /// Most pixels that differ on land that is turned, as a share of the ink: of 2 000 px one.
 pub(crate) const TURNED: f64 = 5e-4;
 

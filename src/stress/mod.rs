@@ -13,6 +13,7 @@
 //! | accurate, no-flood | ink against [truth](crate::truth): [`accuracy`] |
 //! | conditioned | ink and truth of an eye a millionth of its distance on: [`conditioning`] |
 //! | same-bits, turned | frames of the same land elsewhere: [`invariance`] |
+//! | alone, steady | frames of a [`flight`] against the same drawn alone, and against the next |
 
 pub(crate) mod accuracy;
 pub(crate) mod case;
@@ -22,11 +23,15 @@ pub(crate) mod drawing;
 pub(crate) mod exceptions;
 pub(crate) mod figures;
 pub(crate) mod finite;
+pub(crate) mod flight;
+pub(crate) mod folded;
+pub(crate) mod illustrated;
 pub(crate) mod invariance;
 pub(crate) mod lands;
 pub(crate) mod limits;
 pub(crate) mod promise;
 pub(crate) mod run;
+pub(crate) mod sight;
 pub(crate) mod watertight;
 
 pub use case::{Case, Group};

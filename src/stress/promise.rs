@@ -27,11 +27,15 @@ pub enum Promise {
     Turned,
     /// What differs then lies beside ink.
     TurnedFar,
+    /// A frame of a flight is what it would be alone.
+    Alone,
+    /// Little pops from one frame of a flight to the next.
+    Steady,
 }
 
 impl Promise {
     /// All of them.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 12] = [
         Self::Drawn,
         Self::Finite,
         Self::Watertight,
@@ -42,6 +46,8 @@ impl Promise {
         Self::SameBits,
         Self::Turned,
         Self::TurnedFar,
+        Self::Alone,
+        Self::Steady,
     ];
     /// Those of every case, unless it says otherwise.
     pub const OF_ALL: [Self; 7] =
@@ -60,6 +66,8 @@ impl Promise {
             Self::SameBits => "same-bits",
             Self::Turned => "turned",
             Self::TurnedFar => "turned-far",
+            Self::Alone => "alone",
+            Self::Steady => "steady",
         }
     }
 
@@ -72,7 +80,10 @@ impl Promise {
             }
             Self::Watertight => "no pixel without a facet though five rays about its centre all meet the land",
             Self::Unfolded => "with tangents limited no patch folds over, and no facet of the frame",
-            Self::Accurate => "F of walk and of contour at least 0.98 within 1 px, where truth has 200 px and more",
+            Self::Accurate => {
+                "F of walk and of contour at least 0.98 within 1 px, where truth has 200 px and more and agrees as well with truth of \
+                 twice the level"
+            }
             Self::NoFlood => "ink of walk and of contour farther than 1 px from truth on at most 0.1 % of the page",
             Self::Conditioned => {
                 "the eye moved by a millionth of its distance: at most 0.1 % of ink, in whole pixels, farther than 1 px from \
@@ -86,6 +97,13 @@ impl Promise {
                  differs"
             }
             Self::TurnedFar => "and none of it lies over 1 px from ink",
+            Self::Alone => {
+                "of three frames of a flight, with creases and hachures, each has every bit of the frame drawn alone"
+            }
+            Self::Steady => {
+                "of these, a four-thousandth of the distance apart: at most 0.5 % of ink farther than 1 px from ink of the next, less \
+                 the same of truth"
+            }
         }
     }
 }
@@ -94,13 +112,18 @@ impl Promise {
     /// The limit of all cases, and whether figures are to be no less in the place of no more.
     pub fn limit(self) -> (f64, bool) {
         match self {
-            Self::Drawn | Self::Finite | Self::Watertight | Self::Unfolded | Self::SameBits | Self::TurnedFar => {
-                (0.0, false)
-            }
+            Self::Drawn
+            | Self::Finite
+            | Self::Watertight
+            | Self::Unfolded
+            | Self::SameBits
+            | Self::TurnedFar
+            | Self::Alone => (0.0, false),
             Self::Accurate => (limits::F, true),
             Self::NoFlood => (limits::ASTRAY, false),
             Self::Conditioned => (limits::POPPED, false),
             Self::Turned => (limits::TURNED, false),
+            Self::Steady => (limits::UNSTEADY, false),
         }
     }
 
@@ -111,6 +134,7 @@ impl Promise {
     pub fn is_of(self, method: &str) -> bool {
         match self {
             Self::Turned | Self::TurnedFar => method == "walk",
+            Self::Steady => matches!(method, "walk" | "contour"),
             Self::Conditioned => !method.starts_with("adjacency") && method != "toward-away-wide",
             _ => true,
         }

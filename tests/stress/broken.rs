@@ -5,9 +5,13 @@ use hachure::door::stress::accuracy::{Accuracy, worst};
 use hachure::door::stress::conditioning::{Change, STEP, stepped};
 use hachure::door::stress::drawing::{Drawer, plan};
 use hachure::door::stress::finite::Counted;
+use hachure::door::stress::flight::{self, popped};
+use hachure::door::stress::folded::folded;
+use hachure::door::stress::illustrated::{bits, land_of};
 use hachure::door::stress::invariance::{Difference, differing, mirrored, same_bits};
 use hachure::door::stress::promise::without_ink;
 use hachure::door::stress::{Case, Check, Promise, named};
+use hachure::door::surface::Lattice;
 use hachure::ink::{self, Sheet, Style};
 use hachure::line::{Chain, Lines};
 use hachure::plan::{Border, Curves, Method, Plan};
@@ -164,6 +168,48 @@ fn an_eye_that_hardly_moves_and_ink_that_jumps_are_ill_conditioned() {
     assert!((step.eye.distance(camera.eye) - 5000.0 * STEP).abs() < 1e-9);
     let on_page = step.project(target).0.distance(DVec2::new(50.0, 40.0));
     assert!((on_page / (0.8 * camera.focal() * STEP) - 1.0).abs() < 0.01, "across the page: {on_page}");
+}
+
+#[test]
+fn truth_that_is_made_by_roundings_does_not_settle() {
+    let settles = |name| {
+        let case = named(name).expect(name);
+        let surface = Surface::new(case.dem.clone());
+        let terrain = Terrain::new(&surface);
+        let [coarse, fine] = [32, 64].map(|n| terrain.truth(&case.views[0].camera, level(n)));
+        Accuracy::of(&Mask::of_truth(&coarse), &fine).f().unwrap_or(0.0)
+    };
+    assert!(settles("level-64") > 0.999, "land as it is");
+    assert!(settles("doubled-rows") > 0.98, "slivers are there");
+    assert_eq!(settles("on-the-land"), 0.0, "an eye on a sample");
+}
+
+#[test]
+fn what_folds_is_found_and_gone_with_limited_tangents() {
+    let case = named("folds").expect("folds");
+    let surface = Surface::new(case.dem.clone());
+    let lattice = Lattice::uniform(surface.dem(), level(8)).expect("a lattice");
+    let [patches, facets] = folded(&surface, &lattice).expect("folds");
+    assert!(patches > 10 && facets > 10, "{patches} patches, {facets} facets");
+    let limited = surface.limited().expect("a limited surface");
+    assert_eq!(folded(&limited, &lattice).expect("folds"), [0, 0]);
+}
+
+#[test]
+fn a_frame_of_a_flight_that_is_another_and_ink_that_pops_are_found() {
+    let (case, surface, _) = hills();
+    let camera = case.views[0].camera;
+    let next = flight::cameras(&camera, 3000.0);
+    assert!(next.len() == 2 && (next[1].eye.distance(camera.eye) - 1.5).abs() < 1e-9);
+    let land = Arc::new(land_of(&surface).expect("lines of the land"));
+    let mut renderer = Renderer::new(gpu().clone(), surface).expect("a renderer");
+    let mut drawn = |camera: &Camera| bits(&mut renderer, &land, case.detail, camera).expect("a page");
+    let (first, second) = (drawn(&camera), drawn(&next[0]));
+    assert_eq!(differing(&first, &drawn(&camera)), 0, "whatever came between");
+    assert!(differing(&first, &second) > 1000, "frames a step apart are not the same");
+    let (still, jumps) = (mask(line(20)), mask(line(60)));
+    assert_eq!(popped(&[&still, &still, &still]), 0.0);
+    assert_eq!(popped(&[&still, &still, &jumps]), 0.5);
 }
 
 #[test]

@@ -36,7 +36,9 @@ fn cases_have_names_views_and_promises_of_their_own() {
     }
     for promise in Promise::ALL {
         let of_it = cases.iter().filter(|case| case.promises.contains(&promise)).count();
-        assert!(of_it >= 30, "only {of_it} cases promise {}", promise.name());
+        let of_flights = matches!(promise, Promise::Alone | Promise::Steady);
+        let least = if of_flights { 15 } else { 30 };
+        assert!(of_it >= least, "only {of_it} cases promise {}", promise.name());
     }
 }
 
@@ -56,8 +58,8 @@ fn a_name_that_is_none_is_answered_by_the_nearest() {
     assert!(named("control").is_ok() && all().iter().all(|case| case.name != "control"), "it is run by name alone");
 }
 
-/// Exceptions to accuracy: three are aimed at, five there are. More must not come.
-const MOST_OF_ACCURACY: usize = 5;
+/// Exceptions to accuracy.
+const MOST_OF_ACCURACY: usize = 3;
 
 #[test]
 fn exceptions_are_few_and_say_why() {

@@ -3,7 +3,7 @@
 use std::fs;
 use std::time::Instant;
 
-use hachure::door::stress::{all, named, short};
+use hachure::door::stress::{Promise, all, named, short};
 use serde_json::Value;
 
 use crate::cli::{Place, refuses, stderr};
@@ -37,9 +37,13 @@ fn the_short_list_keeps_every_promise_in_time() {
         (&results["broken"], count(&results["checks"])),
         (&0.into(), results["kept"].as_u64().expect("kept") as usize)
     );
-    // Each promise of each case was looked at in each view.
+    // Each promise of each case was looked at in each view, those of flights in the first.
     for case in short() {
         for (view, promise) in case.views.iter().flat_map(|view| case.promises.iter().map(move |p| (view, p))) {
+            let of_flights = matches!(promise, Promise::Alone | Promise::Steady);
+            if of_flights && view.name != case.views[0].name {
+                continue;
+            }
             let is_it = |check: &&Value| {
                 (&check["case"], &check["view"], &check["promise"])
                     == (&case.name.into(), &view.name.into(), &promise.name().into())

@@ -44,7 +44,7 @@ fn void_checkerboard() -> Case {
 
 /// Islands of land that do not touch.
 fn void_islands() -> Case {
-    with_voids("void-islands", "islands in voids", |c, r| (c % 16.0 - 8.0).hypot(r % 16.0 - 8.0) > 6.0)
+    with_voids("void-islands", "islands in voids", |c, r| (c % 16.0 - 8.0).hypot(r % 16.0 - 8.0) > 6.0).flown()
 }
 
 fn void_half() -> Case {
@@ -74,6 +74,7 @@ fn whole_metres() -> Case {
     let dem = grid([129, 129], CELL, |c, r| (CELL * rolling(19, c, r) / 4.0).round());
     data("whole-metres", "gentle hills in steps of a metre", dem)
         .seen("across", [64.0, 124.0, 30.0], [64.0, 40.0, 0.0])
+        .flown()
         .in_short()
 }
 
@@ -81,9 +82,7 @@ fn whole_metres() -> Case {
 fn doubled_rows() -> Case {
     let dem = hills(65, 20, 1.0);
     let height = |c: f64, r: f64| f64::from(dem.height(c as usize, (r / 2.0) as usize).unwrap_or(0.0));
-    data("doubled-rows", "every row there twice", grid([65, 65], CELL, height)).seen(
-        "across",
-        [32.0, 72.0, 200.0],
-        [32.0, 24.0, 0.0],
-    )
+    data("doubled-rows", "every row there twice", grid([65, 65], CELL, height))
+        .seen("across", [32.0, 72.0, 200.0], [32.0, 24.0, 0.0])
+        .flown()
 }

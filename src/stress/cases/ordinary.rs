@@ -15,6 +15,7 @@ fn rolling_hills() -> Case {
         .seen("across", [64.0, 124.0, 64.0], [60.0, 40.0, 0.0])
         .seen("above", [10.0, 118.0, 800.0], [70.0, 50.0, 0.0])
         .exact()
+        .flown()
         .in_short()
 }
 
@@ -25,4 +26,5 @@ fn mountains() -> Case {
     Case::new(Group::Ordinary, "mountains", "fractal ridges", dem)
         .seen("valley", [64.0, 126.0, 200.0], [60.0, 40.0, 0.0])
         .exact()
+        .flown()
 }

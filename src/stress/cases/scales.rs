@@ -59,7 +59,7 @@ fn northing_4e6() -> Case {
 }
 
 fn northing_1e7() -> Case {
-    at_northing("northing-1e7", "a northing of 10 000 000 m", 1e7).in_short()
+    at_northing("northing-1e7", "a northing of 10 000 000 m", 1e7).flown().in_short()
 }
 
 /// Hills so many metres higher.
@@ -81,6 +81,7 @@ fn near_eye() -> Case {
     scale("near-eye", "the eye a metre from what it looks at", hills(65, 15, 1.0))
         .seen("ground", [30.0, 40.0, 1.0], [30.03125, 39.96875, -0.5])
         .exact()
+        .flown()
 }
 
 /// From 1 000 km off, as large on the page as it would be from 3 km.

@@ -66,5 +66,6 @@ fn level_64() -> Case {
         .seen("across", [4.0, 11.0, 40.0], [4.0, 3.0, 0.0])
         .drawn(Level::FINEST)
         .truth_to(Level::FINEST)
+        .flown()
         .in_short()
 }

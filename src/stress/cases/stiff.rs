@@ -42,7 +42,7 @@ fn exaggeration_10() -> Case {
 }
 
 fn exaggeration_100() -> Case {
-    exaggerated("exaggeration-100", "hills 100 times as high", 100.0).in_short()
+    exaggerated("exaggeration-100", "hills 100 times as high", 100.0).flown().in_short()
 }
 
 fn exaggeration_1000() -> Case {
@@ -65,7 +65,7 @@ fn along(case: Case, slope: f64) -> Case {
 }
 
 fn cliff_10() -> Case {
-    along(cliff("cliff-10", "a cliff of slope 10 between two samples", 10.0), 10.0).in_short()
+    along(cliff("cliff-10", "a cliff of slope 10 between two samples", 10.0), 10.0).flown().in_short()
 }
 
 fn cliff_100() -> Case {
@@ -79,11 +79,10 @@ fn cliff_10000() -> Case {
 /// Level treads of one to three cells, steps of 40 m.
 fn terraces() -> Case {
     let dem = grid([65, 65], CELL, |c, r| (CELL * rolling(3, c, r) / 40.0).floor() * 40.0);
-    stiff("terraces", "hills in steps of 40 m", dem).seen("across", [32.0, 72.0, 150.0], [32.0, 24.0, 0.0]).seen(
-        "above",
-        [0.0, 64.0, 900.0],
-        [36.0, 30.0, 0.0],
-    )
+    stiff("terraces", "hills in steps of 40 m", dem)
+        .seen("across", [32.0, 72.0, 150.0], [32.0, 24.0, 0.0])
+        .seen("above", [0.0, 64.0, 900.0], [36.0, 30.0, 0.0])
+        .flown()
 }
 
 fn needle() -> Case {
@@ -94,6 +93,7 @@ fn needle() -> Case {
     stiff("needle", "one sample 10 km high on gentle land", dem)
         .seen("foot", [32.0, 62.0, 200.0], [32.0, 32.0, -8_500.0])
         .seen("above", [20.0, 160.0, 9_000.0], [32.0, 32.0, -6_000.0])
+        .flown()
         .in_short()
 }
 
@@ -103,6 +103,7 @@ fn saw_tooth() -> Case {
     stiff("saw-tooth", "every other column 16 m high", dem)
         .seen("across", [2.0, 40.0, 120.0], [40.0, 30.0, 0.0])
         .seen("along", [30.0, 70.0, 60.0], [34.0, 20.0, 0.0])
+        .flown()
         .truth_to(Level::SIXTEEN)
 }
 
@@ -123,7 +124,7 @@ fn noise(name: &'static str, about: &'static str) -> Case {
 
 /// Patches fold over.
 fn folds() -> Case {
-    noise("folds", "white noise 10 cells high: patches fold over")
+    noise("folds", "white noise 10 cells high: patches fold over").flown()
 }
 
 /// The same land with tangents limited: none folds.

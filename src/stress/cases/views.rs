@@ -58,6 +58,7 @@ fn noisy_plain() -> Case {
     let dem = grid([257, 257], CELL, |c, r| sixteenths(hashed(8, c, r) / 16.0 * 2.0));
     views("noisy-plain", "a plain with noise of a sixteenth of a metre, from 2 m", dem)
         .seen("horizon", [128.0, 250.0, 2.0], [128.0, 10.0, 2.0])
+        .flown()
         .truth_to(Level::EIGHT)
         .in_short()
 }
@@ -73,6 +74,7 @@ fn dunes() -> Case {
     views("dunes", "dunes whose crests lie as high as the eye", dem)
         .view("grazing", level_eye)
         .view("across", level(eye.with_z(15.0), 290.0))
+        .flown()
 }
 
 /// The eye on a sample, on an edge between two, and in a facet.
@@ -157,6 +159,7 @@ fn cusp() -> Case {
     views("cusp", "a crater, whose contours turn back in cusps", dem)
         .seen("rim", [20.0, 90.0, 600.0], [32.0, 32.0, 0.0])
         .seen("low", [32.0, 80.0, 220.0], [32.0, 32.0, 0.0])
+        .flown()
 }
 
 /// The eye outside the land: beside it, below its rim, and under it.
@@ -176,4 +179,5 @@ fn near_plane() -> Case {
     views("near-plane", "the near plane cuts the land", dem)
         .view("ahead", Camera { altitude: -20.0, ..level(on, 10.0) })
         .view("down", Camera { altitude: -80.0, ..level(on, 10.0) })
+        .flown()
 }
