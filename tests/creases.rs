@@ -218,3 +218,20 @@ fn creases_of_a_dem_in_its_file_lie_where_those_of_a_held_one_do() {
     // So small a DEM has blocks of one sample.
     assert_eq!(fs::read(place.path("held.svg")).expect("a plan"), fs::read(place.path("filed.svg")).expect("a plan"));
 }
+
+#[test]
+fn shores_of_a_dem_in_its_file_are_those_of_a_held_one() {
+    let place = Place::new();
+    let dem = concat!(env!("CARGO_MANIFEST_DIR"), "/dem/golden-gate.tif");
+    let route = ["draw", dem, "--plan", "--scale", "1:100000", "--creases", "drainage,shores", "--cache", "kept"];
+    let held = place.run(&[&route[..], &["-o", "held.svg", "--json", "held.json"]].concat());
+    assert!(held.status.success(), "{}", stderr(&held));
+    assert!(layers(&place, "held.json").contains(&"shore".to_owned()), "{:?}", layers(&place, "held.json"));
+    let held = fs::read(place.path("held.svg")).expect("a plan");
+    // Found, then known.
+    for name in ["found.svg", "known.svg"] {
+        let filed = place.run(&[&route[..], &["-o", name, "--memory", "1KiB"]].concat());
+        assert!(filed.status.success(), "{}", stderr(&filed));
+        assert!(fs::read(place.path(name)).expect("a plan") == held, "{name}");
+    }
+}

@@ -7,6 +7,7 @@ use gdal::DriverManager;
 use gdal::raster::Buffer;
 use gdal::spatial_ref::SpatialRef;
 use glam::DVec2;
+use hachure::cache::{Cache, CacheObserver};
 use hachure::dem::{Crs, Dem};
 use hachure::geo::{ReadOptions, read};
 use hachure::relief::{LineKind, Shores, SurfaceLine};
@@ -251,11 +252,80 @@ fn lakes_of_warped_dems_have_their_circles() {
 }
 
 #[test]
-fn dems_that_stay_in_their_files_are_refused() {
+fn dems_that_stay_in_their_files_have_the_shores_of_held_ones() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/dem/golden-gate.tif");
     let filed = read(path, &ReadOptions { memory: 1 << 16, ..Default::default() }).expect("the sample");
-    let said = Shores::of(&filed, 1.0).map(drop).expect_err("a limit").to_string();
-    assert!(said.contains("500 x 500 = 250000 samples stay in their files") && said.contains("crop"), "{said}");
+    assert!(filed.is_filed());
+    let held = shores(sample().dem());
+    let folder = folder();
+    let cache = Cache::in_folder(folder.path().to_owned());
+    let hearing = CacheObserver { warn: &|_| panic!("nothing to say"), progress: &|_| () };
+    for cache in [Cache::none(), cache.clone(), cache] {
+        assert_eq!(cache.shores(&filed, 1.0, hearing).expect("shores"), held);
+    }
+    let kept = std::fs::read_dir(folder.path()).expect("a folder").map(|entry| entry.expect("an entry").file_name());
+    assert_eq!(kept.filter(|name| name.to_string_lossy().starts_with("creases-")).count(), 1);
+}
+
+/// How far the most of some places, 95 %, are from the nearest of others, samples.
+fn off(places: &[DVec2], others: &[DVec2]) -> f64 {
+    let nearest = |place: &DVec2| others.iter().map(|other| other.distance(*place)).fold(f64::INFINITY, f64::min);
+    let mut off: Vec<f64> = places.iter().map(nearest).collect();
+    off.sort_by(f64::total_cmp);
+    off[off.len() * 19 / 20]
+}
+
+fn all_places(shores: &Shores) -> Vec<DVec2> {
+    shores.lines.iter().flat_map(places).collect()
+}
+
+#[test]
+fn on_blocks_shores_run_where_half_of_the_ground_is_water() {
+    let (centre, radius) = (DVec2::new(97.3, 104.6), 61.4);
+    let depth = |place: DVec2| place.distance(centre) - radius;
+    // A lake at 20 m in land that rises from it; with a seam of two decimetres through it and samples here and there a decimetre low;
+    // with a void beside it; above a plain that is level and lower.
+    let lake = |place: DVec2| 20.0 + (0.4 * depth(place)).max(0.0);
+    let patched = |place: DVec2| {
+        let is_low = (7919.0 * place.x + 104_729.0 * place.y) % 97.0 < 1.0;
+        let seam = if place.x > 90.0 { 0.2 } else { 0.0 };
+        lake(place) + if depth(place) < 0.0 { seam - if is_low { 0.1 } else { 0.0 } } else { 0.0 }
+    };
+    let above = |place: DVec2| if place.y > 180.0 { 12.0 } else { lake(place) };
+    for (name, dem) in [("lake", dem(lake)), ("patched", dem(patched)), ("above a plain", dem(above))] {
+        for side in [2, 4, 8] {
+            let found = Shores::on_blocks(&dem, 1.0, side, &|_| ()).expect("shores");
+            let of_lake: Vec<_> = found.lines.iter().filter(|line| line.closed).collect();
+            assert!(of_lake.len() == 1, "{name}, blocks of {side}: {} rims", of_lake.len());
+            let mut off: Vec<f64> = places(of_lake[0]).into_iter().map(|place| depth(place).abs()).collect();
+            off.sort_by(f64::total_cmp);
+            let (most, all) = (off[off.len() * 19 / 20], off[off.len() - 1]);
+            println!("{name}, blocks of {side}: {most:.2} samples off, {all:.2} at most");
+            let limits = if name == "patched" { [0.6, 1.0] } else { [0.3, 0.5] }.map(|blocks| blocks * side as f64);
+            assert!(most <= limits[0] && all <= limits[1], "{name}, blocks of {side}: {most}, {all}");
+            assert!(found.water.is_water(97, 104) && !found.water.is_water(97, 104 + 61 + 2 * side), "{name}");
+        }
+    }
+    let one = Shores::on_blocks(&dem(lake), 1.0, 1, &|_| ()).expect("shores");
+    assert_eq!(one, shores(&dem(lake)));
+}
+
+#[test]
+fn on_blocks_of_a_file_the_bay_has_its_shores() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/dem/golden-gate.tif");
+    let filed = read(path, &ReadOptions { memory: 1 << 16, exaggeration: 2.0, ..Default::default() }).expect("it");
+    let held = all_places(&shores(sample().dem()));
+    // 500 samples are 62 blocks of 8 and a half.
+    for side in [4, 8] {
+        let found = Shores::on_blocks(&filed, 2.0, side, &|_| ()).expect("shores");
+        let at = all_places(&found);
+        let (right, whole) = (off(&at, &held) / side as f64, off(&held, &at) / side as f64);
+        println!("blocks of {side}: lines {right:.2} blocks off, held ones {whole:.2}");
+        assert!(right < 1.0 && whole < 2.5, "blocks of {side}: {right}, {whole}");
+        assert!(at.iter().all(|place| place.cmpge(DVec2::ZERO).all() && place.cmple(DVec2::splat(499.0)).all()));
+        let share = (0..250_000).filter(|i| found.water.is_water(i % 500, i / 500)).count() as f64 / 250_000.0;
+        assert!((0.49..0.54).contains(&share), "{share} of it is sea");
+    }
 }
 
 #[test]

@@ -11,7 +11,7 @@ use crate::cache::{Cache, CacheObserver};
 use crate::error::{Error, Message, Result, Setting};
 use crate::ink::Style;
 use crate::line::Land;
-use crate::relief::{ChannelArea, Crease, FlatWater, FlowLines, LandWanted, Shores, Slopes, SurfaceLine, append};
+use crate::relief::{ChannelArea, Crease, FlatWater, FlowLines, LandWanted, Slopes, SurfaceLine, append};
 use crate::surface::Surface;
 
 /// The flags, as typed.
@@ -90,7 +90,7 @@ impl LandArguments {
     /// The lines that are wanted of a surface whose heights are exaggerated by this factor.
     ///
     /// # Errors
-    /// As [`Cache::creases`], [`Shores::of`], [`Slopes::new`] and [`LinesArguments::read`].
+    /// As [`Cache::creases`], [`Cache::shores`], [`Slopes::new`] and [`LinesArguments::read`].
     pub(crate) fn land(
         &self,
         wanted: &LandWanted,
@@ -119,10 +119,11 @@ impl LandArguments {
             _ => cache.creases(dem, exaggeration, &asked, hearing)?,
         };
         let draws_shores = wanted.creases.contains(&Crease::Shores);
-        let ends_at_shores = wanted.slopes.is_some() && !dem.is_filed();
-        let shores = draws_shores.then(|| Shores::of(dem, exaggeration)).transpose()?;
-        // Shores that nobody draws are not followed.
-        let water = (ends_at_shores && !draws_shores).then(|| FlatWater::of(dem, exaggeration)).transpose()?;
+        let ends_at_shores = wanted.slopes.is_some();
+        let finds_shores = draws_shores || (ends_at_shores && dem.is_filed());
+        let shores = finds_shores.then(|| cache.shores(dem, exaggeration, hearing)).transpose()?;
+        // Shores that nobody draws are not followed, but where they are kept beside the water.
+        let water = (ends_at_shores && shores.is_none()).then(|| FlatWater::of(dem, exaggeration)).transpose()?;
         let slopes = wanted.slopes.map(|rules| {
             let water = shores.as_ref().map(|shores| &shores.water).or(water.as_ref());
             let slopes = Slopes::new(surface.clone(), exaggeration, rules, &found.concat(), water)?;

@@ -159,7 +159,7 @@ than they: where both would stand side by side the silhouette stays.
 A branch is drawn as far as the page shows why: by its length, its fall, how far the land beside it stands up and at which slope; \
 streams of over 4 km through plains too. It fades by width, always reaches what it joins, and nothing of it depends on where the \
 eye looks. Of a DEM that stays in its file creases are found on at most 8 388 608 blocks of samples, lowest samples for water and \
-highest for crests, shores not at all. Lines that a crop begins or ends may run otherwise than those of the whole.
+highest for crests, shores where half of a block is water. Lines that a crop begins or ends may run otherwise than those of the whole.
 
 Hachures are strokes down the slope, which give the tone by their width and by how close they stand: lehmann that of slope \
 (share of ink = slope / 45 degrees, Lehmann 1799; black-at 50 is Mueffling, 60 Bavaria, 80 Austria), shadow that of light against \
@@ -167,7 +167,7 @@ level land, which stays blank, both their mean. A style has them in [hachures], 
 left of where the eye looks, in a flight at its first frame, and the north-west in plans) and [pens.hachure]. They end half a \
 spacing short of silhouettes and of lines of the land before them. Far from the eye they run down land at a smaller scale, \
 halved with each doubling of the distance, as a hand would draw it; maps show it as it is. Land so near that they would stand closer than an eighth of a \
-cell gets none, which is warned of. Of a DEM that stays in its file they run on every so-manieth sample, and not down to water.
+cell gets none, which is warned of. Of a DEM that stays in its file they run on every so-manieth sample.
 
 For plotters (style `plotter`) strokes of a layer that meet are joined, none is drawn twice, dots are 0.05 mm long and nothing \
 shorter is left; they stand in an order with little travel. What the pen will do is printed: length on paper and in the air, \

@@ -1,12 +1,13 @@
-//! Lines of a DEM that flow tells, kept in the cache by its heights: a file of its own for each kind.
+//! Lines of a DEM that flow tells, and shores, kept in the cache by its heights: a file of its own for each kind.
 //!
-//! Those of a DEM that stays in its file are found on blocks of samples ([`coarse`](super::coarse)).
+//! Those of a DEM that stays in its file are found on blocks of samples ([`coarse`](super::coarse)). Shores of a held one are found
+//! anew.
 //!
 //! ```text
-//! header | lines | points | hash of all before
+//! header | lines | points | of shores a bit a block, water or not | hash of all before
 //! ```
 //!
-//! Cost: a hash of the heights; 16 bytes a line, 40 a point.
+//! Cost: a hash of the heights; 20 bytes a line, 40 a point.
 
 use std::io::{self, ErrorKind};
 
@@ -16,13 +17,13 @@ use xxhash_rust::xxh3::Xxh3;
 
 use super::coarse::{lowest_and_highest, on_samples, spacing};
 use super::whole::{ChannelArea, Relief};
-use super::{LineKind, SurfaceLine, SurfacePoint};
+use super::{FlatWater, LineKind, Shores, SurfaceLine, SurfacePoint};
 use crate::cache::{Cache, CacheKey, CacheKind, CacheObserver, KeptEntry, NewEntry, not_kept};
 use crate::dem::Dem;
 use crate::error::Result;
 
 /// Raise it when the lines of the same heights come out otherwise, or when the bytes below mean something else.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 const KIND: CacheKind =
     CacheKind { name: "creases", format: FORMAT, words: ["what was found of creases", "what is kept of creases"] };
 /// The line that none joins.
@@ -50,6 +51,7 @@ struct KeptLine {
     points: u32,
     joins: [u32; 2],
     order: u32,
+    closed: u32,
 }
 
 #[repr(C)]
@@ -117,23 +119,69 @@ impl Cache {
                 if dem.is_filed() {
                     on_samples(&mut lines, dem, spacing(dem));
                 }
-                let kept = sheet.map(|(sheet, key)| (write(sheet, &lines), key));
-                if let Some((Err(error), key)) = kept {
-                    (hearing.warn)(&not_kept(key, &error));
+                if let Some((sheet, key)) = sheet {
+                    keep(sheet, &lines, &[], key, hearing);
                 }
                 Ok(lines)
             };
             // Files that are not on the disk may be others next time.
             let Some(heights) = heights else { return find(None, hearing.progress) };
-            let mut hash = Xxh3::new();
-            hash.update(&heights.to_le_bytes());
-            crease.code().iter().for_each(|code| hash.update(&code.to_le_bytes()));
-            let key = CacheKey { kind: KIND, hash: hash.digest128(), of: dem.label() };
+            let key = key(heights, crease.code(), dem);
             let make =
                 |sheet: Option<NewEntry>, progress: &dyn Fn(f64)| find(sheet.map(|sheet| (sheet, &key)), progress);
-            self.get(&key, hearing, |kept| recall(kept, crease.kind()), make)
+            let known = |kept| match recall(kept, crease.kind())? {
+                (lines, words) if words.is_empty() => Ok(lines),
+                _ => Err(io::Error::from(ErrorKind::InvalidData)),
+            };
+            self.get(&key, hearing, known, make)
         };
         creases.iter().map(&mut of_kind).collect()
+    }
+
+    /// The shores of a DEM whose heights are exaggerated by a factor: found or, of one that stays in its file, known or found.
+    ///
+    /// # Errors
+    /// Those of reading the samples.
+    pub fn shores(&self, dem: &Dem, exaggeration: f64, hearing: CacheObserver<'_>) -> Result<Shores> {
+        if !dem.is_filed() {
+            return Shores::of(dem, exaggeration);
+        }
+        let side = spacing(dem);
+        let find = |progress: &dyn Fn(f64)| Shores::on_blocks(dem, exaggeration, side, progress);
+        let Some(heights) = digest(dem, exaggeration)? else { return find(hearing.progress) };
+        let key = key(heights, SHORES, dem);
+        let make = |sheet: Option<NewEntry>, progress: &dyn Fn(f64)| {
+            let shores = find(progress)?;
+            if let Some(sheet) = sheet {
+                keep(sheet, &shores.lines, shores.water.words(), &key, hearing);
+            }
+            Ok(shores)
+        };
+        let known = |kept| {
+            let (lines, words) = recall(kept, LineKind::Shore)?;
+            let water =
+                FlatWater::from_words(dem, side, words).ok_or_else(|| io::Error::from(ErrorKind::InvalidData))?;
+            Ok(Shores { water, lines })
+        };
+        self.get(&key, hearing, known, make)
+    }
+}
+
+/// What tells shores from other lines of the same heights.
+const SHORES: [u64; 2] = [3, 0];
+
+/// Of lines of a DEM whose heights hash to this.
+fn key(heights: u128, code: [u64; 2], dem: &Dem) -> CacheKey {
+    let mut hash = Xxh3::new();
+    hash.update(&heights.to_le_bytes());
+    code.iter().for_each(|code| hash.update(&code.to_le_bytes()));
+    CacheKey { kind: KIND, hash: hash.digest128(), of: dem.label() }
+}
+
+/// Keeps lines and words; says so where it cannot.
+fn keep(sheet: NewEntry, lines: &[SurfaceLine], words: &[u64], key: &CacheKey, hearing: CacheObserver<'_>) {
+    if let Err(error) = write(sheet, lines, words) {
+        (hearing.warn)(&not_kept(key, &error));
     }
 }
 
@@ -164,14 +212,15 @@ pub(super) fn digest(dem: &Dem, exaggeration: f64) -> Result<Option<u128>> {
     Ok(Some(hash.digest128()))
 }
 
-/// Writes and publishes lines.
-fn write(sheet: NewEntry, lines: &[SurfaceLine]) -> Result<KeptEntry> {
+/// Writes and publishes lines and words.
+fn write(sheet: NewEntry, lines: &[SurfaceLine], words: &[u64]) -> Result<KeptEntry> {
     let points: usize = lines.iter().map(|line| line.points.len()).sum();
     let header = Header { lines: lines.len() as u64, points: points as u64 };
     let line = |line: &SurfaceLine| KeptLine {
         points: line.points.len() as u32,
         joins: line.joins.unwrap_or(NONE),
         order: u32::from(line.order),
+        closed: u32::from(line.closed),
     };
     let point = |point: &SurfacePoint| {
         let SurfacePoint { at, across, length, drop } = *point;
@@ -181,27 +230,34 @@ fn write(sheet: NewEntry, lines: &[SurfaceLine]) -> Result<KeptEntry> {
     bytes.extend_from_slice(bytemuck::cast_slice(&lines.iter().map(line).collect::<Vec<_>>()));
     let points: Vec<Point> = lines.iter().flat_map(|line| &line.points).map(point).collect();
     bytes.extend_from_slice(bytemuck::cast_slice(&points));
+    bytes.extend_from_slice(bytemuck::cast_slice(words));
     sheet.publish_whole(&bytes)
 }
 
-/// Reads lines of a kind. Fails where the bytes are not those that were written.
-fn recall(kept: KeptEntry, kind: LineKind) -> io::Result<Vec<SurfaceLine>> {
+/// Reads lines of a kind, and the words behind them. Fails where the bytes are not those that were written.
+fn recall(kept: KeptEntry, kind: LineKind) -> io::Result<(Vec<SurfaceLine>, Vec<u64>)> {
     let damaged = || io::Error::from(ErrorKind::InvalidData);
     let bytes = kept.whole()?;
     let (header, rest) = bytes.split_at_checked(size_of::<Header>()).ok_or_else(damaged)?;
     let header: Header = bytemuck::pod_read_unaligned(header);
     let size = (header.lines as usize).checked_mul(size_of::<KeptLine>()).ok_or_else(damaged)?;
-    let (lines, points) = rest.split_at_checked(size).ok_or_else(damaged)?;
+    let (lines, rest) = rest.split_at_checked(size).ok_or_else(damaged)?;
+    let size = (header.points as usize).checked_mul(size_of::<Point>()).ok_or_else(damaged)?;
+    let (points, words) = rest.split_at_checked(size).ok_or_else(damaged)?;
     let mut points = points.chunks_exact(size_of::<Point>()).map(bytemuck::pod_read_unaligned::<Point>);
     let point = |point: Point| {
         let Point { at, across, length, drop, .. } = point;
         SurfacePoint { at: DVec2::from_array(at), across, length, drop }
     };
     let line = |line: &[u8]| {
-        let KeptLine { points: count, joins, order } = bytemuck::pod_read_unaligned(line);
+        let KeptLine { points: count, joins, order, closed } = bytemuck::pod_read_unaligned(line);
         let points: Vec<SurfacePoint> = points.by_ref().take(count as usize).map(point).collect();
         let joins = Some(joins).filter(|joins| *joins != NONE);
-        SurfaceLine { kind, order: order as u8, points, closed: false, joins }
+        SurfaceLine { kind, order: order as u8, points, closed: closed != 0, joins }
     };
-    Ok(lines.chunks_exact(size_of::<KeptLine>()).map(line).collect())
+    let lines = lines.chunks_exact(size_of::<KeptLine>()).map(line).collect();
+    if words.len() % size_of::<u64>() != 0 {
+        return Err(damaged());
+    }
+    Ok((lines, words.chunks_exact(size_of::<u64>()).map(bytemuck::pod_read_unaligned).collect()))
 }

@@ -3,8 +3,10 @@
 //! Method: marching squares (Lorensen, Cline 1987, in the plane) between samples of water and of land. A shore crosses the
 //! side of a cell where the land's slope beyond it comes down to the water; then each crossing moves along its own side until
 //! the line is smooth, see `smooth`. A shore that keeps its sides crosses neither itself nor another. Cost: linear in the
-//! samples and in the crossings. Not handled: water that is no [`FlatWater`]; within a cell of a void a shore ends.
+//! samples and in the crossings. Of a DEM that stays in its file shores are found on blocks of samples, see `blocks`. Not
+//! handled: water that is no [`FlatWater`]; within a cell of a void a shore ends.
 
+mod blocks;
 mod smooth;
 
 use std::ops::Range;
@@ -54,6 +56,8 @@ impl Crossing {
 struct ShoreGrid<'a> {
     water: &'a FlatWater,
     samples: &'a Samples,
+    /// How much of each block is water, where samples stand for blocks.
+    shares: Option<&'a [f32]>,
     columns: usize,
     rows: usize,
 }
@@ -65,16 +69,21 @@ impl Shores {
     /// As [`Dem::held`].
     pub fn of(dem: &Dem, exaggeration: f64) -> Result<Self> {
         let water = FlatWater::of(dem, exaggeration)?;
-        let grid = ShoreGrid { water: &water, samples: dem.held()?, columns: dem.columns(), rows: dem.rows() };
-        let chains = chains(&grid.links());
-        let lines = chains.into_iter().filter_map(|(sides, closed)| {
-            let mut crossings: Vec<Crossing> = sides.into_iter().map(|side| grid.crossing(side)).collect();
-            smooth(&mut crossings, closed);
-            line(&crossings, closed, dem.cell())
-        });
-        let lines = lines.collect();
+        let lines = rims(dem, &water, None)?;
         Ok(Self { water, lines })
     }
+}
+
+/// The rims of water; `shares` as of [`ShoreGrid`].
+fn rims(dem: &Dem, water: &FlatWater, shares: Option<&[f32]>) -> Result<Vec<SurfaceLine>> {
+    let grid = ShoreGrid { water, samples: dem.held()?, shares, columns: dem.columns(), rows: dem.rows() };
+    let chains = chains(&grid.links()).into_iter();
+    let lines = chains.filter_map(|(sides, closed)| {
+        let mut crossings: Vec<Crossing> = sides.into_iter().map(|side| grid.crossing(side)).collect();
+        smooth(&mut crossings, closed);
+        line(&crossings, closed, dem.cell())
+    });
+    Ok(lines.collect())
 }
 
 /// What other stages and tests look into.
@@ -136,7 +145,7 @@ impl ShoreGrid<'_> {
         self.across(c, r) + 1
     }
 
-    /// Where the slope of the land comes down to the water on a side.
+    /// Where the slope of the land comes down to the water on a side, or half of the ground is water.
     fn crossing(&self, side: u32) -> Crossing {
         let (i, is_down) = ((side / 2) as usize, side % 2 == 1);
         let (c, r) = (i % self.columns, i / self.columns);
@@ -150,6 +159,15 @@ impl ShoreGrid<'_> {
             true => (height(0), height(1), height(2)),
             false => (height(1), height(0), height(-1)),
         };
+        if let Some(shares) = self.shares {
+            let ends = [shares[i], shares[if is_down { i + self.columns } else { i + 1 }]];
+            let [wet, dry] = if is_water_first { ends } else { [ends[1], ends[0]] };
+            // Only as low as this is there water in dry land, in less than half of it.
+            let dry = if land == level { dry.min(0.49) } else { 0.0 };
+            let from_land = f64::from((0.5 - dry) / (wet.max(0.5) - dry)).clamp(CROSSINGS[0], CROSSINGS[1]);
+            let at = if is_water_first { 1.0 - from_land } else { from_land };
+            return Crossing { from: DVec2::new(c as f64, r as f64), step: DVec2::new(dc as f64, dr as f64), at };
+        }
         // NaN where nothing lies beyond.
         let from_land = f64::from((land - level) / (beyond - land));
         let from_land = if land > level && beyond > land { from_land.clamp(CROSSINGS[0], CROSSINGS[1]) } else { 0.5 };

@@ -39,9 +39,7 @@ pub(super) fn lines(
     }
     let asked = &page.illustration.land;
     let (drawing, surface) = (&trials.arguments.drawing, trials.surface);
-    // Shores are looked for among samples in memory.
-    let known = Crease::ALL.into_iter().filter(|crease| *crease != Crease::Shores || !surface.dem().is_filed());
-    let all = LandWanted { creases: known.collect(), slopes: None, ..asked.clone() };
+    let all = LandWanted { creases: Crease::ALL.to_vec(), slopes: None, ..asked.clone() };
     let remote = trials.arguments.terrain.allows_remote();
     let land = drawing.land.land(&all, surface, drawing.exaggeration, remote, trials.cache, &trials.talk.hushed())?;
     found.extend(creases(&land, page, station)?);

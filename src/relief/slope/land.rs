@@ -147,6 +147,7 @@ impl Land {
     pub(super) fn identify(&self, hash: &mut Xxh3) {
         hash.update(bytemuck::bytes_of(&[self.least, self.turned, self.cell.x]));
         hash.update(&[self.water.is_some().into()]);
+        self.water.iter().for_each(|water| water.identify(hash));
         self.stops.identify(hash);
         self.surface.limits().identify(hash);
     }
