@@ -8,7 +8,15 @@ cd "$(dirname "$0")/.."
 said=$(mktemp)
 status=$(mktemp)
 trap 'rm -f "$said" "$status"' EXIT
-{ cargo test --release 2>&1 || echo $? >"$status"; } | tee "$said"
+run() { cargo "$@" 2>&1 || echo $? >>"$status"; }
+{
+    # Tests run the examples too.
+    run build --release --bins --examples
+    # Every target of tests by its name, for the crate is built once more for those inside it, which need no speed.
+    run test --release --test hachure --test without_gdal
+    run test --release --doc
+    run test --release --lib --config profile.release.package.hachure.opt-level=1
+} | tee "$said"
 skipped=$(grep -c '^SKIP ' "$said" || true)
 if [ "$skipped" -gt 0 ]; then
     echo "$skipped skipped, what they need is said above"
