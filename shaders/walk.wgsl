@@ -88,7 +88,8 @@ fn ink(at: vec2<i32>, offset: vec2<f32>) {
     atomicMax(&out_ink[pixel_index(at)], silhouette_at(offset));
 }
 
-// How many times as fine the surface under a facet in doubt is looked at.
+// How many times as fine the surface under a facet in doubt is looked at. Facets of level 1 and coarser are the surface as it is known
+// here, those of the finest two as fine as any.
 const FINER: u32 = 4u;
 // Of the facets of a quad and of those about it in its chunk at most this share faces away in an island.
 const ISLAND: f32 = 0.34;
@@ -110,9 +111,10 @@ fn is_in_doubt(id: u32) -> bool {
     return step < CELL_STEPS && step >= FINER && f32(away) <= ISLAND * f32(about);
 }
 
-// Whether a facet, given by its corners in metres from the eye, faces away.
-fn turns_away(a: vec3<f32>, b: vec3<f32>, c: vec3<f32>) -> bool {
-    return dot(cross(b - a, c - a), a) >= 0.0;
+// Whether a facet faces away whose corners lie so far, metres, from a place that is given from the eye: edges between near places
+// keep their digits far from it.
+fn turns_away(place: vec3<f32>, a: vec3<f32>, b: vec3<f32>, c: vec3<f32>) -> bool {
+    return dot(cross(b - a, c - a), place + a) >= 0.0;
 }
 
 // Whether the surface turns away under an away facet of a patch: some of the finer facets that it is made of do. Beside coarser
@@ -129,15 +131,15 @@ fn surface_turns(id: u32) -> bool {
     let up = vec2<f32>(vec2<i32>(f.c) - vec2<i32>(f.a)) / f32(CELL_STEPS * FINER);
     for (var row = 0u; row < FINER; row++) {
         let start = at + up * f32(row);
-        var low = corner + patch_point(of_cell, start);
-        var high = corner + patch_point(of_cell, start + up);
+        var low = patch_point(of_cell, start);
+        var high = patch_point(of_cell, start + up);
         for (var column = 1u; column <= FINER - row; column++) {
             let next = start + along * f32(column);
-            let next_low = corner + patch_point(of_cell, next);
-            let next_high = corner + patch_point(of_cell, next + up);
+            let next_low = patch_point(of_cell, next);
+            let next_high = patch_point(of_cell, next + up);
             // The last of a row has none on its tip.
-            let on_tip = column < FINER - row && turns_away(next_low, next_high, high);
-            if turns_away(low, next_low, high) || on_tip {
+            let on_tip = column < FINER - row && turns_away(corner, next_low, next_high, high);
+            if turns_away(corner, low, next_low, high) || on_tip {
                 return true;
             }
             low = next_low;

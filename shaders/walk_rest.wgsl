@@ -1,6 +1,6 @@
 // One invocation a pixel with pairs that `walk` has left: with neighbours that show no surface, or with a walk past
-// squares that lack facets or past facets beside a coarser chunk, or that meets a facet which the page shows elsewhere. There, and
-// where no surface shows, the cut of the land is followed too.
+// squares that lack facets or past facets beside a coarser chunk, or that meets a facet which the page shows elsewhere, or under
+// which the surface does not turn away. Where the page shows it elsewhere or no surface, the cut of the land is followed too.
 //
 // Where the straight way to a pixel without surface meets nothing, the cut of the surface by the plane through the eye and
 // both pixels is followed: land as thin as a pixel turns away beside that way, and a straight way along its flank never
@@ -12,8 +12,8 @@
 // ones, no line parts the two.
 //
 // A facet may turn away where the surface that it stands for does not: seen nearly edge-on, and on land whose samples are rounded,
-// there are islands of such facets. Where the way crosses a short stretch that hides next to nothing, the surface under its first
-// facet decides, four times as fine: tangent to the sight for 8 km F .975 to .998, on Yosemite's cliffs precision .991 to .994 at
+// there are islands of such facets. Few about it in its chunk face away then, and the surface under it is looked at four times as
+// fine. Where nothing of it turns away and the stretch is short and hides next to nothing, the way goes on: tangent to the sight for 8 km F .975 to .998, on Yosemite's cliffs precision .991 to .994 at
 // the same recall.
 //
 // Cost: at most 256 facets a pair; in a plain seen edge-on against the sky, all of them. Not handled: land that takes more
@@ -81,7 +81,7 @@ fn open_goal(id: u32, centre: vec2<f32>, to_centre: vec2<f32>, origin: vec2<i32>
 
 // What an away stretch of at most `SEEN_TOWARD` nodes may lead back on the page and hide next to nothing, px.
 const LEAST_HIDDEN: f32 = 0.02;
-// Such stretches that one way may cross.
+// The so-manieth such stretch on a way counts as one that hides.
 const MOST_STRETCHES: u32 = 4u;
 
 // Where on the map a meeting is, a little on along the way.
@@ -112,7 +112,8 @@ fn turn_between(origin: vec2<i32>, end: vec2<i32>) -> Meeting {
         let beyond = walk_between(beyond_entry(meeting, end - start), end);
         seeks_toward = false;
         let back = place_of(meeting.id, meeting.entered) - place_of(beyond.id, beyond.entered);
-        if !beyond.met || dot(back, page_normal(meeting.id)) > LEAST_HIDDEN {
+        let hides_little = dot(back, page_normal(meeting.id)) <= LEAST_HIDDEN;
+        if !beyond.met || !hides_little {
             break;
         }
         start = beyond_entry(beyond, end - start);

@@ -52,9 +52,6 @@ pub(crate) struct ViewFigures {
     pub truth_level: u32,
     /// Visible line on the page.
     pub truth_px: f64,
-    /// F of truth, drawn one pixel wide, against truth of twice the level: asked where ink misses truth. Under the F that is
-    /// promised nothing is held to it.
-    pub truth_settled: Option<f64>,
     /// Time it took.
     pub truth_ms: f64,
     /// File name of the picture.

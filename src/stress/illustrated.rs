@@ -6,6 +6,7 @@ use super::drawing::{plan, words};
 use crate::error::Result;
 use crate::ink::{self, Drawing, Sheet, Style};
 use crate::line::Land;
+use crate::measure::curves::mask_of;
 use crate::plan::{Curves, Detail, LandLines, Method, Plan};
 use crate::relief::{ChannelArea, Relief, Slopes, append};
 use crate::render::{Page, Renderer};
@@ -51,27 +52,33 @@ pub fn illustrated(
     Ok((page, drawing))
 }
 
-/// The nearest depths of such a page, as the device holds them.
+/// The nearest facet of each pixel of such a page and its depth, as the device holds them.
 ///
 /// # Errors
 /// As [`Gpu::read`](crate::gpu::Gpu::read).
-pub fn depths(renderer: &Renderer, camera: &Camera) -> Result<Vec<u32>> {
+pub fn pixels(renderer: &Renderer, camera: &Camera) -> Result<Vec<[u32; 2]>> {
     let pixels = camera.width as usize * camera.height as usize;
-    let read: Vec<[u32; 2]> = renderer.gpu().read(renderer.on_device().buffer("pixels")?, pixels)?;
-    Ok(read.into_iter().map(|[_, depth]| depth).collect())
+    renderer.gpu().read(renderer.on_device().buffer("pixels")?, pixels)
 }
 
 /// All that is known of such a page, bit for bit.
 ///
 /// # Errors
-/// As [`illustrated`] and [`depths`].
+/// As [`illustrated`] and [`pixels`].
 pub fn bits(renderer: &mut Renderer, land: &Arc<Land>, detail: Detail, camera: &Camera) -> Result<Vec<u64>> {
     let (page, drawing) = illustrated(renderer, land, detail, camera)?;
-    let mut bits: Vec<u64> = depths(renderer, camera)?.into_iter().map(u64::from).collect();
+    let pixels = pixels(renderer, camera)?.into_iter();
+    let mut bits: Vec<u64> = pixels.map(|[facet, depth]| u64::from(facet) << 32 | u64::from(depth)).collect();
+    let ink = mask_of(&page.marks, renderer.near()).inked.into_iter();
+    bits.extend(ink.flat_map(|p| [u64::from(p.column) << 32 | u64::from(p.row), p.distance.to_bits()]));
     bits.extend(words(&page.chains));
     bits.extend(words(&page.land));
-    let strokes = drawing.layers.iter().flat_map(|layer| &layer.strokes);
-    let numbers = strokes.flat_map(|stroke| &stroke.points).flat_map(|p| [p.place.x, p.place.y, p.width]);
-    bits.extend(numbers.map(f64::to_bits));
+    for layer in &drawing.layers {
+        bits.push(layer.strokes.len() as u64);
+        for stroke in &layer.strokes {
+            bits.push(stroke.points.len() as u64);
+            bits.extend(stroke.points.iter().flat_map(|p| [p.place.x, p.place.y, p.width]).map(f64::to_bits));
+        }
+    }
     Ok(bits)
 }

@@ -80,10 +80,7 @@ impl Promise {
             }
             Self::Watertight => "no pixel without a facet though five rays about its centre all meet the land",
             Self::Unfolded => "with tangents limited no patch folds over, and no facet of the frame",
-            Self::Accurate => {
-                "F of walk and of contour at least 0.98 within 1 px, where truth has 200 px and more and agrees as well with truth of \
-                 twice the level"
-            }
+            Self::Accurate => "F of walk and of contour at least 0.98 within 1 px, where truth has 200 px and more",
             Self::NoFlood => "ink of walk and of contour farther than 1 px from truth on at most 0.1 % of the page",
             Self::Conditioned => {
                 "the eye moved by a millionth of its distance: at most 0.1 % of ink, in whole pixels, farther than 1 px from \
@@ -98,10 +95,11 @@ impl Promise {
             }
             Self::TurnedFar => "and none of it lies over 1 px from ink",
             Self::Alone => {
-                "of three frames of a flight, with creases and hachures, each has every bit of the frame drawn alone"
+                "the second and the third frame of a flight have every bit of the frame drawn alone: depths, facets, ink, chains, \
+                 creases and hachures"
             }
             Self::Steady => {
-                "of these, a four-thousandth of the distance apart: at most 0.5 % of ink farther than 1 px from ink of the next, less \
+                "of three frames of a flight, a four-thousandth of the distance apart: at most 0.5 % of ink farther than 1 px from ink of the next, less \
                  the same of truth"
             }
         }

@@ -1,11 +1,10 @@
 //! A view of a case while methods draw it: its truth, and where they are worst.
 
-use super::accuracy::{Accuracy, worst};
+use super::accuracy::worst;
 use super::case::{Case, View};
 use super::figures::{Seen, ViewFigures, Worst};
 use super::promise::Promise;
-use crate::surface::Level;
-use crate::truth::{Mask, Terrain, Truth};
+use crate::truth::{Mask, Truth};
 use crate::view::Camera;
 
 /// Side of the squares of the page by which places are told apart, px.
@@ -17,12 +16,8 @@ const MARKED: usize = 3;
 pub(super) struct Sight<'a> {
     /// Which.
     pub view: &'a View,
-    /// Its land, for truth.
-    pub terrain: &'a Terrain<'a>,
     /// Truth, as fine as the case asks.
     pub truth: Truth,
-    /// F of truth, drawn one pixel wide, against truth of twice the level, where that was asked.
-    pub settled: Option<f64>,
     /// Camera and truth a step on.
     pub stepped: (Camera, Truth),
     /// Share of truth, drawn one pixel wide, that pops then.
@@ -45,15 +40,6 @@ impl Sight<'_> {
         self.worst.extend(found.map(|place| Worst::new(method, promise, place)));
     }
 
-    /// How far truth agrees with truth of twice the level: what does not is made by roundings, and nothing can be held to it.
-    pub(super) fn settles(&mut self) -> f64 {
-        *self.settled.get_or_insert_with(|| {
-            let finer = Level::new(2 * self.truth.level.subdivisions());
-            let finer = finer.map(|level| self.terrain.truth(&self.view.camera, level));
-            finer.map_or(1.0, |finer| Accuracy::of(&Mask::of_truth(&self.truth), &finer).f().unwrap_or(0.0))
-        })
-    }
-
     /// Its figures, when all methods have drawn it.
     pub(super) fn figures(self, case: &Case, truth_ms: f64) -> ViewFigures {
         let Camera { eye, azimuth, altitude, fov, width, height } = self.view.camera;
@@ -67,7 +53,6 @@ impl Sight<'_> {
             height,
             truth_level: self.truth.level.subdivisions(),
             truth_px: self.truth.length(),
-            truth_settled: self.settled,
             truth_ms,
             picture: picture_name(case.name, self.view.name),
             worst: self.worst,

@@ -26,6 +26,9 @@ use crate::frames::{METHODS, Planned};
 use crate::reflection::{Bound, bound, shader_of, shaders};
 use crate::scenes::{gpu, gpu_without_int64, level, rough};
 
+/// Buffers of samples.
+const OF_SAMPLES: [&str; 3] = ["heights", "gradients_east", "gradients_north"];
+
 /// What passes bind and costs leave out: the pass, the buffers, why.
 const UNCOUNTED: [(&str, &[&str], &str); 10] = [
     ("tessellate", &["valid"], "marks of voids, a bit a sample"),
@@ -34,8 +37,8 @@ const UNCOUNTED: [(&str, &[&str], &str); 10] = [
     ("pairs", &["chunks", "summaries"], "candidates lie side by side in few chunks"),
     ("walk", &["chunks", "nodes", "valid", "facing", "summaries", "counts"], "steps of walks"),
     ("walk_rest", &["chunks", "nodes", "valid", "facing", "summaries", "counts"], "steps of walks"),
-    ("walk", &["heights", "gradients_east", "gradients_north"], "the surface under few facets, those in doubt"),
-    ("walk_rest", &["heights", "gradients_east", "gradients_north"], "the surface under few facets, those in doubt"),
+    ("walk", &OF_SAMPLES, "the surface under few facets, those in doubt"),
+    ("walk_rest", &OF_SAMPLES, "the surface under few facets, those in doubt"),
     ("adjacency", &["valid"], "marks of voids, a bit a sample"),
     ("border", &["chunks", "nodes", "facing", "pixels", "ink"], "pixels of border lines"),
 ];
@@ -77,7 +80,10 @@ fn faults(costs: &[PassCost], passes: &Passes, sizes: &Sizes, rounds: u64) -> Ve
                 wrong(of, binds.get(of.buffer), sizes.get(of.buffer), most).map(|what| format!("{name} {what}")),
             );
         }
-        let left_out = |buffer: &str| UNCOUNTED.iter().any(|(pass, of, _)| pass == name && of.contains(&buffer));
+        // Where vertices are not at hand, walks find all of them anew from the samples.
+        let finds_anew = |buffer: &str| !binds.contains_key("places") && OF_SAMPLES.contains(&buffer);
+        let of_pass = |buffer: &str| UNCOUNTED.iter().any(|(pass, of, _)| pass == name && of.contains(&buffer));
+        let left_out = |buffer: &str| of_pass(buffer) && !finds_anew(buffer);
         for (buffer, bound) in binds.iter().filter(|(buffer, _)| !left_out(buffer)) {
             if !traffic.iter().any(|of| of.buffer == buffer) {
                 let verb = if bound.is_out { "writes" } else { "reads" };

@@ -13,7 +13,7 @@ use wgpu::naga;
 use super::{all_modules, bound, constants, layouts, shader_of, shared_constants, shared_structs};
 
 /// Constants that are the shaders' own, and why Rust need not know them.
-const OWN_CONSTANTS: [(&str, &str); 35] = [
+const OWN_CONSTANTS: [(&str, &str); 40] = [
     ("HOLDS_TOWARD", "bit of a word of a chunk: set by turning and wanted, read by the passes behind them"),
     ("HOLDS_AWAY", "as HOLDS_TOWARD"),
     ("BOTH", "as HOLDS_TOWARD"),
@@ -46,6 +46,11 @@ const OWN_CONSTANTS: [(&str, &str); 35] = [
     ("CUT", "corner of a clipped polygon, within one invocation"),
     ("OVERSHOOT", "share by which walk_rest aims beyond the centre of a pixel"),
     ("BESIDE_PAIR", "from where on walk leaves what it met to walk_rest"),
+    ("FINER", "how fine walk looks at the surface under a facet"),
+    ("ISLAND", "share of away facets about one, up to which walk doubts it"),
+    ("LEAST_HIDDEN", "what walk_rest passes by"),
+    ("MOST_STRETCHES", "how often it does"),
+    ("SEEN_TOWARD", "nodes through which it looks for where an away stretch ends"),
     ("NO_FACET", "no facet, within one invocation"),
     ("LONGEST_SECTION", "facets that walk_rest follows a cut over"),
     ("NONE", "no depth, within one invocation"),
