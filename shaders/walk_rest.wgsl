@@ -13,8 +13,8 @@
 //
 // A facet may turn away where the surface that it stands for does not: seen nearly edge-on, and on land whose samples are rounded,
 // there are islands of such facets. Few about it in its chunk face away then, and the surface under it is looked at four times as
-// fine. Where nothing of it turns away and the stretch is short and hides next to nothing, the way goes on: tangent to the sight for 8 km F .975 to .998, on Yosemite's cliffs precision .991 to .994 at
-// the same recall.
+// fine. Where nothing of it turns away and the stretch is short and hides next to nothing, the way goes on: tangent to the sight
+// for 8 km F .975 to .998, on Yosemite's cliffs precision .991 to .994 at the same recall.
 //
 // Cost: at most 256 facets a pair; in a plain seen edge-on against the sky, all of them. Not handled: land that takes more
 // facets than that to turn away within a pixel, and pairs that both show land whose straight way meets nothing, so that

@@ -1,9 +1,8 @@
 //! A short flight over a case: frames owe nothing to those before them, and little pops from one to the next.
 //!
 //! Three frames from the case's first view on, the eye each time a four-thousandth of its distance from the middle of the land
-//! farther: of 4 km one metre. The last two are drawn by the renderer that has drawn all
-//! others, and by a new one, over land whose lines are found anew: every facet and depth of a pixel, ink, point of a chain,
-//! crease and stroke is to be the same.
+//! farther: of 4 km one metre. The last two are drawn by the renderer that has drawn all others, and by a new one, over land whose
+//! lines are found anew: every facet and depth of a pixel, ink, point of a chain, crease and stroke is to be the same.
 
 use super::conditioning::moved;
 use crate::truth::Mask;
